@@ -38,10 +38,9 @@ void BoxTree::halve(uint32_t begin, uint32_t end, const std::vector<Middle>& mid
   for (const uint32_t* i = first; i != last; ++i) spread.extend(Eigen::Map<const Eigen::Vector3f>(middles[*i].data()));
   Eigen::Index longest = 0;
   spread.sizes().maxCoeff(&longest);
-  const auto axis = static_cast<size_t>(longest);
   const uint32_t half = begin + (end - begin) / 2;
   std::nth_element(first, order_.data() + half, last, [&](uint32_t a, uint32_t b) {
-    return middles[a][axis] != middles[b][axis] ? middles[a][axis] < middles[b][axis] : a < b;
+    return middles[a][longest] != middles[b][longest] ? middles[a][longest] < middles[b][longest] : a < b;
   });
   halve(begin, half, middles, leaf_size, job);
   branches_[index].second_half = static_cast<uint32_t>(branches_.size());

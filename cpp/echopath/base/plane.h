@@ -57,7 +57,7 @@ class ChainOfIndices {
 
   ChainOfIndices(const std::vector<Mirror>& mirrors, std::span<const int> indices) : mirrors_(mirrors), indices_(indices) {}
   size_t size() const { return indices_.size(); }
-  const Mirror& operator[](size_t k) const { return mirrors_[static_cast<size_t>(indices_[k])]; }
+  const Mirror& operator[](size_t k) const { return mirrors_[indices_[k]]; }
   Iterator begin() const { return {*this, 0}; }
   Iterator end() const { return {*this, size()}; }
 

@@ -17,9 +17,9 @@ QueryLog::Ray ray_of(const RTCRay& ray) {
 RaysOfPacket rays_of(const RTCRay16& rays, const ValidLanes& valid) {
   RaysOfPacket out;
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    out[static_cast<size_t>(lane)] = {{rays.org_x[lane], rays.org_y[lane], rays.org_z[lane]},
-                                      {rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane]},
-                                      valid.lanes[lane] ? rays.tfar[lane] : -1.0f};
+    out[lane] = {{rays.org_x[lane], rays.org_y[lane], rays.org_z[lane]},
+                 {rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane]},
+                 valid.lanes[lane] ? rays.tfar[lane] : -1.0f};
   }
   return out;
 }

@@ -21,19 +21,19 @@ std::vector<double> regular_functions(double x, int count) {
   std::vector<double> psi(static_cast<size_t>(count) + 1, 0.0);
   double above = 0.0, here = kTiny;
   for (int n = count + kGuardOrders; n >= 0; --n) {
-    if (n <= count) psi[static_cast<size_t>(n)] = here;
+    if (n <= count) psi[n] = here;
     const double below = (2 * n + 1) / x * here - above;
     above = here;
     here = below;
     if (std::abs(here) < kHuge) continue;
     here /= kHuge;
     above /= kHuge;
-    for (int m = n; m <= count; ++m) psi[static_cast<size_t>(m)] /= kHuge;
+    for (int m = n; m <= count; ++m) psi[m] /= kHuge;
   }
   // The values are scaled by whichever of the two lowest orders is not near a zero.
   const double exact[2] = {std::sin(x), std::sin(x) / x - std::cos(x)};
   const int anchor = std::abs(psi[0]) >= std::abs(psi[1]) ? 0 : 1;
-  const double scale = exact[anchor] / psi[static_cast<size_t>(anchor)];
+  const double scale = exact[anchor] / psi[anchor];
   for (double& value : psi) value *= scale;
   return psi;
 }

@@ -66,7 +66,7 @@ Partition make_partition(const Paths& paths, const std::vector<NamedSelection>& 
   for (const NamedSelection& part : parts) partition.names.push_back(part.name);
   partition.names.push_back("other");
   const auto other = static_cast<uint32_t>(parts.size());
-  partition.group.assign(static_cast<size_t>(paths.num_paths()), other);
+  partition.group.assign(paths.num_paths(), other);
   PathTraits traits(paths, parts.size() >= kManyParts);
   std::vector<uint8_t> left(partition.group.size(), 1);  // 1 for paths that are in no part yet
   for (uint32_t part = 0; part < other; ++part) {

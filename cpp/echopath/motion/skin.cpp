@@ -34,8 +34,7 @@ std::vector<Joint> bound(std::vector<Joint> joints) {
   for (size_t j = 0; j < joints.size(); ++j) {
     Joint& joint = joints[j];
     check_joint(joint, j, names);
-    skin_from_joint.push_back(joint.parent < 0 ? joint.placement
-                                               : skin_from_joint[static_cast<size_t>(joint.parent)] * joint.placement);
+    skin_from_joint.push_back(joint.parent < 0 ? joint.placement : skin_from_joint[joint.parent] * joint.placement);
     if (!joint.inverse_bind) joint.inverse_bind = skin_from_joint.back().inverse();
   }
   return joints;
@@ -125,7 +124,7 @@ std::vector<Transform> Skin::joint_transforms(double time) const {
   transforms.reserve(data_->joints.size());
   for (const Joint& joint : data_->joints) {
     const Transform local = moved(joint.placement, joint.motion.get(), time);
-    transforms.push_back(joint.parent < 0 ? local : transforms[static_cast<size_t>(joint.parent)] * local);
+    transforms.push_back(joint.parent < 0 ? local : transforms[joint.parent] * local);
   }
   for (size_t j = 0; j < transforms.size(); ++j) transforms[j] = transforms[j] * *data_->joints[j].inverse_bind;
   return transforms;
@@ -173,7 +172,7 @@ double Skin::turn_rate(const TimeSpan& during) const {
   std::vector<double> rates;  // by joint
   double fastest = 0.0;
   for (const Joint& joint : data_->joints) {
-    const double above = joint.parent < 0 ? 0.0 : rates[static_cast<size_t>(joint.parent)];
+    const double above = joint.parent < 0 ? 0.0 : rates[joint.parent];
     rates.push_back(above + (joint.motion ? joint.motion->turn_rate(during) : 0.0));
     fastest = std::max(fastest, rates.back());
   }

@@ -7,12 +7,12 @@ std::vector<Body> bodies_of(const Scene& scene, const PosedScene& pose) {
   std::vector<int> index(scene.nodes().size(), -1);  // into bodies, by node
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const int object = scene.meshes()[id].object;
-    int& at = index[static_cast<size_t>(object)];
+    int& at = index[object];
     if (at < 0) {
       at = static_cast<int>(bodies.size());
       bodies.push_back({object, {}, {}});
     }
-    Body& body = bodies[static_cast<size_t>(at)];
+    Body& body = bodies[at];
     body.meshes.push_back(id);
     const Mat3& linear = pose.linear(id);
     const Vec3& translation = pose.world_translation(id);

@@ -7,17 +7,15 @@ namespace echopath {
 PlacingNodes::PlacingNodes(const Scene& scene, std::span<const uint32_t> meshes) : scene_(scene) {
   std::vector<int> place(scene.nodes().size(), -1);
   for (const uint32_t mesh : meshes) {
-    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[static_cast<size_t>(node)].parent)
-      place[static_cast<size_t>(node)] = 0;
+    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[node].parent) place[node] = 0;
   }
   for (size_t node = 0; node < place.size(); ++node) {
     if (place[node] < 0) continue;
     const int parent = scene.nodes()[node].parent;
     place[node] = static_cast<int>(nodes_.size());
-    nodes_.push_back({static_cast<int>(node), parent < 0 ? -1 : place[static_cast<size_t>(parent)]});
+    nodes_.push_back({static_cast<int>(node), parent < 0 ? -1 : place[parent]});
   }
-  for (const uint32_t mesh : meshes)
-    of_mesh_.push_back(static_cast<size_t>(place[static_cast<size_t>(scene.meshes()[mesh].node)]));
+  for (const uint32_t mesh : meshes) of_mesh_.push_back(static_cast<size_t>(place[scene.meshes()[mesh].node]));
 }
 
 std::vector<Transform> PlacingNodes::world_from_meshes(double time) const {

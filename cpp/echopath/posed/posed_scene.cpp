@@ -78,7 +78,7 @@ void PosedScene::place_meshes() {
   normal_matrix_.reserve(count);
   world_translation_.reserve(count);
   for (uint32_t id = 0; id < num_meshes(); ++id) {
-    place(id, world_from_node[static_cast<size_t>(scene_->meshes()[id].node)]);
+    place(id, world_from_node[scene_->meshes()[id].node]);
   }
   deformed_.resize(linear_.size());
   deformed_normals_.resize(linear_.size());

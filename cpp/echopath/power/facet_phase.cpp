@@ -54,7 +54,7 @@ double FacetPhases::of(uint32_t mesh_id) {
   if (found) return *found;
   const Node& node = scene_.node_of(mesh_id);
   if (!node.smooth || node.mesh->is_flat()) return found.emplace(0.0);
-  const Transform& world_from_mesh = world_from_nodes_[static_cast<size_t>(scene_.meshes()[mesh_id].node)];
+  const Transform& world_from_mesh = world_from_nodes_[scene_.meshes()[mesh_id].node];
   const double scale = std::cbrt(std::abs(world_from_mesh.linear().determinant()));
   return found.emplace(2.0 * wavenumber_ * scale * mean_depth(*node.mesh, *kept_vertex_normals(node.mesh)));
 }

@@ -44,7 +44,7 @@ std::vector<size_t> kinds_of(const std::vector<Antenna>& antennas) {
 std::vector<int64_t> diffuse_paths(const Paths& paths) {
   std::vector<int64_t> found;
   for (int64_t path = 0; path < paths.num_paths(); ++path) {
-    if (paths.diffuse[static_cast<size_t>(path)] != 0) found.push_back(path);
+    if (paths.diffuse[path] != 0) found.push_back(path);
   }
   return found;
 }

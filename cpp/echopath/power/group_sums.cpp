@@ -49,12 +49,11 @@ constexpr uint64_t kMirrorsAlone = ~uint64_t{0};  // the kind of paths over flag
 
 // Returns the kind of a coherent path: the mesh that radiates and whether other surfaces come before it.
 uint64_t kind_of(const Paths& paths, int64_t path) {
-  const auto p = static_cast<size_t>(path);
   const Hit* hits = paths.hits_of(path);
-  if (!paths.is_of_a_ray(p)) return kMirrorsAlone;
+  if (!paths.is_of_a_ray(path)) return kMirrorsAlone;
   uint64_t radiating = 0, count = 0;
-  for (int k = 0; k < paths.num_bounces[p]; ++k) {
-    const uint32_t mesh = hits[paths.is_reversed(p) ? paths.num_bounces[p] - 1 - k : k].mesh_id;
+  for (int k = 0; k < paths.num_bounces[path]; ++k) {
+    const uint32_t mesh = hits[paths.is_reversed(path) ? paths.num_bounces[path] - 1 - k : k].mesh_id;
     if (paths.scene->node_of(mesh).material->mirror) continue;
     radiating = mesh;
     ++count;
@@ -142,7 +141,7 @@ class Sums {
       open = {path, batch};
     }
     open.field += arriving;
-    if (paths_.flags[static_cast<size_t>(path)] & kStandsForOthers) open.lot_field += arriving;
+    if (paths_.flags[path] & kStandsForOthers) open.lot_field += arriving;
   }
 
   // `arriving` holds one field for each of kCellViews, `stride` apart; `image_field` is that of an endless mirror, sqrt(W).
@@ -167,7 +166,7 @@ class Sums {
     const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
     of_kind.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
-    if (paths_.flags[static_cast<size_t>(path)] & kBesideEdge) of_kind.beside_edges += power;
+    if (paths_.flags[path] & kBesideEdge) of_kind.beside_edges += power;
     if (has_cell && power > 0.0) {  // no lattice can miss images
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
       sums.steady_power += steady;
@@ -188,7 +187,7 @@ class Sums {
 
  private:
   size_t batch_of(int64_t path) const {
-    return std::min<size_t>(paths_.batch[static_cast<size_t>(path)], static_cast<size_t>(paths_.frame.batches));
+    return std::min<size_t>(paths_.batch[path], static_cast<size_t>(paths_.frame.batches));
   }
 
   void count_ray(size_t group, int64_t path) {
@@ -251,7 +250,7 @@ class Block {
     coherent_.clear();
     kinds_.clear();
     for (int64_t path = begin; path < end; ++path) {
-      (paths_.diffuse[static_cast<size_t>(path)] == 0 ? coherent_ : diffuse_).push_back(path);
+      (paths_.diffuse[path] == 0 ? coherent_ : diffuse_).push_back(path);
     }
     for (const int64_t path : coherent_) kinds_.push_back(kind_of(paths_, path));
     replayer_.evaluate(diffuse_, paths_.frame.trace_time, lengths_, diffuse_fields_);
@@ -265,10 +264,10 @@ class Block {
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {
     for (size_t i = 0; i < diffuse_.size(); ++i) {
-      sums.add_diffuse(group_of_path[static_cast<size_t>(diffuse_[i])], diffuse_[i], diffuse_fields_[i]);
+      sums.add_diffuse(group_of_path[diffuse_[i]], diffuse_[i], diffuse_fields_[i]);
     }
     for (size_t i = 0; i < coherent_.size(); ++i) {
-      const uint32_t group = group_of_path[static_cast<size_t>(coherent_[i])];
+      const uint32_t group = group_of_path[coherent_[i]];
       sums.add_coherent(group, coherent_[i], kinds_[i], coherent_fields_.data() + i, coherent_.size(),
                         image_at_a_metre_ / std::max(coherent_lengths_[i], kNearAntenna));
     }
@@ -279,8 +278,8 @@ class Block {
   void note(std::span<const int64_t> paths, const std::vector<std::complex<double>>& amplitudes, PowerAndLength& out) const {
     static_assert(kAsLaunched == 0);
     for (size_t i = 0; i < paths.size(); ++i) {
-      out.power[static_cast<size_t>(paths[i])] = std::norm(amplitudes[i]);
-      out.length[static_cast<size_t>(paths[i])] = lengths_[i];
+      out.power[paths[i]] = std::norm(amplitudes[i]);
+      out.length[paths[i]] = lengths_[i];
     }
   }
 
@@ -324,10 +323,7 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
     if (job) job->throw_if_cancelled();
     const int64_t end = std::min(begin + kBlock, paths.num_paths());
     block->evaluate(begin, end, of_paths);
-    parallel_for(std::ssize(sums), [&](int64_t i) {
-      const auto at = static_cast<size_t>(i);
-      block->add_to(sums[at], sortings[at].group_of_path);
-    });
+    parallel_for(std::ssize(sums), [&](int64_t i) { block->add_to(sums[i], sortings[i].group_of_path); });
     if (job) job->advance(end - begin);
   }
   FacetPhases phases(*paths.scene, kTwoPi * radar.waveform.start_frequency / kSpeedOfLight, paths.frame.trace_time);

@@ -18,9 +18,9 @@ std::vector<double> powers_in_channel(const Paths& paths, int64_t count, const I
   const Replayer replayer(paths, channel);
   std::vector<double> power, lengths;
   std::vector<std::complex<double>> amplitudes;
-  power.reserve(static_cast<size_t>(count));
+  power.reserve(count);
   for (int64_t begin = 0; begin < count; begin += kPathsPerBlock) {
-    std::vector<int64_t> block(static_cast<size_t>(std::min(kPathsPerBlock, count - begin)));
+    std::vector<int64_t> block(std::min(kPathsPerBlock, count - begin));
     for (size_t i = 0; i < block.size(); ++i) block[i] = index_of(begin + static_cast<int64_t>(i));
     replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, job);
     for (const std::complex<double>& amplitude : amplitudes) power.push_back(std::norm(amplitude));
@@ -37,7 +37,7 @@ std::vector<double> path_power(const Paths& paths, Job* job) {
 }
 
 std::vector<double> path_power(const Paths& paths, std::span<const int64_t> some, const Radar& channel, Job* job) {
-  return powers_in_channel(paths, std::ssize(some), [&](int64_t i) { return some[static_cast<size_t>(i)]; }, channel, job);
+  return powers_in_channel(paths, std::ssize(some), [&](int64_t i) { return some[i]; }, channel, job);
 }
 
 }  // namespace echopath

@@ -147,7 +147,7 @@ double ReceivedPower::error_db() const {
 }
 
 ReceivedPower received_power(const Paths& paths, Job* job, Channel channel) {
-  const std::vector<uint32_t> together(static_cast<size_t>(paths.num_paths()), 0);
+  const std::vector<uint32_t> together(paths.num_paths(), 0);
   return received_powers(paths, Sorting{together, 1}, job, channel).front();
 }
 

@@ -18,8 +18,7 @@ int diffuse_hit(uint64_t diffuse, int k) {
 }  // namespace
 
 bool shares_phase(const Paths& paths, int64_t first, int64_t second) {
-  const uint64_t of_first = paths.diffuse[static_cast<size_t>(first)],
-                 of_second = paths.diffuse[static_cast<size_t>(second)];
+  const uint64_t of_first = paths.diffuse[first], of_second = paths.diffuse[second];
   const int count = std::popcount(of_first);
   if (count != std::popcount(of_second)) return false;
   const Hit *a = paths.hits_of(first), *b = paths.hits_of(second);

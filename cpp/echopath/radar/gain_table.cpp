@@ -149,9 +149,9 @@ void GainTable::close_ring() {
 }
 
 double GainTable::azimuth_at(int column) const {
-  if (period_ == 0) return azimuth_[static_cast<size_t>(column)];
+  if (period_ == 0) return azimuth_[column];
   const int turns = column < 0 ? -1 : column / period_;
-  return azimuth_[static_cast<size_t>(column - turns * period_)] + turns * kTwoPi;
+  return azimuth_[column - turns * period_] + turns * kTwoPi;
 }
 
 size_t GainTable::sample(int row, int column) const {
@@ -192,7 +192,7 @@ bool GainTable::find_elevation(double elevation, Stencil& out) const {
   double at[4] = {0.0, 0.0, 0.0, 0.0};
   for (int i = 0; i < 4; ++i) {
     out.index[i] = std::clamp(cell + i - 1, 0, rows - 1);
-    at[i] = elevation_[static_cast<size_t>(out.index[i])];
+    at[i] = elevation_[out.index[i]];
   }
   set_weights(at, cell > 0, cell + 2 < rows, inside, out.weight);
   return true;

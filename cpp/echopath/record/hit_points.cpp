@@ -17,7 +17,7 @@ std::vector<double> hit_points(const Paths& paths, double time, Job* job) {
   parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
     const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
     for (int64_t i = block * kHitsPerTask; i < end; ++i) {
-      Eigen::Map<Vec3>(out.data() + 3 * i) = hit_point(pose, (*paths.hits)[static_cast<size_t>(i)]);
+      Eigen::Map<Vec3>(out.data() + 3 * i) = hit_point(pose, (*paths.hits)[i]);
     }
   }, job);
   return out;

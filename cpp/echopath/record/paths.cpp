@@ -129,7 +129,7 @@ HitSet used_hits(const Paths& paths) {
 void validate_foci(const std::vector<Stratum>& strata) {
   for (const Stratum& stratum : strata) {
     const bool is_valid = stratum.focus_of == -1 || (stratum.focus_of >= 0 && stratum.focus_of < std::ssize(strata) &&
-                                                     !strata[static_cast<size_t>(stratum.focus_of)].is_focus());
+                                                     !strata[stratum.focus_of].is_focus());
     require(is_valid, "focus_of", "must be -1 or the index of a stratum that is no focus", stratum.focus_of);
   }
 }

@@ -177,7 +177,7 @@ struct Paths {
 
   int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }
   int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
-  const Hit* hits_of(int64_t path) const { return hits->data() + offsets[static_cast<size_t>(path)]; }
+  const Hit* hits_of(int64_t path) const { return hits->data() + offsets[path]; }
   bool is_reversed(size_t path) const { return (flags[path] & kReversedPath) != 0; }
   // Returns whether a ray found the path; its amplitude, where it is coherent, then is that of the ray's launch cell.
   bool is_of_a_ray(size_t path) const { return stratum[path] != kNoStratum; }

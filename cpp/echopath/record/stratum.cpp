@@ -24,7 +24,7 @@ double half_angle_of(double versine) { return 2.0 * std::asin(std::sqrt(0.5 * ve
 RayShares shares_of(const std::vector<Stratum>& strata) {
   RayShares shares;
   for (const Stratum& stratum : strata) {
-    const Stratum& owner = stratum.is_focus() ? strata[static_cast<size_t>(stratum.focus_of)] : stratum;
+    const Stratum& owner = stratum.is_focus() ? strata[stratum.focus_of] : stratum;
     shares[owner.name] += static_cast<double>(stratum.num_rays);
   }
   return shares;

@@ -33,8 +33,7 @@ bool take_logarithms(size_t num_nodes, size_t stride, const double* turn, std::c
 
 // Images have no launch cell, and edges have a filter of their own.
 bool Replayer::can_turn(int64_t path) const {
-  const auto p = static_cast<size_t>(path);
-  return radio_.footprint != Footprint::kEdges && paths_.is_coherent_with_cell(p);
+  return radio_.footprint != Footprint::kEdges && paths_.is_coherent_with_cell(path);
 }
 
 std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, GridIndex polynomial,

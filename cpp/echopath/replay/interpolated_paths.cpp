@@ -82,7 +82,7 @@ double Replayer::negligible_amplitude() const {
 
 // Returns [P], 1 for paths that are negligible in all channels.
 std::vector<uint8_t> Replayer::negligible_ones(const FrameNodes& nodes, std::span<const Echoes> channels) const {
-  std::vector<uint8_t> is_negligible(static_cast<size_t>(channels.front().num_echoes), 1);
+  std::vector<uint8_t> is_negligible(channels.front().num_echoes, 1);
   const double limit = negligible_amplitude();
   for (const Echoes& channel : channels) {
     for (size_t p = 0; p < is_negligible.size(); ++p)

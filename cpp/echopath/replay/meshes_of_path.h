@@ -8,8 +8,8 @@ namespace echopath {
 template <class Visit>
 void visit_meshes(const Paths& paths, int64_t path, const Visit& visit) {
   const Hit* const hits = paths.hits_of(path);
-  for (int k = 0; k < paths.num_bounces[static_cast<size_t>(path)]; ++k) visit(hits[k].mesh_id);
-  for (const Pass& pass : paths.passes_of(static_cast<size_t>(path))) visit(pass.hit.mesh_id);
+  for (int k = 0; k < paths.num_bounces[path]; ++k) visit(hits[k].mesh_id);
+  for (const Pass& pass : paths.passes_of(path)) visit(pass.hit.mesh_id);
 }
 
 }  // namespace echopath

@@ -15,7 +15,7 @@ std::vector<Transform> chained_transforms(size_t count, const Local& local, cons
   for (size_t i = 0; i < count; ++i) {
     const int above = parent(i);
     const Transform in_parent = local(i);
-    world.push_back(above < 0 ? in_parent : world[static_cast<size_t>(above)] * in_parent);
+    world.push_back(above < 0 ? in_parent : world[above] * in_parent);
   }
   return world;
 }

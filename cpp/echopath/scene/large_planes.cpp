@@ -123,7 +123,7 @@ class PlaneMeasure {
 
 // Returns whether a node is carried by a motion: what moves is a vehicle or a door, whose echo and label it would lose.
 bool moves(const Scene& scene, const Node& node) {
-  for (const Node* one = &node;; one = &scene.nodes()[static_cast<size_t>(one->parent)]) {
+  for (const Node* one = &node;; one = &scene.nodes()[one->parent]) {
     if (one->motion) return true;
     if (one->parent < 0) return false;
   }
@@ -144,7 +144,7 @@ std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlan
     const Node& node = scene.node_of(id);
     if (!may_be_mirror(scene, node, rule)) continue;
     std::vector<Vec3> vertices = node.mesh->vertices();
-    for (Vec3& vertex : vertices) vertex = placed[static_cast<size_t>(scene.meshes()[id].node)] * vertex;
+    for (Vec3& vertex : vertices) vertex = placed[scene.meshes()[id].node] * vertex;
     if (PlaneMeasure(vertices, node.mesh->triangles(), rule).is_large()) found.push_back(id);
   }
   return found;

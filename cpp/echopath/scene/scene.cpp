@@ -75,7 +75,7 @@ int Scene::add(Node node) {
 void Scene::change(int index, Node node) {
   require_node(index);
   check_content(node);
-  Node& present = nodes_[static_cast<size_t>(index)];
+  Node& present = nodes_[index];
   const bool same_ids = node.visible == present.visible && !node.mesh == !present.mesh;
   node.name = std::move(present.name);
   node.parent = present.parent;
@@ -89,7 +89,7 @@ void Scene::remove(int index) {
   std::vector<Node> kept;
   for (size_t i = 0; i < nodes_.size(); ++i) {
     Node& node = nodes_[i];
-    const int parent = node.parent < 0 ? -1 : place[static_cast<size_t>(node.parent)];
+    const int parent = node.parent < 0 ? -1 : place[node.parent];
     if (static_cast<int>(i) == index || (node.parent >= 0 && parent < 0)) continue;
     place[i] = static_cast<int>(kept.size());
     node.parent = parent;
@@ -103,7 +103,7 @@ void Scene::remove(int index) {
 
 void Scene::keep_meshes(const std::vector<bool>& kept) {
   std::vector<bool> keeps(nodes_.size());
-  for (size_t id = 0; id < meshes_.size(); ++id) keeps[static_cast<size_t>(meshes_[id].node)] = kept[id];
+  for (size_t id = 0; id < meshes_.size(); ++id) keeps[meshes_[id].node] = kept[id];
   for (size_t i = 0; i < nodes_.size(); ++i) {
     if (keeps[i]) continue;
     nodes_[i].mesh = nullptr;

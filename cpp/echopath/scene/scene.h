@@ -54,9 +54,9 @@ class Scene {
   const std::vector<Node>& nodes() const { return nodes_; }
   // Returns whether a node and all above it are visible. What does not take part has no mesh ID, and its motions are not
   // asked for anything.
-  bool takes_part(int index) const { return takes_part_[static_cast<size_t>(index)]; }
+  bool takes_part(int index) const { return takes_part_[index]; }
   const std::vector<SceneMesh>& meshes() const { return meshes_; }  // that take part, by mesh ID
-  const Node& node_of(uint32_t mesh_id) const { return nodes_[static_cast<size_t>(meshes_[mesh_id].node)]; }
+  const Node& node_of(uint32_t mesh_id) const { return nodes_[meshes_[mesh_id].node]; }
   int64_t num_triangles() const;                // of the meshes that take part
   std::vector<std::string> mesh_names() const;  // by mesh ID
   // Returns the names by mesh ID, and behind them those of meshes that do not take part: a selection may name them too.
@@ -77,7 +77,7 @@ class Scene {
   void require_times(double begin, double end) const;
 
  private:
-  const Node& at(int index) const { return nodes_[static_cast<size_t>(index)]; }
+  const Node& at(int index) const { return nodes_[index]; }
   void require_node(int index) const;
   void number_node(int index);
   void number_all();

@@ -197,8 +197,8 @@ std::vector<std::vector<Placed>> touching_groups(const Scene& scene) {
 std::pair<int, Transform> place_in_group(const Scene& scene, uint32_t mesh_id) {
   Transform place = Transform::Identity();
   int node = scene.meshes()[mesh_id].node;
-  for (; node >= 0; node = scene.nodes()[static_cast<size_t>(node)].parent) {
-    const Node& at = scene.nodes()[static_cast<size_t>(node)];
+  for (; node >= 0; node = scene.nodes()[node].parent) {
+    const Node& at = scene.nodes()[node];
     if (at.motion) {
       place = Transform(at.placement.linear()) * place;  // motion.h: moved
       break;

@@ -27,8 +27,8 @@ std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time) {
   const Node& node = scene.node_of(mesh_id);
   Transform world_from_mesh = Transform::Identity();
-  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[static_cast<size_t>(i)].parent) {
-    const Node& above = scene.nodes()[static_cast<size_t>(i)];
+  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[i].parent) {
+    const Node& above = scene.nodes()[i];
     world_from_mesh = moved(above.placement, above.motion.get(), time) * world_from_mesh;
   }
   if (!node.deformation) return transformed(world_from_mesh, node.mesh->vertices());

@@ -31,7 +31,7 @@ void run_tasks(int num_chirps, const std::function<void(int first, int count)>& 
 
 // Returns [num_groups], 1 for groups that have echoes.
 std::vector<uint8_t> groups_of(std::span<const Echoes> blocks, int num_groups) {
-  std::vector<uint8_t> has_echoes(static_cast<size_t>(num_groups));
+  std::vector<uint8_t> has_echoes(num_groups);
   for (const Echoes& block : blocks) {
     if (block.group.empty() && block.num_echoes > 0) has_echoes[0] = 1;
     for (const uint32_t group : block.group) has_echoes[group] = 1;
@@ -69,9 +69,9 @@ void Synthesizer::add_still(std::span<const Echoes> blocks, ChannelRows& rows, J
   }
   const int64_t num_parts = std::min(total / (kEchoesOfPart * num_groups_), kStillParts);
   if (num_parts <= 1) return add_still_part(blocks, {0, total}, whole, job);
-  std::vector<std::vector<double>> parts(static_cast<size_t>(num_parts));
+  std::vector<std::vector<double>> parts(num_parts);
   parallel_for(num_parts, [&](int64_t i) {
-    std::vector<double>& part = parts[static_cast<size_t>(i)];
+    std::vector<double>& part = parts[i];
     part.resize(size * num_groups);
     RowsOfGroups of_part(num_groups);
     for (size_t group = 0; group < num_groups; ++group) of_part[group] = part.data() + group * size;
@@ -108,7 +108,7 @@ void Synthesizer::add_moving(std::span<const Echoes> blocks, int channel, Job* j
   RowsOfGroups all(has_echoes.size()), fresh;
   for (size_t group = 0; group < all.size(); ++group) {
     if (!has_echoes[group]) continue;
-    std::unique_ptr<RowMemory>& of_group = channels_[static_cast<size_t>(channel)].moving[group];
+    std::unique_ptr<RowMemory>& of_group = channels_[channel].moving[group];
     const bool is_new = !of_group;
     if (is_new) of_group = RowMemory::take(static_cast<size_t>(size * waveform_.num_chirps));
     all[group] = of_group->values.get();
@@ -158,7 +158,7 @@ void Synthesizer::for_tiles(Range chirps, Job* job, const Add& add) const {
 
 void Synthesizer::add_to_bands(const TimeSampling& sampling, int channel, Range chirps, Job* job) {
   for_tiles(chirps, job, [&](const EchoTiles::Tile& tile, Range here) {
-    BandRow row{*bands_[static_cast<size_t>(here.begin / kChirpGroup)], band_row(channel, static_cast<int>(tile.group))};
+    BandRow row{*bands_[here.begin / kChirpGroup], band_row(channel, static_cast<int>(tile.group))};
     add_tile(tile, sampling, here, {rows_of_band, &row});
   });
 }
@@ -183,7 +183,7 @@ void Synthesizer::add_tile(const EchoTiles::Tile& tile, const TimeSampling& samp
                         sampling.num_rows,
                         sampling.order,
                         static_cast<int>(chirps.end - chirps.begin),
-                        &sampling.first_row[static_cast<size_t>(chirps.begin)],
+                        &sampling.first_row[chirps.begin],
                         &sampling.value[weights],
                         &sampling.slope[weights],
                         sampling.rows == TimeSampling::Rows::kLogarithms};

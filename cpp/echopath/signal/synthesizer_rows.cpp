@@ -38,21 +38,21 @@ bool Synthesizer::has_echoes(int channel, int group) const { return !is_still(ch
 bool Synthesizer::has_still(int channel, int group) const {
   require_channel(channel);
   require_group(group);
-  return !channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].empty();
+  return !channels_[channel].still[group].empty();
 }
 
 bool Synthesizer::is_still(int channel, int group) const {
   require_channel(channel);
   require_group(group);
   if (!bands_.empty()) return !bands_.front()->has(band_row(channel, group));
-  return !channels_[static_cast<size_t>(channel)].moving[static_cast<size_t>(group)];
+  return !channels_[channel].moving[group];
 }
 
 RowCells Synthesizer::moving_cells(int channel, int group, int chirp) const {
   if (!bands_.empty()) {
-    return bands_[static_cast<size_t>(chirp / kChirpGroup)]->cells(band_row(channel, group), chirp % kChirpGroup);
+    return bands_[chirp / kChirpGroup]->cells(band_row(channel, group), chirp % kChirpGroup);
   }
-  const RowMemory& rows = *channels_[static_cast<size_t>(channel)].moving[static_cast<size_t>(group)];
+  const RowMemory& rows = *channels_[channel].moving[group];
   const int64_t size = row_size(true);
   const double* const row = rows.values.get() + chirp * size;
   return {0, size / 2, row, row + size / 2};
@@ -62,7 +62,7 @@ RowCells Synthesizer::moving_cells(int channel, int group, int chirp) const {
 const double* Synthesizer::moving_row(int channel, int group, int chirp, std::vector<double>& room) const {
   const RowCells cells = moving_cells(channel, group, chirp);
   if (2 * cells.count == row_size(true)) return cells.re;
-  room.assign(static_cast<size_t>(row_size(true)), 0.0);
+  room.assign(row_size(true), 0.0);
   add_moving_row(channel, group, chirp, room.data());
   return room.data();
 }
@@ -75,23 +75,23 @@ void Synthesizer::add_moving_row(int channel, int group, int chirp, double* row)
 }
 
 void Synthesizer::add_still_samples(int channel, std::span<const int> groups, std::complex<double>* out) const {
-  std::vector<std::complex<double>> of_group(static_cast<size_t>(waveform_.num_samples));
+  std::vector<std::complex<double>> of_group(waveform_.num_samples);
   for (const int group : groups) {
     if (!has_still(channel, group)) continue;
-    write_row(channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].data(), false, of_group.data());
+    write_row(channels_[channel].still[group].data(), false, of_group.data());
     for (size_t n = 0; n < of_group.size(); ++n) out[n] += of_group[n];
   }
 }
 
 void Synthesizer::write_samples(int channel, std::span<const int> groups, std::complex<double>* out) const {
   const int64_t num_samples = waveform_.num_samples;
-  std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples));
+  std::vector<std::complex<double>> at_rest(num_samples);
   add_still_samples(channel, groups, at_rest.data());
   std::vector<int> moving;
   for (const int group : groups) {
     if (!is_still(channel, group)) moving.push_back(group);
   }
-  std::vector<double> row(static_cast<size_t>(row_size(true)));
+  std::vector<double> row(row_size(true));
   for (int chirp = 0; chirp < waveform_.num_chirps; ++chirp, out += num_samples) {
     std::fill(row.begin(), row.end(), 0.0);
     for (const int group : moving) add_moving_row(channel, group, chirp, row.data());
@@ -109,8 +109,8 @@ void Synthesizer::absorb(const Synthesizer& other, int num_groups) {
 }
 
 void Synthesizer::absorb_group(const Synthesizer& other, int channel, int group) {
-  ChannelRows& to = channels_[static_cast<size_t>(channel)];
-  const std::vector<double>& still = other.channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)];
+  ChannelRows& to = channels_[channel];
+  const std::vector<double>& still = other.channels_[channel].still[group];
   if (!still.empty()) to.still.front().resize(still.size());
   for (size_t i = 0; i < still.size(); ++i) to.still.front()[i] += still[i];
   if (other.is_still(channel, group)) return;
@@ -145,17 +145,17 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
 // Adds to `out`, zeros [chirp, sample], the samples of one channel and group.
 void Synthesizer::write_channel(int channel, int group, std::complex<double>* out, Job* job) const {
   const bool moves = !is_still(channel, group);
-  const std::vector<double>& still = channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)];
+  const std::vector<double>& still = channels_[channel].still[group];
   if (!moves && still.empty()) return;
   const int64_t num_samples = waveform_.num_samples;
-  std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples));
+  std::vector<std::complex<double>> at_rest(num_samples);
   if (!still.empty()) write_row(still.data(), false, at_rest.data());
   parallel_for(waveform_.num_chirps, [&](int64_t chirp) {
     if (job) job->throw_if_cancelled();
     std::complex<double>* samples = out + chirp * num_samples;
     std::vector<double> room;
     if (moves) write_row(moving_row(channel, group, static_cast<int>(chirp), room), true, samples);
-    for (int64_t n = 0; n < num_samples; ++n) samples[n] += at_rest[static_cast<size_t>(n)];
+    for (int64_t n = 0; n < num_samples; ++n) samples[n] += at_rest[n];
   });
 }
 

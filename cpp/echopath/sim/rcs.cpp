@@ -114,7 +114,7 @@ double length_over_origin(const Paths& paths, int receiver, const Vec3& centre) 
     const Vec3 sight = antenna.position - centre;
     return sight.norm() + sight.normalized().dot(centre);
   };
-  return leg(paths.radar.transmitters.front()) + leg(paths.radar.receivers[static_cast<size_t>(receiver)]);
+  return leg(paths.radar.transmitters.front()) + leg(paths.radar.receivers[receiver]);
 }
 
 // Tells which paths stay outside of the cavities.
@@ -129,11 +129,11 @@ class OutsideOfCavities {
   }
 
   Paths select(const Paths& paths, Job* job) const {
-    std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()));
+    std::vector<uint8_t> keep(paths.num_paths());
     for (int64_t path = 0; path < paths.num_paths(); ++path) {
       const Hit* hits = paths.hits_of(path);
-      const int count = paths.num_bounces[static_cast<size_t>(path)];
-      keep[static_cast<size_t>(path)] = std::none_of(hits, hits + count, [&](const Hit& hit) { return is_inside(hit); });
+      const int count = paths.num_bounces[path];
+      keep[path] = std::none_of(hits, hits + count, [&](const Hit& hit) { return is_inside(hit); });
     }
     return paths.select(keep, job);
   }
@@ -142,7 +142,7 @@ class OutsideOfCavities {
   bool is_inside(const Hit& hit) const {
     const int cavity = cavity_of_[hit.mesh_id];
     if (cavity < 0) return false;
-    return std::abs(cavities_[static_cast<size_t>(cavity)].mouth.height(hit_point(pose_, hit))) > tolerance_;
+    return std::abs(cavities_[cavity].mouth.height(hit_point(pose_, hit))) > tolerance_;
   }
 
   PosedScene pose_;

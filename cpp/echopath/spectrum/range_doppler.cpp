@@ -29,7 +29,7 @@ Taper make_taper(const Window& window, int n, double scale = 1.0) {
 void transform_row(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges, FftBuffer& buffer,
                    std::complex<double>* out) {
   const auto num_samples = static_cast<int64_t>(taper.size());
-  for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper[static_cast<size_t>(i)] * in[i];
+  for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper[i] * in[i];
   std::fill(buffer.data() + num_samples, buffer.data() + buffer.size(), 0.0);
   fft.transform(buffer);
   std::copy_n(buffer.data(), num_ranges, out);
@@ -138,8 +138,8 @@ MapTransform::MapTransform(const Radar& radar, const MapWindows& window, int zer
             Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
             static_cast<int64_t>(range_axis(waveform, range_size).size()),
             {}};
-  const std::vector<std::complex<double>> ones(static_cast<size_t>(waveform.num_chirps), 1.0);
-  plan.at_rest.resize(static_cast<size_t>(plan.doppler_fft.size()));
+  const std::vector<std::complex<double>> ones(waveform.num_chirps, 1.0);
+  plan.at_rest.resize(plan.doppler_fft.size());
   transform_strip(plan.doppler_fft, plan.doppler_taper, ones.data(), 1, 1, plan.at_rest.data());
   plan_ = std::make_unique<const Plan>(std::move(plan));
 }
@@ -153,7 +153,7 @@ void MapTransform::transform(const std::complex<double>* samples, std::vector<st
                              std::complex<double>* values, std::span<const uint8_t> asked) const {
   const int64_t num_chirps = static_cast<int64_t>(plan_->doppler_taper.size());
   const int64_t num_samples = static_cast<int64_t>(plan_->range_taper.size()), num_ranges = plan_->num_ranges;
-  profiles.resize(static_cast<size_t>(num_chirps * num_ranges));
+  profiles.resize(num_chirps * num_ranges);
   FftBuffer buffer(plan_->range_fft.size());
   for (int64_t chirp = 0; chirp < num_chirps; ++chirp) {
     transform_row(plan_->range_fft, plan_->range_taper, samples + chirp * num_samples, num_ranges, buffer,
@@ -168,7 +168,7 @@ void MapTransform::transform(const std::complex<double>* samples, std::vector<st
 }
 
 void MapTransform::add_still(const std::complex<double>* samples, std::vector<double>& power) const {
-  std::vector<std::complex<double>> profile(static_cast<size_t>(plan_->num_ranges));
+  std::vector<std::complex<double>> profile(plan_->num_ranges);
   FftBuffer buffer(plan_->range_fft.size());
   transform_row(plan_->range_fft, plan_->range_taper, samples, plan_->num_ranges, buffer, profile.data());
   for (size_t r = 0; r < profile.size(); ++r) power[r] += std::norm(profile[r]);
@@ -216,7 +216,7 @@ std::vector<double> mean_power(const RangeDoppler& map, Job* job) {
   const auto num_ranges = static_cast<int64_t>(map.range.size());
   const int64_t size = static_cast<int64_t>(map.velocity.size()) * num_ranges;
   const int num_channels = map.num_transmitters * map.num_receivers;
-  std::vector<double> power(static_cast<size_t>(size));
+  std::vector<double> power(size);
   parallel_for(static_cast<int64_t>(map.velocity.size()), [&](int64_t v) {
     double* row = power.data() + v * num_ranges;
     for (int c = 0; c < num_channels; ++c) {

@@ -127,7 +127,7 @@ int64_t Tracer::num_blocks() const {
 
 void Tracer::shoot_block(int64_t index, PathBlock& block) const {
   if (!pieces_.empty()) {
-    const auto& [begin, end] = pieces_[static_cast<size_t>(index)];
+    const auto& [begin, end] = pieces_[index];
     return shoot(begin, end, block);
   }
   const int64_t end = index < num_lattice_blocks() ? num_rays() : plan_.first_point + std::ssize(plan_.surface_scatterers);
@@ -152,9 +152,9 @@ std::vector<PathBlock> Tracer::find_edges(LitPlanes& lit, Job* job) const {
 
 // Shoots every `step`-th block.
 std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
-  std::vector<PathBlock> ahead(static_cast<size_t>((num_blocks() + step - 1) / step));
+  std::vector<PathBlock> ahead((num_blocks() + step - 1) / step);
   Job own(job);  // its progress is that of the waves
-  parallel_for(std::ssize(ahead), [&](int64_t i) { shoot_block(i * step, ahead[static_cast<size_t>(i)]); }, &own);
+  parallel_for(std::ssize(ahead), [&](int64_t i) { shoot_block(i * step, ahead[i]); }, &own);
   return ahead;
 }
 
@@ -162,12 +162,12 @@ std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
 // shoots the others into `wave`.
 std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                                  std::vector<PathBlock>& wave, Job* job) const {
-  std::vector<const PathBlock*> blocks(static_cast<size_t>(std::min(std::ssize(wave), num_blocks() - begin)));
+  std::vector<const PathBlock*> blocks(std::min(std::ssize(wave), num_blocks() - begin));
   const auto shoot = [&](int64_t k) {
     const int64_t index = begin + k;
     const bool is_ahead = !ahead.empty() && index % step == 0;
-    PathBlock& own = wave[static_cast<size_t>(k)];
-    blocks[static_cast<size_t>(k)] = is_ahead ? &ahead[static_cast<size_t>(index / step)] : &own;
+    PathBlock& own = wave[k];
+    blocks[k] = is_ahead ? &ahead[index / step] : &own;
     if (is_ahead) return;
     own.clear();
     shoot_block(index, own);

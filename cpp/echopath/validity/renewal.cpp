@@ -86,16 +86,15 @@ class Renewer {
   }
 
   bool move_hit(int k, const Vec3& step, Scratch& scratch) const {
-    const auto at = static_cast<size_t>(k);
-    LocalHit& hit = scratch.hits[at];
+    LocalHit& hit = scratch.hits[k];
     const uint32_t mesh_id = hit.mesh_id;
-    const Vec3 point = surface_point(scratch.posed[at], step);
+    const Vec3 point = surface_point(scratch.posed[k], step);
     const Vec3 in_mesh = scene_at_.linear(mesh_id).inverse() * (point - scene_at_.translation(mesh_id));
     const auto spot = walk_.find(mesh_id, hit.triangle_id, pose_.local_vertices(mesh_id), in_mesh);
     if (!spot) return false;
     hit = preparer_.hit(spot->hit);
-    if (preparer_.find_smooth_normals(hit, scratch.normals[at])) hit.normals = &scratch.normals[at];
-    pose_hit(hit, scene_at_, false, scratch.posed[at]);
+    if (preparer_.find_smooth_normals(hit, scratch.normals[k])) hit.normals = &scratch.normals[k];
+    pose_hit(hit, scene_at_, false, scratch.posed[k]);
     return true;
   }
 
@@ -165,13 +164,13 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
 std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
   const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsRenewedTogether - 1) / kPathsRenewedTogether;
-  std::vector<BlockOutcome> blocks(static_cast<size_t>(num_blocks));
+  std::vector<BlockOutcome> blocks(num_blocks);
   if (job) job->start(num_blocks);
   parallel_for(num_blocks, [&](int64_t i) {
     const int64_t begin = i * kPathsRenewedTogether;
-    std::vector<int64_t> indices(static_cast<size_t>(std::min(kPathsRenewedTogether, num_paths - begin)));
+    std::vector<int64_t> indices(std::min(kPathsRenewedTogether, num_paths - begin));
     std::iota(indices.begin(), indices.end(), begin);
-    blocks[static_cast<size_t>(i)] = renewer.renew_block(indices);
+    blocks[i] = renewer.renew_block(indices);
   }, job);
   return blocks;
 }

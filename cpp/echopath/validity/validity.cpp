@@ -71,12 +71,12 @@ class ValidityCheck {
     const int64_t size = std::ssize(members), num_blocks = (size + kPathsPerBlock - 1) / kPathsPerBlock;
     if (job_) job_->start(num_blocks);
     for (int64_t begin = 0; begin < num_blocks; begin += kBlocksInFlight) {
-      std::vector<ObjectsAtTimes> parts(static_cast<size_t>(std::min(kBlocksInFlight, num_blocks - begin)));
+      std::vector<ObjectsAtTimes> parts(std::min(kBlocksInFlight, num_blocks - begin));
       const auto check = [&](int64_t i) {
         const int64_t from = (begin + i) * kPathsPerBlock;
         const std::span<const size_t> some(members.data() + from,
                                            static_cast<size_t>(std::min(kPathsPerBlock, size - from)));
-        check_block(some, first, parts[static_cast<size_t>(i)]);
+        check_block(some, first, parts[i]);
       };
       parallel_for(static_cast<int64_t>(parts.size()), check, job_);
       for (const ObjectsAtTimes& part : parts) add(part, at_times_);

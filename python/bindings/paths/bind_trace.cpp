@@ -100,7 +100,7 @@ py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points,
   py::array_t<uint32_t> mesh_id(count);
   py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
   for (py::ssize_t i = 0; i < count; ++i) {
-    const LegAroundEdge& leg = legs[static_cast<size_t>(i)];
+    const LegAroundEdge& leg = legs[i];
     mesh_id.mutable_at(i) = leg.mesh_id;
     for (py::ssize_t k = 0; k < 3; ++k) at.mutable_at(i, k) = leg.point[k];
     length.mutable_at(i) = leg.length;

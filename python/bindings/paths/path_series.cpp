@@ -52,7 +52,7 @@ void evaluate_one_channel(const Paths& paths, const Moments& moments, size_t tog
     ReplaySettings settings;
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
-    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::vector<int64_t> indices(paths.num_paths());
     std::iota(indices.begin(), indices.end(), 0);
     for (size_t first = 0; first < moments.size(); first += together) {
       replayer.evaluate(indices, std::span(moments).subspan(first, std::min(together, moments.size() - first)), &job);
@@ -124,7 +124,7 @@ py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> ti
     ReplaySettings settings;
     settings.specular = *replay;
     const Replayer replayer(paths, paths.radar, settings);
-    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::vector<int64_t> indices(paths.num_paths());
     std::iota(indices.begin(), indices.end(), 0);
     std::vector<Echoes> channels = replayer.placed(indices, *times, *radars);
     for (const Echoes& channel : channels) {
@@ -151,7 +151,7 @@ py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"t
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
   run_job("replay", py::none(), [&](Job& job) {
-    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::vector<int64_t> indices(paths.num_paths());
     std::iota(indices.begin(), indices.end(), 0);
     Replayer(paths, radar).evaluate(indices, *time, lengths, amplitudes, &job);
   });

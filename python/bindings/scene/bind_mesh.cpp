@@ -60,9 +60,9 @@ std::shared_ptr<Mesh> part_of(const std::shared_ptr<Mesh>& self, const py::objec
 // and triangles without an area at the end stand for those that were removed.
 py::dict keywords_of_whole(const Mesh& self) {
   const auto num_kept = static_cast<py::ssize_t>(self.triangles().size());
-  std::vector<Vec3> vertices(static_cast<size_t>(self.num_input_vertices()), Vec3::Zero());
+  std::vector<Vec3> vertices(self.num_input_vertices(), Vec3::Zero());
   for (size_t v = 0; v < self.vertices().size(); ++v) vertices[self.original_vertex()[v]] = self.vertices()[v];
-  std::vector<Triangle> triangles(static_cast<size_t>(num_kept + self.num_removed_triangles()), Triangle{0, 0, 0});
+  std::vector<Triangle> triangles(num_kept + self.num_removed_triangles(), Triangle{0, 0, 0});
   std::vector<uint32_t> original(triangles.size(), 0);
   for (size_t t = 0; t < self.triangles().size(); ++t) {
     for (size_t k = 0; k < 3; ++k) triangles[t][k] = self.original_vertex()[self.triangles()[t][k]];

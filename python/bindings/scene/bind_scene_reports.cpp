@@ -29,7 +29,7 @@ py::tuple look_at_bodies(const Scene& scene, const Radar& radar, double time) {
   py::array_t<double> sides({count, py::ssize_t{2}});
   py::array_t<bool> closed(count);
   for (py::ssize_t i = 0; i < count; ++i) {
-    const ObjectSize& size = sizes[static_cast<size_t>(i)];
+    const ObjectSize& size = sizes[i];
     node.mutable_at(i) = size.node;
     sides.mutable_at(i, 0) = size.shortest;
     sides.mutable_at(i, 1) = size.longest;
@@ -67,7 +67,7 @@ std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, doubl
 
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
   std::vector<std::string> names;
-  for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[static_cast<size_t>(scene.meshes().at(id).node)].name);
+  for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[scene.meshes().at(id).node].name);
   return names;
 }
 

@@ -241,10 +241,7 @@ void bind_tree(py::module_& m) {
           "__iter__", [](const Scene& self) { return names_of(self).attr("__iter__")(); }, "Full names, parents first.")
       .def("__contains__", &has_name, py::arg("name"), "Whether there is a node with that full name.")
       .def(
-          "__getitem__",
-          [](const Scene& self, const py::object& name) {
-            return self.nodes()[static_cast<size_t>(index_of_name(self, name))];
-          },
+          "__getitem__", [](const Scene& self, const py::object& name) { return self.nodes()[index_of_name(self, name)]; },
           py::arg("name"), "The Node with that full name, \"street/car\". Raises KeyError naming the nearest names.")
       .def("__copy__", [](const py::object& self) { return py::type::of(self)(self); })
       .def(

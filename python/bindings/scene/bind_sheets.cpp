@@ -29,7 +29,7 @@ py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material
   py::array_t<std::complex<double>> out({py::ssize_t{5}, count});
   auto rows = out.mutable_unchecked<2>();
   for (py::ssize_t i = 0; i < count; ++i) {
-    const double angle = (*incidence)[static_cast<size_t>(i)];
+    const double angle = (*incidence)[i];
     require(angle >= 0 && angle <= 1.5707963267948968, "incidence", "must lie in [0, pi/2] rad", angle);
     const double cosine = std::max(0.0, std::cos(angle));
     const FresnelModes reflected = stack.reflection(cosine);

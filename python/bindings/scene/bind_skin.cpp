@@ -91,7 +91,7 @@ std::vector<NamedJoint> named_joints(const Skin& skin) {
   std::vector<NamedJoint> named;
   for (const Joint& joint : skin.joints()) {
     named.push_back({joint, std::nullopt});
-    if (joint.parent >= 0) named.back().parent = skin.joints()[static_cast<size_t>(joint.parent)].name;
+    if (joint.parent >= 0) named.back().parent = skin.joints()[joint.parent].name;
   }
   return named;
 }

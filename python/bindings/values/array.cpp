@@ -79,7 +79,7 @@ py::array_t<Number> rows_to_numpy(const std::vector<Row>& rows) {
 // The rows of a table [N, 3] as structs of three numbers.
 template <class Row, class T>
 std::vector<Row> as_rows(const py::array_t<T, py::array::c_style>& table) {
-  std::vector<Row> rows(static_cast<size_t>(table.shape(0)));
+  std::vector<Row> rows(table.shape(0));
   if (!rows.empty()) std::memcpy(rows.data()->data(), table.data(), rows.size() * sizeof(Row));
   return rows;
 }
@@ -128,7 +128,7 @@ std::vector<Vec3> as_points(py::handle value, std::string_view argument) {
 std::vector<std::vector<Vec3>> as_frames(py::handle value, std::string_view argument) {
   const auto array = checked_array<double>(value, argument, "[T, V, 3]");
   const auto num_vertices = static_cast<size_t>(array.shape(1));
-  std::vector<std::vector<Vec3>> frames(static_cast<size_t>(array.shape(0)), std::vector<Vec3>(num_vertices));
+  std::vector<std::vector<Vec3>> frames(array.shape(0), std::vector<Vec3>(num_vertices));
   for (size_t t = 0; t < frames.size(); ++t)
     for (size_t v = 0; v < num_vertices; ++v) frames[t][v] = vec3_at(array.data() + 3 * (t * num_vertices + v));
   return frames;
@@ -157,7 +157,7 @@ Quaternion as_quaternion(py::handle value, std::string_view argument) {
 std::vector<Quaternion> as_quaternions(py::handle value, std::string_view argument) {
   const auto array = checked_array<double>(value, argument, "[N, 4]");
   std::vector<Quaternion> quaternions;
-  quaternions.reserve(static_cast<size_t>(array.shape(0)));
+  quaternions.reserve(array.shape(0));
   for (py::ssize_t i = 0; i < array.shape(0); ++i) quaternions.push_back(quaternion_at(array.data() + 4 * i, argument));
   return quaternions;
 }

@@ -48,7 +48,7 @@ DiffuseLobe::Term::Term(int of) : exponent(of), odd(static_cast<size_t>((of + 1)
     if (j % 2 == 0) even += whole;
     double central = 1.0;  // C(2 w, w)/4^w
     for (int w = 0; j % 2 == 1 && w <= (j - 1) / 2; ++w) {
-      odd[static_cast<size_t>(w)] += whole * central;
+      odd[w] += whole * central;
       central *= (2.0 * w + 1.0) / (2.0 * w + 2.0);
     }
     choose *= static_cast<double>(of - j) / (j + 1);

@@ -42,7 +42,7 @@ struct PartInCell {
 struct Column {
   std::span<const double> values;
   int64_t cell, num_cells;
-  double operator[](int batch) const { return values[static_cast<size_t>(batch * num_cells + cell)]; }
+  double operator[](int batch) const { return values[batch * num_cells + cell]; }
 };
 
 PartInCell part_in_cell(const BatchPowers& part, int num_batches, int64_t cell, int64_t num_cells) {

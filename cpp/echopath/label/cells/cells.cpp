@@ -60,7 +60,7 @@ std::vector<int16_t> strongest_part(std::span<const double> power, int64_t num_p
   const int64_t num_cells = cells_of(power.size(), num_parts, "num_parts");
   require(static_cast<int64_t>(labelled.size()) == num_cells, "labelled",
           "must have one value for each of " + std::to_string(num_cells) + " cells", labelled.size());
-  std::vector<int16_t> strongest(static_cast<size_t>(num_cells), kNoLabel);
+  std::vector<int16_t> strongest(num_cells, kNoLabel);
   for_cells(num_cells, [&](int64_t begin, int64_t end) {
     for (int64_t i = begin; i < end; ++i) {
       double largest = 0.0;
@@ -115,13 +115,13 @@ void check_label_map(std::span<const int16_t> label, std::span<const double> pow
 std::vector<LabelRegion> label_regions(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels,
                                        const MapShape& shape) {
   check_label_map(label, power, num_labels, shape);
-  std::vector<LabelRegion> regions(static_cast<size_t>(num_labels));
+  std::vector<LabelRegion> regions(num_labels);
   std::vector<std::vector<int64_t>> occupied(regions.size());
   for (int64_t i = 0; i < shape.size(); ++i) {
     if (label[i] == kNoLabel) continue;
     const auto l = static_cast<size_t>(label[i]);
     const int64_t row = i / shape.columns;
-    add_cell(regions[l], row, i % shape.columns, power[static_cast<size_t>(i)]);
+    add_cell(regions[l], row, i % shape.columns, power[i]);
     if (occupied[l].empty() || occupied[l].back() != row) occupied[l].push_back(row);
   }
   for (size_t l = 0; l < regions.size(); ++l) {

@@ -90,7 +90,7 @@ class Determiniser {
         StateSet reached;
         for (const int member : set) {
           if (member <= 0) continue;
-          const Nfa::State& reader = nfa_.states[static_cast<size_t>(member)];
+          const Nfa::State& reader = nfa_.states[member];
           const auto pattern = static_cast<size_t>(reader.pattern);
           const bool taken = taken_by[pattern] && takes_event(*nfa_.patterns[pattern], event);
           if (taken) reached.push_back(reader.next.front());
@@ -116,8 +116,8 @@ class Determiniser {
     while (!pending.empty()) {
       const int state = pending.back();
       pending.pop_back();
-      if (std::exchange(seen_[static_cast<size_t>(state)], visit_) == visit_) continue;
-      const Nfa::State& at = nfa_.states[static_cast<size_t>(state)];
+      if (std::exchange(seen_[state], visit_) == visit_) continue;
+      const Nfa::State& at = nfa_.states[state];
       if (state == 0 || at.pattern >= 0) set.push_back(state);
       else pending.insert(pending.end(), at.next.begin(), at.next.end());
     }
@@ -194,7 +194,7 @@ bool Automaton::takes_something_without(uint32_t mesh_class) const {
 }
 
 void Automaton::find_needed_bits() {
-  std::vector<uint64_t> of_class(static_cast<size_t>(num_classes_));
+  std::vector<uint64_t> of_class(num_classes_);
   for (size_t mesh = 0; mesh + 1 < symbols_.size(); ++mesh) of_class[symbols_[mesh + 1] / num_events_] |= mesh_bit(mesh);
   for (uint32_t mesh_class = 0; mesh_class < of_class.size(); ++mesh_class) {
     if (!takes_something_without(mesh_class)) needed_bits_.push_back(of_class[mesh_class]);

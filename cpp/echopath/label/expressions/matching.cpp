@@ -37,7 +37,7 @@ size_t next_candidate(const std::vector<uint8_t>& candidates, size_t path, size_
 }  // namespace
 
 std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
-  std::vector<uint64_t> bits(static_cast<size_t>(paths.num_paths()));
+  std::vector<uint64_t> bits(paths.num_paths());
   for_paths(paths, job, [&](size_t begin, size_t end) {
     for (size_t path = begin; path < end; ++path) {
       const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
@@ -49,7 +49,7 @@ std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
 }
 
 std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job) {
-  std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()), 1);
+  std::vector<uint8_t> taken(paths.num_paths(), 1);
   narrow(automaton, paths, taken, job);
   return taken;
 }

@@ -50,7 +50,7 @@ class NfaBuilder {
     if (repeat.max == kNoLimit) {
       const int loop = add({-1, {next}});
       const int again = build(child, loop);
-      nfa_.states[static_cast<size_t>(loop)].next.push_back(again);
+      nfa_.states[loop].next.push_back(again);
       next = loop;
     }
     const int end = next;

@@ -93,11 +93,10 @@ class Watch {
   void add(const ObjectView& view, const LaneVectors& directions, int count, const ObjectView::Seen& seen,
            SeenPoints& found) const {
     for (int lane = 0; lane < count; ++lane) {
-      const auto k = static_cast<size_t>(lane);
-      if (seen.surface[k] == ObjectView::kNothing) continue;
+      if (seen.surface[lane] == ObjectView::kNothing) continue;
       const Vec3 point = geometry_.origin() + view.apex() + seen.distance[lane] * directions[lane];
-      found.points.push_back({seen.mesh[k], place_of(pose_, seen.mesh[k]).inverse() * point, seen.hiding[k]});
-      if (seen.hiding[k] != ObjectView::kNothing) found.hiding.insert(seen.hiding[k]);
+      found.points.push_back({seen.mesh[lane], place_of(pose_, seen.mesh[lane]).inverse() * point, seen.hiding[lane]});
+      if (seen.hiding[lane] != ObjectView::kNothing) found.hiding.insert(seen.hiding[lane]);
     }
   }
 
@@ -150,8 +149,7 @@ std::vector<uint32_t> may_appear(const Scene& scene, const Radar& radar, const S
   const GeometryLoan geometry(kept, scene, pose, near, EmbreeScene::upkeep_near(radar.motion != nullptr), job);
   const Watch watch(scene, radar, surfaces, settings, pose, *geometry);
   std::vector<uint8_t> appears(objects.size());
-  parallel_for(std::ssize(objects),
-               [&](int64_t i) { appears[static_cast<size_t>(i)] = watch.may_appear(objects[static_cast<size_t>(i)]); }, job);
+  parallel_for(std::ssize(objects), [&](int64_t i) { appears[i] = watch.may_appear(objects[i]); }, job);
   std::vector<uint32_t> found;
   for (size_t i = 0; i < objects.size(); ++i) {
     if (appears[i]) found.push_back(objects[i]);

@@ -45,11 +45,11 @@ struct Block {
 
 Block classify_block(const Paths& paths, const SurfaceMap& surfaces, int64_t begin, int64_t end) {
   Block block;
-  block.local.reserve(static_cast<size_t>(end - begin));
+  block.local.reserve(end - begin);
   Key key;
   auto found = block.index_of.end();
   for (int64_t path = begin; path < end; ++path) {
-    classify_hits(paths.hits_of(path), paths.num_bounces[static_cast<size_t>(path)], surfaces, key);
+    classify_hits(paths.hits_of(path), paths.num_bounces[path], surfaces, key);
     const bool is_like_the_last = found != block.index_of.end() && found->first == key;  // neighbours often are
     if (!is_like_the_last) found = block.index_of.try_emplace(key, static_cast<uint32_t>(block.index_of.size())).first;
     block.local.push_back(found->second);
@@ -116,16 +116,16 @@ Families find_families(const Paths& paths, const SurfaceMap& surfaces, Job* job)
   require(paths.scene != nullptr && surfaces.of_mesh.size() == paths.scene->meshes().size(), "surfaces",
           "must be of the scene of the paths, meshes", surfaces.of_mesh.size());
   const int64_t num_tasks = (paths.num_paths() + kPathsSortedTogether - 1) / kPathsSortedTogether;
-  std::vector<Block> blocks(static_cast<size_t>(num_tasks));
+  std::vector<Block> blocks(num_tasks);
   parallel_for(num_tasks, [&](int64_t task) {
     const int64_t end = std::min((task + 1) * kPathsSortedTogether, paths.num_paths());
-    blocks[static_cast<size_t>(task)] = classify_block(paths, surfaces, task * kPathsSortedTogether, end);
+    blocks[task] = classify_block(paths, surfaces, task * kPathsSortedTogether, end);
   }, job);
 
   const std::map<Key, uint32_t> index_of = number_keys(blocks, surfaces);
   Families made;
   for (const auto& [key, index] : index_of) made.families.push_back(family_of(key, surfaces));
-  made.family_of_path.reserve(static_cast<size_t>(paths.num_paths()));
+  made.family_of_path.reserve(paths.num_paths());
   for (const Block& block : blocks) {
     if (job) job->throw_if_cancelled();
     std::vector<uint32_t> global(block.index_of.size());

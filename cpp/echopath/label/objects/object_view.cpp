@@ -122,28 +122,26 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
   geometry_.intersect_meshes(apex_, directions, whole, kHiding, first);
   const bool has_sheets = (mask_ & static_cast<uint32_t>(Sees::kSheets)) != 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto k = static_cast<size_t>(lane);
-    if (first.mesh_id[k] != kNothing && !is_own(first.mesh_id[k])) {
+    if (first.mesh_id[lane] != kNothing && !is_own(first.mesh_id[lane])) {
       if (!has_sheets) in_box.begin[lane] = std::max(in_box.begin[lane], first.distance[lane] * (1.0 - 2.0 * kSameDepth));
-      seen.hiding[k] = first.mesh_id[k];
+      seen.hiding[lane] = first.mesh_id[lane];
       continue;
     }
     if (has_sheets) continue;  // one of its sheets may be nearer
     in_box.end[lane] = 0.0;    // the object itself, or nothing
-    if (first.mesh_id[k] == kNothing) continue;
-    seen.surface[k] = object_;
-    seen.mesh[k] = first.mesh_id[k];
+    if (first.mesh_id[lane] == kNothing) continue;
+    seen.surface[lane] = object_;
+    seen.mesh[lane] = first.mesh_id[lane];
     seen.distance[lane] = first.distance[lane];
   }
   find_object(directions, in_box, seen);
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto k = static_cast<size_t>(lane);
-    const bool is_there = seen.mesh[k] != kNothing;
-    if (is_there && seen.hiding[k] == kNothing) seen.surface[k] = object_;
-    if (seen.hiding[k] == kNothing) continue;
+    const bool is_there = seen.mesh[lane] != kNothing;
+    if (is_there && seen.hiding[lane] == kNothing) seen.surface[lane] = object_;
+    if (seen.hiding[lane] == kNothing) continue;
     const bool is_hidden = is_there && first.distance[lane] < seen.distance[lane] * (1.0 - kSameDepth);
-    if (is_there) seen.surface[k] = is_hidden ? surfaces_.of_mesh[seen.hiding[k]] : object_;
-    if (!is_hidden) seen.hiding[k] = kNothing;
+    if (is_there) seen.surface[lane] = is_hidden ? surfaces_.of_mesh[seen.hiding[lane]] : object_;
+    if (!is_hidden) seen.hiding[lane] = kNothing;
   }
 }
 
@@ -153,7 +151,7 @@ void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, cons
   LaneVectors turned = directions;
   for (int lane = 0; lane < count; ++lane) {
     surface[lane] = kNothing;
-    if (seen.mesh[static_cast<size_t>(lane)] == kNothing) continue;
+    if (seen.mesh[lane] == kNothing) continue;
     const Vec3 line = apex_ + seen.distance[lane] * directions[lane] - from;
     const double distance = line.norm();
     turned.set(lane, unpacked(line / distance));
@@ -164,7 +162,7 @@ void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, cons
   EmbreeScene::MeshHits first;
   geometry_.intersect_meshes(from, turned, way, kHiding, first);
   for (int lane = 0; lane < count; ++lane) {
-    const uint32_t mesh = first.mesh_id[static_cast<size_t>(lane)];
+    const uint32_t mesh = first.mesh_id[lane];
     if (mesh != kNothing) surface[lane] = surfaces_.of_mesh[mesh];  // another part of the object is as good as the point
   }
 }
@@ -175,13 +173,12 @@ void ObjectView::find_object(const LaneVectors& directions, EmbreeScene::Stretch
   while (is_any(stretches)) {
     geometry_.intersect_meshes(apex_, directions, stretches, mask_, next);
     for (int lane = 0; lane < kPacketSize; ++lane) {
-      const auto k = static_cast<size_t>(lane);
-      if (next.mesh_id[k] == kNothing) {
+      if (next.mesh_id[lane] == kNothing) {
         stretches.end[lane] = 0.0;
-      } else if (!is_own(next.mesh_id[k])) {
+      } else if (!is_own(next.mesh_id[lane])) {
         stretches.begin[lane] = next.distance[lane] * kAfter;
       } else {
-        seen.mesh[k] = next.mesh_id[k];
+        seen.mesh[lane] = next.mesh_id[lane];
         seen.distance[lane] = next.distance[lane];
         stretches.end[lane] = 0.0;
       }

@@ -33,30 +33,28 @@ class SurfaceFinder {
   }
 
  private:
-  int parent_of(int node) const { return scene_.nodes()[static_cast<size_t>(node)].parent; }
+  int parent_of(int node) const { return scene_.nodes()[node].parent; }
 
   void count(uint32_t mesh) {
     const bool in_object = map_.of_mesh[mesh] != kNone;
     const bool is_mirror = scene_.node_of(mesh).material->mirror;
     for (int node = scene_.meshes()[mesh].node; node >= 0; node = parent_of(node)) {
-      if (in_object) holds_object_[static_cast<size_t>(node)] = true;
-      else if (is_mirror) ++num_mirrors_[static_cast<size_t>(node)];
+      if (in_object) holds_object_[node] = true;
+      else if (is_mirror) ++num_mirrors_[node];
     }
   }
 
   int highest_group(int node) const {
-    const auto is_one_surface = [&](int above) {
-      return !holds_object_[static_cast<size_t>(above)] && num_mirrors_[static_cast<size_t>(above)] < 2;
-    };
+    const auto is_one_surface = [&](int above) { return !holds_object_[above] && num_mirrors_[above] < 2; };
     for (int above = parent_of(node); above >= 0 && is_one_surface(above); above = parent_of(above)) node = above;
     return node;
   }
 
   uint32_t surface_at(int node) {
-    uint32_t& surface = surface_of_[static_cast<size_t>(node)];
+    uint32_t& surface = surface_of_[node];
     if (surface == kNone) {
       surface = static_cast<uint32_t>(map_.names.size());
-      map_.names.push_back(scene_.nodes()[static_cast<size_t>(node)].name);
+      map_.names.push_back(scene_.nodes()[node].name);
     }
     return surface;
   }
@@ -168,7 +166,7 @@ SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
   for (const SceneObject& object : objects_of(scene)) {
     if (surrounds(scene, pose, object, antenna)) continue;
     for (const uint32_t mesh : object.mesh_ids) map.of_mesh[mesh] = map.num_objects;
-    map.names.push_back(scene.nodes()[static_cast<size_t>(object.node)].name);
+    map.names.push_back(scene.nodes()[object.node].name);
     ++map.num_objects;
   }
   SurfaceFinder(scene, map).run();

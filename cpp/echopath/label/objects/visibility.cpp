@@ -97,9 +97,8 @@ class ObjectScanner {
     std::array<uint32_t, kPacketSize> others{};
     if (ends_.size() > 1) views_.front().look_from(ends_[1].position, directions, seen, count, others.data());
     for (int lane = 0; lane < count; ++lane) {
-      const auto k = static_cast<size_t>(lane);
-      met[lane] =
-          seen.surface[k] == ObjectView::kNothing ? VisibilityGrid::kNothing : number_of({seen.surface[k], others[k]});
+      met[lane] = seen.surface[lane] == ObjectView::kNothing ? VisibilityGrid::kNothing
+                                                             : number_of({seen.surface[lane], others[lane]});
       if (met[lane] != VisibilityGrid::kNothing) look_for_gain(directions[lane]);
     }
   }

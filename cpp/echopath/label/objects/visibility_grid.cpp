@@ -28,7 +28,7 @@ VisibilityGrid::VisibilityGrid(const Stratum& stratum, int64_t num_cells) : dire
   cell_angle_ = stratum.solid_angle() * square / static_cast<double>(kCells * this->num_blocks());
   while (step_ > 1 && num_first_rows() * num_first_columns() < kFewestFirst) step_ /= 2;
   const auto size = static_cast<size_t>(this->num_blocks());
-  first_met_.assign(static_cast<size_t>(num_first_rows() * num_first_columns()), kNothing);
+  first_met_.assign(num_first_rows() * num_first_columns(), kNothing);
   state_.assign(size, State::kUnseen);
   met_.resize(size * kCells);
 }
@@ -68,7 +68,7 @@ double VisibilityGrid::start(const FindMet& find_met) {
       look_at(x, y, count, find_met, met.data());
       for (int64_t lane = 0; lane < count; ++lane) {
         const int64_t first = (row + lane / width) * columns + column + lane % width;
-        first_met_[static_cast<size_t>(first)] = met[static_cast<size_t>(lane)];
+        first_met_[first] = met[lane];
       }
     }
   }
@@ -103,17 +103,16 @@ void VisibilityGrid::finish_everywhere(const FindMet& find_met) {
 }
 
 void VisibilityGrid::see(int64_t block, const FindMet& find_met) {
-  const auto at = static_cast<size_t>(block);
-  if (state_[at] == State::kSeen) return;
+  if (state_[block] == State::kSeen) return;
   LaneValues x, y;
   const int64_t row = block / num_columns_ * kSide, column = block % num_columns_ * kSide;
   for (int cell = 0; cell < kCells; ++cell) direct(row + cell / kSide, column + cell % kSide, 1, cell, x, y);
-  look_at(x, y, kCells, find_met, met_.data() + at * kCells);
-  state_[at] = State::kSeen;
+  look_at(x, y, kCells, find_met, met_.data() + block * kCells);
+  state_[block] = State::kSeen;
 }
 
 void VisibilityGrid::queue(int64_t block) {
-  State& state = state_[static_cast<size_t>(block)];
+  State& state = state_[block];
   if (state != State::kUnseen) return;
   state = State::kQueued;
   queue_.push_back(block);
@@ -125,7 +124,7 @@ void VisibilityGrid::queue_changes() {
   const int64_t rows = num_first_rows(), columns = num_first_columns(), of_block = kSide / step_;
   for (int64_t row = 0; row < rows; ++row) {
     for (int64_t column = 0; column < columns; ++column) {
-      const uint32_t* const met = &first_met_[static_cast<size_t>(row * columns + column)];
+      const uint32_t* const met = &first_met_[row * columns + column];
       const bool has_right = column + 1 < columns, has_below = row + 1 < rows;
       const bool is_at_rim = row == 0 || column == 0 || !has_right || !has_below;
       const bool differs = (has_right && met[0] != met[1]) || (has_below && met[0] != met[columns]);
@@ -142,7 +141,7 @@ void VisibilityGrid::queue_neighbours(int64_t block) {
   const int64_t of_block = kSide / step_, first_row = row * of_block, first_column = column * of_block;
   // `first` and `step` lead along the block's own cells, the last two along the first directions of the other one.
   const auto compare = [&](bool is_there, int64_t other, int first, int step, int64_t other_first, int64_t other_step) {
-    if (!is_there || state_[static_cast<size_t>(other)] != State::kUnseen) return;
+    if (!is_there || state_[other] != State::kUnseen) return;
     for (int k = 0; k < kSide; ++k) {
       const auto of_other = static_cast<size_t>(other_first + k / step_ * other_step);
       if (cells[first + k * step] != first_met_[of_other]) return queue(other);
@@ -163,8 +162,7 @@ std::vector<int64_t> VisibilityGrid::counts(size_t num_kinds) const {
   const int64_t columns = num_first_columns(), of_block = kSide / step_;
   for (int64_t first = 0; first < std::ssize(first_met_); ++first) {
     const int64_t block = first / columns / of_block * num_columns_ + first % columns / of_block;
-    if (state_[static_cast<size_t>(block)] != State::kSeen)
-      add(first_met_[static_cast<size_t>(first)], int64_t{step_} * step_);
+    if (state_[block] != State::kSeen) add(first_met_[first], int64_t{step_} * step_);
   }
   for (size_t block = 0; block < state_.size(); ++block) {
     for (size_t cell = 0; state_[block] == State::kSeen && cell < kCells; ++cell) add(met_[block * kCells + cell], 1);

@@ -103,14 +103,13 @@ void RecordWriter::append(const std::vector<const PathBlock*>& blocks, Job* job)
   make_room(blocks, places.paths.back(), places.hits.back());
   Job own(job);  // its progress is not that of the rays
   parallel_for(std::ssize(blocks), [&](int64_t index) {
-    const auto i = static_cast<size_t>(index);
-    const size_t row = places.paths[i], hit = places.hits[i];
+    const size_t row = places.paths[index], hit = places.hits[index];
     const PathRows rows{hits_->data() + hit,         static_cast<int64_t>(hit),
                         paths_.offsets.data() + row, paths_.num_bounces.data() + row,
                         paths_.diffuse.data() + row, paths_.weight.data() + row,
                         paths_.stratum.data() + row, paths_.batch.data() + row,
                         paths_.flags.data() + row};
-    blocks[i]->write(rows, paths_);
+    blocks[index]->write(rows, paths_);
   }, &own);
   for (const PathBlock* block : blocks) add_statistics(paths_.frame.statistics, block->statistics);
 }

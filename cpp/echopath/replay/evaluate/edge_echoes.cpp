@@ -65,7 +65,7 @@ class EdgeEchoes {
     pose_hits(path, scene, hits_.data());
     edges_.clear();
     for (int k = path.edge; k < path.edge + path.num_edges; ++k)
-      edges_.push_back({posed_wedge(*path.hits[k].edge, scene, path.hits[k].mesh_id), hits_[static_cast<size_t>(k)].point});
+      edges_.push_back({posed_wedge(*path.hits[k].edge, scene, path.hits[k].mesh_id), hits_[k].point});
     const LocalHit& hit = path.hits[path.edge];
     const Vec3 corners[] = {hit.corner, hit.corner + hit.edge_u, hit.corner + hit.edge_v};
     const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
@@ -144,7 +144,7 @@ class EdgeEchoes {
     const int count = of_start ? path.edge : path.count - path.edge - path.num_edges;
     for (int k = 0; k < count; ++k) {
       const int at = of_start ? k : path.count - 1 - k;
-      mirrors_.hits.push_back(hits_[static_cast<size_t>(at)]);
+      mirrors_.hits.push_back(hits_[at]);
       mirrors_.materials.push_back(paths_.scene->node_of(path.hits[at].mesh_id).material.get());
     }
     mirrors_.is_forward = of_start != path.is_reversed;
@@ -197,7 +197,7 @@ class SheetsOnPaths {
     const Paths& record = sheets.preparer.paths();
     if (record.jones.empty() || record.passes.empty()) return;
     for (size_t i = 0; i < paths.size(); ++i) {
-      if (!record.passes_of(static_cast<size_t>(paths[i])).empty()) of_path_[i] = &all_.emplace_back(sheets, paths[i]);
+      if (!record.passes_of(paths[i]).empty()) of_path_[i] = &all_.emplace_back(sheets, paths[i]);
     }
   }
   PathPassages* of(size_t place) const { return of_path_[place]; }

@@ -68,7 +68,7 @@ void SharedLegPlanner::begin(const Paths& paths, const PathPreparer& preparer, S
 const SharedLegPlan& SharedLegPlanner::operator()(std::span<const int64_t> indices) {
   clear();
   for (size_t place = 0; place < indices.size(); ++place) {
-    if (paths_->flags[static_cast<size_t>(indices[place])] & kEdgePath) plan_.edge_paths.push_back({place, indices[place]});
+    if (paths_->flags[indices[place]] & kEdgePath) plan_.edge_paths.push_back({place, indices[place]});
     else if (!add_single_bounce(place, indices[place])) add_chain(place, indices[place]);
     if (preparer_->has_lobe(indices[place])) plan_.lobed_paths.push_back({place, indices[place]});
   }
@@ -133,10 +133,9 @@ bool SharedLegPlanner::is_single_bounce(size_t path) const {
 
 // The coherent and the diffuse path of a point follow each other in the record.
 bool SharedLegPlanner::add_single_bounce(size_t place, int64_t path) {
-  const auto p = static_cast<size_t>(path);
-  if (!is_single_bounce(p)) return false;
+  if (!is_single_bounce(path)) return false;
   const Hit* hit = paths_->hits_of(path);
-  const size_t kind = paths_->diffuse[p] != 0;
+  const size_t kind = paths_->diffuse[path] != 0;
   constexpr int64_t kNone = SharedLegPlan::SingleBounce::kNoPath;
   const bool is_known = !plan_.single_bounces.empty() && plan_.single_bounces.back().hit == hit &&
                         plan_.single_bounces.back().path[kind] == kNone;
@@ -147,18 +146,17 @@ bool SharedLegPlanner::add_single_bounce(size_t place, int64_t path) {
 }
 
 void SharedLegPlanner::add_chain(size_t place, int64_t path) {
-  const auto p = static_cast<size_t>(path);
-  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], paths_->is_reversed(p),
-                        paths_->stratum[p]};
+  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[path], paths_->diffuse[path], paths_->is_reversed(path),
+                        paths_->stratum[path]};
   const Ends ends = ends_of(hits);
-  const std::complex<double> weight = weight_of(*paths_, p);
+  const std::complex<double> weight = weight_of(*paths_, path);
   if (ends.first < 0) {
     uint32_t image = 0;
     for (int k = 0; k < hits.count; ++k) image = image_in(image, hits.recorded[k]);
     plan_.mirror_paths.push_back({place, path, image, weight});
     return;
   }
-  const bool is_coherent = paths_->diffuse[p] == 0;
+  const bool is_coherent = paths_->diffuse[path] == 0;
   plan_.chains.push_back({place, path, start_leg(hits, ends.first), end_leg(hits, ends.last), inner(hits, ends, is_coherent),
                           slide_of(path, ends), hits.is_reversed, is_coherent, weight});
 }

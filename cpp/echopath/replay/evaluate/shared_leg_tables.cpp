@@ -166,7 +166,7 @@ void SlidingParts::move_points(const LocalPath& path, size_t first_entry, const 
       const size_t entry = first_entry + antenna;
       std::copy_n(recorded.begin(), path.count, moved.begin());
       step_to_fermat(path, starts[antenna].position, scratch, moved.data());
-      const PosedHit& first = moved[static_cast<size_t>(path.first_material)];
+      const PosedHit& first = moved[path.first_material];
       store(first.point, points, entry, PointToPose::kPosition, node);
       store(first.normal, points, entry, PointToPose::kNormal, node);
       points.row(entry, PointToPose::kAreaRatio)[node] = first.area_ratio;

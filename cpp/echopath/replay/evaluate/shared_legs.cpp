@@ -75,7 +75,7 @@ SharedLegEvaluation::Ends SharedLegEvaluation::ends_of(const SharedLegPlan::Chai
 ComplexOf<double> SharedLegEvaluation::scaled_weight(const SharedLegPlan::ChainPath& chain, double scale) const {
   std::complex<double> weight = scale * chain.weight;
   if (!paths_->jones.empty() && !tables_.has_polarizations) {
-    weight *= std::complex<double>(paths_->jones[static_cast<size_t>(chain.path)][3]);
+    weight *= std::complex<double>(paths_->jones[chain.path][3]);
   }
   return {weight.real(), weight.imag()};
 }
@@ -174,7 +174,7 @@ void SharedLegEvaluation::turn(int64_t path, const MeasuredLeg& start, const Mea
 void SharedLegEvaluation::polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot) {
   PathToPolarize work{
       start.table.components.row(start.leg, 0), end.table.components.row(end.leg, 0), {}, {}, values_.row(slot, 0)};
-  const JonesMatrix& matrix = paths_->jones[static_cast<size_t>(path)];
+  const JonesMatrix& matrix = paths_->jones[path];
   for (size_t entry = 0; entry < matrix.size(); ++entry) {
     work.re[entry] = matrix[entry].real();
     work.im[entry] = matrix[entry].imag();
@@ -231,7 +231,7 @@ double SharedLegEvaluation::size_of_weight(const SharedLegPlan::ChainPath& chain
   const double size = std::hypot(weight.re, weight.im);
   if (!tables_.has_polarizations) return size;
   double largest = 0.0;
-  for (const auto& entry : paths_->jones[static_cast<size_t>(chain.path)]) {
+  for (const auto& entry : paths_->jones[chain.path]) {
     largest = std::max(largest, static_cast<double>(std::abs(entry)));
   }
   return size * largest;

@@ -184,7 +184,7 @@ void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& prepar
     const int64_t coherent = point.path[SingleBounceSlots::kCoherent];
     const bool is_coherent = coherent != SharedLegPlan::SingleBounce::kNoPath;
     work_.has_coherent |= is_coherent;
-    slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[static_cast<size_t>(coherent)]) : 0.0;
+    slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[coherent]) : 0.0;
   }
 }
 

@@ -37,7 +37,7 @@ void find_across(const CellShape& cell, double* across) {
 LaunchCell recorded_cell(const std::array<float, 7>& record) {
   LaunchCell cell;
   cell.is_curved = cell.is_known = true;
-  for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[static_cast<size_t>(2 * a)], record[static_cast<size_t>(2 * a + 1)]};
+  for (int a = 0; a < 2; ++a) cell.tangent[a] = {record[2 * a], record[2 * a + 1]};
   std::copy(record.begin() + 4, record.end(), cell.turn);
   return cell;
 }

@@ -36,7 +36,7 @@ class PathLobes {
         hit == path_->first_material ? arrivals_[start] : inner_leg(hits_.data(), material_before(hit), hit).arrival;
     const Vec3 out =
         hit == path_->last_material ? departures_[end] : inner_leg(hits_.data(), hit, material_behind(hit)).departure;
-    const Vec3& normal = hits_[static_cast<size_t>(hit)].normal;
+    const Vec3& normal = hits_[hit].normal;
     return path_->is_reversed ? ScatterGeometry{-out, normal, -in} : ScatterGeometry{in, normal, out};
   }
 
@@ -67,7 +67,7 @@ class PathLobes {
     }
   }
 
-  const Vec3& point(int hit) const { return hits_[static_cast<size_t>(hit)].point; }
+  const Vec3& point(int hit) const { return hits_[hit].point; }
 
   const std::vector<DiffuseLobe>& lobes_;
   std::vector<PosedHit> hits_;

@@ -36,15 +36,14 @@ RecordSheets::RecordSheets(const PathPreparer& of, double wavelength_of) : prepa
 }
 
 PathPassages::PathPassages(const RecordSheets& sheets, int64_t path)
-    : shared_(sheets), paths_(sheets.preparer.paths()), passes_(paths_.passes_of(static_cast<size_t>(path))) {
-  const auto p = static_cast<size_t>(path);
-  const int edge = edge_hit(paths_.flags[p]), num_edges = num_edge_hits(paths_.flags[p]);
-  count_ = paths_.num_bounces[p];
+    : shared_(sheets), paths_(sheets.preparer.paths()), passes_(paths_.passes_of(path)) {
+  const int edge = edge_hit(paths_.flags[path]), num_edges = num_edge_hits(paths_.flags[path]);
+  count_ = paths_.num_bounces[path];
   for (int k = 0; k < count_; ++k) {
     const Hit& hit = paths_.hits_of(path)[k];
     hits_.push_back(shared_.preparer.hit(hit, normals_));
-    const bool is_edge = edge >= 0 && k >= edge && k < edge + num_edges, is_diffuse = (paths_.diffuse[p] >> k & 1) != 0;
-    is_image_.push_back(!is_edge && !is_diffuse && shared_.preparer.is_image(hit.mesh_id, paths_.stratum[p]));
+    const bool is_edge = edge >= 0 && k >= edge && k < edge + num_edges, is_diffuse = (paths_.diffuse[path] >> k & 1) != 0;
+    is_image_.push_back(!is_edge && !is_diffuse && shared_.preparer.is_image(hit.mesh_id, paths_.stratum[path]));
   }
   if (!paths_.jones.empty()) {
     first_edge_ = edge;

@@ -5,7 +5,7 @@ namespace echopath {
 void SheetPassages::apply(std::span<const int64_t> indices, const PosedNodes& nodes, const ChannelSpan& channels,
                           bool with_amplitudes) const {
   for (size_t place = 0; place < indices.size(); ++place) {
-    if (sheets_.preparer.paths().passes_of(static_cast<size_t>(indices[place])).empty()) continue;
+    if (sheets_.preparer.paths().passes_of(indices[place]).empty()) continue;
     PathPassages path(sheets_, indices[place]);
     for (size_t node = 0; node < nodes.size(); ++node) {
       const size_t num_receivers = nodes.at(node).receivers.size();

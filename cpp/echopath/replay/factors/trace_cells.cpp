@@ -31,7 +31,7 @@ TraceCells::TraceCells(const SharedLegPlan& plan, const PathPreparer& preparer, 
 
 double TraceCells::density_of(const SharedLegPlan::ChainPath& chain) const {
   const Paths& paths = preparer_.paths();
-  return paths.frame.lattice_density(paths.stratum[static_cast<size_t>(chain.path)]);
+  return paths.frame.lattice_density(paths.stratum[chain.path]);
 }
 
 const std::array<float, 7>* TraceCells::curved_cell_of(const SharedLegPlan::ChainPath& chain) const {

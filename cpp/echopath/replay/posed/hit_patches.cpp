@@ -15,7 +15,7 @@ std::vector<SurfacePatch> hit_patches(const Paths& paths) {
   if (std::all_of(is_hit.begin(), is_hit.end(), [](const auto& triangles) { return triangles.empty(); })) return patches;
   for (int64_t path = 0; path < paths.num_paths(); ++path) {
     const Hit* hits = paths.hits_of(path);
-    for (int k = 0; k < paths.num_bounces[static_cast<size_t>(path)]; ++k) {
+    for (int k = 0; k < paths.num_bounces[path]; ++k) {
       if (!is_hit[hits[k].mesh_id].empty()) is_hit[hits[k].mesh_id][hits[k].triangle_id] = 1;
     }
   }

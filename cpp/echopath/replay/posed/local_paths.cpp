@@ -53,7 +53,7 @@ PathPreparer::PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches
 
 bool PathPreparer::meets_lobe(int64_t path) const {
   const Hit* hits = paths_.hits_of(path);
-  for (uint64_t diffuse = paths_.diffuse[static_cast<size_t>(path)]; diffuse != 0; diffuse &= diffuse - 1) {
+  for (uint64_t diffuse = paths_.diffuse[path]; diffuse != 0; diffuse &= diffuse - 1) {
     if (!lobes_[hits[std::countr_zero(diffuse)].mesh_id].is_lambert()) return true;
   }
   return false;
@@ -134,7 +134,7 @@ bool PathPreparer::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>&
 LocalPaths PathPreparer::operator()(std::span<const int64_t> indices) const {
   LocalPaths block;
   size_t num_hits = 0;
-  for (const int64_t index : indices) num_hits += paths_.num_bounces[static_cast<size_t>(index)];
+  for (const int64_t index : indices) num_hits += paths_.num_bounces[index];
   block.hits.reserve(num_hits);  // paths point into it
   block.paths.reserve(indices.size());
   for (const int64_t index : indices) {
@@ -145,28 +145,27 @@ LocalPaths PathPreparer::operator()(std::span<const int64_t> indices) const {
 }
 
 LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
-  const auto p = static_cast<size_t>(index);
   LocalPath path;
   path.hits = block.hits.data() + block.hits.size();
   path.recorded = paths_.hits_of(index);
-  path.count = paths_.num_bounces[p];
-  path.is_reversed = paths_.is_reversed(p);
-  path.edge = echopath::edge_hit(paths_.flags[p]);
-  path.num_edges = num_edge_hits(paths_.flags[p]);
+  path.count = paths_.num_bounces[index];
+  path.is_reversed = paths_.is_reversed(index);
+  path.edge = echopath::edge_hit(paths_.flags[index]);
+  path.num_edges = num_edge_hits(paths_.flags[index]);
   if (path.edge >= 0 && path.is_reversed) path.edge = path.count - path.edge - path.num_edges;
-  path.is_past_edge = (paths_.flags[p] & kPastEdge) != 0;
+  path.is_past_edge = (paths_.flags[index] & kPastEdge) != 0;
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
-    path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
+    path.diffuse |= (paths_.diffuse[index] >> recorded & 1) << k;
     if (path.is_edge(k)) {
-      block.hits.push_back(edge_hit(hit, num_edge_pieces(paths_.flags[p])));
+      block.hits.push_back(edge_hit(hit, num_edge_pieces(paths_.flags[index])));
       path.first_material = path.edge;
       path.last_material = k;
       continue;
     }
     block.hits.push_back(this->hit(hit, block.normals));
-    if (is_image(hit.mesh_id, paths_.stratum[p]) && !path.is_diffuse(k)) {
+    if (is_image(hit.mesh_id, paths_.stratum[index]) && !path.is_diffuse(k)) {
       path.image |= uint64_t{1} << k;
     } else {
       if (path.first_material < 0) path.first_material = k;

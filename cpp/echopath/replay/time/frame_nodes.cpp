@@ -15,12 +15,11 @@ double lobatto(int k, int order) { return std::cos(kPi * k / (order - 1)); }
 
 // Returns the row [order] that gives coefficient n of the interpolant in T_n from the values at the Lobatto points.
 std::vector<double> coefficient_row(int n, int order) {
-  std::vector<double> row(static_cast<size_t>(order));
+  std::vector<double> row(order);
   const bool end_row = n == 0 || n == order - 1;
   for (int k = 0; k < order; ++k) {
     const bool end_point = k == 0 || k == order - 1;
-    row[static_cast<size_t>(k)] =
-        std::cos(kPi * n * k / (order - 1)) * 2.0 / (order - 1) * (end_point ? 0.5 : 1.0) * (end_row ? 0.5 : 1.0);
+    row[k] = std::cos(kPi * n * k / (order - 1)) * 2.0 / (order - 1) * (end_point ? 0.5 : 1.0) * (end_row ? 0.5 : 1.0);
   }
   return row;
 }
@@ -88,8 +87,8 @@ class NodeSet {
       out[d]->resize(out[d]->size() + static_cast<size_t>(order_), 0.0);
       double* weights = out[d]->data() + out[d]->size() - static_cast<size_t>(order_);
       for (int n = 0; n < order_; ++n) {
-        const double factor = unit * basis[static_cast<size_t>(n)][d];
-        for (int k = 0; k < order_; ++k) weights[k] += factor * rows_[static_cast<size_t>(n)][static_cast<size_t>(k)];
+        const double factor = unit * basis[n][d];
+        for (int k = 0; k < order_; ++k) weights[k] += factor * rows_[n][k];
       }
     }
   }
@@ -180,10 +179,10 @@ TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   sampling.rows = TimeSampling::Rows::kDerivatives;
   std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.second_derivative,
                                           &sampling.third_derivative};
-  for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_rows), 0.0);
+  for (int d = 0; d < sampling.order; ++d) weights[d]->assign(sampling.num_rows, 0.0);
   for (int chirp = 0; chirp < num_chirps; ++chirp) {
     sampling.first_row.push_back(chirp * sampling.order);
-    for (int d = 0; d < sampling.order; ++d) (*weights[d])[static_cast<size_t>(chirp * sampling.order + d)] = 1.0;
+    for (int d = 0; d < sampling.order; ++d) (*weights[d])[chirp * sampling.order + d] = 1.0;
   }
   return sampling;
 }

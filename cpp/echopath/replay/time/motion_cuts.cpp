@@ -74,8 +74,8 @@ MotionCuts::MotionCuts(const Scene& scene, const Radar& radar, const TimeSpan& f
   };
   std::vector<uint32_t> of_node;  // of its motion and those above it
   for (int index = 0; index < std::ssize(scene.nodes()); ++index) {
-    const Node& node = scene.nodes()[static_cast<size_t>(index)];
-    const uint32_t above = node.parent < 0 ? kOfRadar : of_node[static_cast<size_t>(node.parent)];
+    const Node& node = scene.nodes()[index];
+    const uint32_t above = node.parent < 0 ? kOfRadar : of_node[node.parent];
     of_node.push_back(scene.takes_part(index) ? joined_with(above, node.motion.get()) : kOfRadar);
   }
   for (const SceneMesh& mesh : scene.meshes()) {

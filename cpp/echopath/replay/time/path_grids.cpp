@@ -120,7 +120,7 @@ void PathGrids::first(int64_t begin, std::span<GridIndex> first) const {
 PathGrids::Range PathGrids::range_of(int64_t path) const {
   const GridIndex* const of_mesh = of_mesh_.data();
   const Hit* const hits = paths_.hits_of(path);
-  const int num_hits = paths_.num_bounces[static_cast<size_t>(path)];
+  const int num_hits = paths_.num_bounces[path];
   Range range{of_mesh[hits[0].mesh_id], of_mesh[hits[0].mesh_id]};
   const auto add = [&](GridIndex grid) { range = {std::min(range.least, grid), std::max(range.most, grid)}; };
   // Most paths have one to four hits, and a branch on the number would be mispredicted: so the last hit is read again in
@@ -129,7 +129,7 @@ PathGrids::Range PathGrids::range_of(int64_t path) const {
     for (int step = 0; step < 4; ++step) add(of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
   }
   if (!paths_.passes.empty()) {
-    for (const Pass& pass : paths_.passes_of(static_cast<size_t>(path))) add(of_mesh[pass.hit.mesh_id]);
+    for (const Pass& pass : paths_.passes_of(path)) add(of_mesh[pass.hit.mesh_id]);
   }
   return range;
 }

@@ -9,7 +9,7 @@ namespace {
 
 // Keeps all where `transmitter` is -1.
 void keep_one_transmitter(PosedScene& posed, int transmitter) {
-  if (transmitter >= 0) posed.transmitters = {posed.transmitters[static_cast<size_t>(transmitter)]};
+  if (transmitter >= 0) posed.transmitters = {posed.transmitters[transmitter]};
 }
 
 // Returns what a mesh takes at one node: its matrices and place in PosedScene, its rows in PosedNodes, and the vertices and

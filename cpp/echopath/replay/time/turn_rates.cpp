@@ -5,8 +5,8 @@ namespace echopath {
 double turn_rate(const Scene& scene, uint32_t mesh_id, const TimeSpan& during) {
   const Node& node = scene.node_of(mesh_id);
   double rate = node.deformation ? node.deformation->turn_rate(during) : 0.0;
-  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[static_cast<size_t>(i)].parent) {
-    const Motion* motion = scene.nodes()[static_cast<size_t>(i)].motion.get();
+  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[i].parent) {
+    const Motion* motion = scene.nodes()[i].motion.get();
     if (motion) rate += motion->turn_rate(during);
   }
   return rate;

@@ -65,7 +65,7 @@ HalfedgeMesh connect(const std::vector<Vec3>& vertices, const std::vector<Triang
   mesh.reserve(vertices.size(), vertices.size() + triangles.size(), triangles.size());
   for (const Vec3& p : vertices) mesh.add_vertex({p.x(), p.y(), p.z()});
   for (const Triangle& t : triangles) {
-    const auto handle = [&](int k) { return OpenMesh::VertexHandle(static_cast<int>(t[static_cast<size_t>(k)])); };
+    const auto handle = [&](int k) { return OpenMesh::VertexHandle(static_cast<int>(t[k])); };
     if (!mesh.add_face(handle(0), handle(1), handle(2)).is_valid()) {
       throw std::logic_error("Mesh: a face is still non-manifold after cutting");
     }

@@ -27,7 +27,7 @@ struct Slabs {
   explicit Slabs(const Ear& ear) {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 direction = ear.normal.cross(Vec3::Unit(axis));
-      across[static_cast<size_t>(axis)] = direction;
+      across[axis] = direction;
       const Vec3 at(ear.points[0].dot(direction), ear.points[1].dot(direction), ear.points[2].dot(direction));
       const double reach = std::max({ear.points[0].norm(), ear.points[1].norm(), ear.points[2].norm()});
       const double rounding = kTurnRounding * direction.norm() * reach;
@@ -38,7 +38,7 @@ struct Slabs {
 
   bool part(const Box& box) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const Vec3& direction = across[static_cast<size_t>(axis)];
+      const Vec3& direction = across[axis];
       const Vec3 one = box.min().cwiseProduct(direction), other = box.max().cwiseProduct(direction);
       if (one.cwiseMin(other).sum() > high[axis] || one.cwiseMax(other).sum() < low[axis]) return true;
     }

@@ -102,7 +102,7 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
   const int axes[3] = {element.find({"x"}), element.find({"y"}), element.find({"z"})};
   if (*std::min_element(axes, axes + 3) < 0) values.refuse("element 'vertex' needs the properties x, y and z");
   for (const int axis : axes) {
-    if (element.properties[static_cast<size_t>(axis)].is_list) values.refuse("x, y and z must not be lists");
+    if (element.properties[axis].is_list) values.refuse("x, y and z must not be lists");
   }
   const int normal_axes[3] = {element.find({"nx"}), element.find({"ny"}), element.find({"nz"})};
   const bool has_normals = *std::min_element(normal_axes, normal_axes + 3) >= 0;
@@ -113,10 +113,7 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
       read_property(values, element.properties[p], items);
       row[p] = items.empty() ? 0.0 : items[0];
     }
-    const auto vector_of = [&](const int (&columns)[3]) {
-      return Vec3(row[static_cast<size_t>(columns[0])], row[static_cast<size_t>(columns[1])],
-                  row[static_cast<size_t>(columns[2])]);
-    };
+    const auto vector_of = [&](const int (&columns)[3]) { return Vec3(row[columns[0]], row[columns[1]], row[columns[2]]); };
     const Vec3 point = vector_of(axes);
     if (!point.allFinite()) values.refuse("vertex " + std::to_string(i) + ": a coordinate is out of range or not a number");
     soup.vertices.push_back(point);
@@ -142,7 +139,7 @@ std::vector<uint32_t> polygon_corners(const PlyValues& values, const std::vector
 
 void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
   const int list = element.find({"vertex_indices", "vertex_index"});
-  if (list < 0 || !element.properties[static_cast<size_t>(list)].is_list) {
+  if (list < 0 || !element.properties[list].is_list) {
     values.refuse("element 'face' needs the list property vertex_indices");
   }
   std::vector<double> items, corners;

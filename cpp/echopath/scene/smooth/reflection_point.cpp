@@ -29,10 +29,10 @@ PathLength path_length_at(const SmoothPoint& at, const Vec3& first, const Vec3& 
     const double distance = line.norm();
     const Vec3 direction = line / distance;
     for (int i = 0; i < 2; ++i) {
-      const Vec3& along = path_length.tangents[static_cast<size_t>(i)];
+      const Vec3& along = path_length.tangents[i];
       path_length.gradient[i] -= direction.dot(along);
       for (int j = 0; j < 2; ++j) {
-        const Vec3& other = path_length.tangents[static_cast<size_t>(j)];
+        const Vec3& other = path_length.tangents[j];
         path_length.hessian(i, j) += ((i == j) - direction.dot(along) * direction.dot(other)) / distance +
                                      direction.dot(at.normal) * along.dot(at.curvature * other);
       }
@@ -110,7 +110,7 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
   ReflectionPoint found{at.position, {}, {principal.values[0], principal.values[1]}};
   for (int i = 0; i < 2; ++i) {
     const Eigen::Vector2d axis = principal.axes.col(i);
-    found.axes[static_cast<size_t>(i)] = axis[0] * path_length.tangents[0] + axis[1] * path_length.tangents[1];
+    found.axes[i] = axis[0] * path_length.tangents[0] + axis[1] * path_length.tangents[1];
   }
   return found;
 }

@@ -63,18 +63,17 @@ struct Extent {
 };
 
 double drift_of(const Echoes& block, int64_t echo) {
-  return block.delay[static_cast<size_t>((block.sampling.num_rows - 1) * block.num_echoes + echo)] -
-         block.delay[static_cast<size_t>(echo)];
+  return block.delay[(block.sampling.num_rows - 1) * block.num_echoes + echo] - block.delay[echo];
 }
 
 // Returns classes as narrow as a cell, unless that leaves few echoes for each cell and class.
 DriftClasses classes_of_drift(std::span<const Echoes> blocks, double longest_delay, int num_cells) {
   std::vector<std::pair<Extent, Extent>> by_block(blocks.size());
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
-    const Echoes& block = blocks[static_cast<size_t>(b)];
-    auto& [delay, drift] = by_block[static_cast<size_t>(b)];
+    const Echoes& block = blocks[b];
+    auto& [delay, drift] = by_block[b];
     for (int64_t p = 0; p < block.num_echoes; ++p) {
-      delay.add(std::clamp(block.delay[static_cast<size_t>(p)], 0.0, longest_delay));
+      delay.add(std::clamp(block.delay[p], 0.0, longest_delay));
       drift.add(std::clamp(drift_of(block, p), -longest_delay, longest_delay));
     }
   });
@@ -111,16 +110,16 @@ void EchoTiles::find_keys(std::span<const Echoes> blocks, double longest_delay, 
   std::vector<int64_t> first(blocks.size() + 1);
   for (size_t b = 0; b < blocks.size(); ++b) first[b + 1] = first[b] + blocks[b].num_echoes;
   const double steps = static_cast<double>((uint64_t{1} << delay_bits_) - 1) / longest_delay;
-  order_.resize(static_cast<size_t>(first.back()));
+  order_.resize(first.back());
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
-    const Echoes& block = blocks[static_cast<size_t>(b)];
+    const Echoes& block = blocks[b];
     const double* delay = block.delay.data() + int64_t{num_nodes_ / 2} * block.num_echoes;
-    uint64_t* out = order_.data() + first[static_cast<size_t>(b)];
+    uint64_t* out = order_.data() + first[b];
     for (int64_t p = 0; p < block.num_echoes; ++p) {
       const auto place = static_cast<uint64_t>(std::clamp(delay[p], 0.0, longest_delay) * steps);
       const double drift = (drift_of(block, p) - drifts.least) / drifts.width;
       const auto drift_class = static_cast<uint64_t>(std::clamp(drift, 0.0, drifts.count - 1.0));
-      const uint64_t group = block.group.empty() ? 0 : block.group[static_cast<size_t>(p)];
+      const uint64_t group = block.group.empty() ? 0 : block.group[p];
       const uint64_t order = ((group << drift_bits_ | drift_class) << delay_bits_) | place;
       out[p] = order << index_bits_ | static_cast<uint64_t>(b) << local_bits_ | static_cast<uint64_t>(p);
     }
@@ -187,7 +186,7 @@ void EchoTiles::cut() {
   tiles_.clear();
   first_.clear();
   const auto total = static_cast<int64_t>(order_.size());
-  const auto group_of = [&](int64_t i) { return static_cast<uint32_t>(order_[static_cast<size_t>(i)] >> group_shift()); };
+  const auto group_of = [&](int64_t i) { return static_cast<uint32_t>(order_[i] >> group_shift()); };
   int64_t vector = 0;
   for (int64_t begin = 0; begin < total;) {
     const uint32_t group = group_of(begin);
@@ -263,11 +262,11 @@ void EchoTiles::gather(std::span<const Echoes> blocks) {
   const uint64_t local_mask = (uint64_t{1} << local_bits_) - 1, index_mask = (uint64_t{1} << index_bits_) - 1;
   const double nothing = blocks.front().sampling.rows == TimeSampling::Rows::kLogarithms ? kLogarithmOfNothing : 0.0;
   parallel_for(static_cast<int64_t>(tiles_.size()), [&](int64_t i) {
-    const Tile& tile = tiles_[static_cast<size_t>(i)];
+    const Tile& tile = tiles_[i];
     const auto source_of = [&](int p) {
-      const int64_t place = first_[static_cast<size_t>(i)] + std::min(p, tile.count - 1);
-      const uint64_t index = order_[static_cast<size_t>(place)] & index_mask, echo = index & local_mask;
-      const Echoes& block = blocks[static_cast<size_t>(index >> local_bits_)];
+      const int64_t place = first_[i] + std::min(p, tile.count - 1);
+      const uint64_t index = order_[place] & index_mask, echo = index & local_mask;
+      const Echoes& block = blocks[index >> local_bits_];
       const auto* amplitude = reinterpret_cast<const double*>(block.amplitude.data() + echo);
       return Source{block.delay.data() + echo, amplitude, block.num_echoes};
     };

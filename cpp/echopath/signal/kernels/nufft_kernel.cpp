@@ -98,7 +98,7 @@ void NufftKernel::set_nodes() {
 }
 
 std::vector<double> NufftKernel::transform(double step, int count) const {
-  std::vector<double> sums(static_cast<size_t>(count));
+  std::vector<double> sums(count);
   for (size_t i = 0; i < places_.size(); ++i) run_simd<add_cosines>(weights_[i], step * places_[i], count, sums.data());
   return sums;
 }

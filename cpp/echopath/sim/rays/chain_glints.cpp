@@ -51,11 +51,11 @@ class ChainGlintSearch {
   std::optional<Glint> glint_of(int64_t path, double amplitude) const {
     std::deque<std::array<Vec3, 3>> normals;
     std::vector<PosedHit> hits = hits_as_traced(path, normals);
-    const LaunchCell launched = recorded_cell(paths_.curved_cell[static_cast<size_t>(path)]);
+    const LaunchCell launched = recorded_cell(paths_.curved_cell[path]);
     const CellTangents tangents = cell_tangents(launched, hits.back());
     if (turns_too_much(hits.back(), tangents)) return std::nullopt;
     const CellPhase phase = along_axes(phase_at(hits, launched, tangents));
-    const size_t stratum = paths_.stratum[static_cast<size_t>(path)];
+    const size_t stratum = paths_.stratum[path];
     const Stratum& of = paths_.frame.strata[stratum];
     const double cell = 1.0 / std::sqrt(paths_.frame.lattice_density(stratum));  // rad
     Eigen::Vector2d step;
@@ -82,11 +82,10 @@ class ChainGlintSearch {
  private:
   // Returns the hits relative to the transmitter, from which the ray started.
   std::vector<PosedHit> hits_as_traced(int64_t path, std::deque<std::array<Vec3, 3>>& normals) const {
-    const auto p = static_cast<size_t>(path);
-    std::vector<PosedHit> posed(paths_.num_bounces[p]);
+    std::vector<PosedHit> posed(paths_.num_bounces[path]);
     for (size_t k = 0; k < posed.size(); ++k)
       pose_hit(preparer_.hit(paths_.hits_of(path)[k], normals), preparer_.at_trace(), true, posed[k]);
-    if (paths_.is_reversed(p)) std::reverse(posed.begin(), posed.end());
+    if (paths_.is_reversed(path)) std::reverse(posed.begin(), posed.end());
     return posed;
   }
 
@@ -120,9 +119,8 @@ class ChainGlintSearch {
 // Returns whether the path has been traced as a wave over curved surfaces to another, which radiates straight to the
 // receiver.
 bool is_chain(const Paths& paths, int64_t path) {
-  const auto p = static_cast<size_t>(path);
-  if (!paths.is_coherent_with_cell(p) || paths.num_bounces[p] < 2 || !paths.curved_cell_of(p)) return false;
-  const Hit& last = paths.hits_of(path)[paths.is_reversed(p) ? 0 : paths.num_bounces[p] - 1];
+  if (!paths.is_coherent_with_cell(path) || paths.num_bounces[path] < 2 || !paths.curved_cell_of(path)) return false;
+  const Hit& last = paths.hits_of(path)[paths.is_reversed(path) ? 0 : paths.num_bounces[path] - 1];
   return !paths.scene->node_of(last.mesh_id).material->mirror;
 }
 

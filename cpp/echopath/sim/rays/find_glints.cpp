@@ -29,10 +29,7 @@ class GlintSearch {
     const std::vector<MeshRoutes> meshes = posed(unseen);
     const std::vector<Task> tasks = tasks_of(meshes);
     std::vector<std::vector<FoundGlint>> found(tasks.size());
-    parallel_for(std::ssize(tasks), [&](int64_t i) {
-      const auto task = static_cast<size_t>(i);
-      found[task] = glints_of(tasks[task]);
-    }, &unseen);
+    parallel_for(std::ssize(tasks), [&](int64_t i) { found[i] = glints_of(tasks[i]); }, &unseen);
     std::vector<std::vector<Glint>> of_route(routes_.size());
     for (const std::vector<FoundGlint>& some : found) {
       for (const FoundGlint& one : some) of_route[one.route].push_back(one.glint);
@@ -67,7 +64,7 @@ class GlintSearch {
     std::vector<MeshRoutes> meshes;
     for (const auto& [mesh, routes] : of_mesh) meshes.push_back({mesh, routes, {}, {}});
     parallel_for(std::ssize(meshes), [&](int64_t i) {
-      MeshRoutes& one = meshes[static_cast<size_t>(i)];
+      MeshRoutes& one = meshes[i];
       one.vertices = pose_.world_vertices(one.mesh);
       one.normals = pose_.world_normals(one.mesh);
     }, &job);
@@ -161,7 +158,7 @@ std::vector<Glint> find_glints(const Paths& paths, Job* job) {
   std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
   std::vector<std::vector<Glint>> of_stratum(paths.frame.strata.size());
   for (const Glint& glint : glints) {
-    std::vector<Glint>& others = of_stratum[static_cast<size_t>(glint.stratum)];
+    std::vector<Glint>& others = of_stratum[glint.stratum];
     if (others.size() == kMaxGlints) continue;
     if (std::any_of(others.begin(), others.end(), [&](const Glint& other) { return is_same(glint, other); })) continue;
     others.push_back(glint);

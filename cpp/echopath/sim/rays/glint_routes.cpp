@@ -62,11 +62,10 @@ class RouteSorter {
 
   // Returns none for paths that are diffuse, reversed or without exactly one hit beside those on flagged mirrors.
   std::optional<RouteKind> kind_of(int64_t path) const {
-    const auto p = static_cast<size_t>(path);
-    if (!paths_.is_coherent_with_cell(p) || paths_.is_reversed(p)) return std::nullopt;
-    RouteKind kind{paths_.stratum[p], 0, {}, {}};
+    if (!paths_.is_coherent_with_cell(path) || paths_.is_reversed(path)) return std::nullopt;
+    RouteKind kind{paths_.stratum[path], 0, {}, {}};
     int surfaces = 0;
-    for (int k = 0; k < paths_.num_bounces[p]; ++k) {
+    for (int k = 0; k < paths_.num_bounces[path]; ++k) {
       const uint32_t mesh = paths_.hits_of(path)[k].mesh_id;
       if (paths_.scene->node_of(mesh).material->mirror) {
         (surfaces == 0 ? kind.before : kind.behind).push_back(face_of(paths_.hits_of(path)[k]));

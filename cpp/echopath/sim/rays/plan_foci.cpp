@@ -171,7 +171,7 @@ void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, con
     plan.echo = echoes[k];
   }
   for (const Glint& glint : glints) {
-    StratumPlan& plan = plans[static_cast<size_t>(glint.stratum)];
+    StratumPlan& plan = plans[glint.stratum];
     glint.is_chain ? add_chain(glint, plan) : add_glint(glint, plan);
   }
   for (StratumPlan& plan : plans) {

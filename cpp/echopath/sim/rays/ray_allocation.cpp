@@ -63,8 +63,8 @@ std::vector<bool> moving_nodes(const Scene& scene) {
   std::vector<bool> moves(scene.nodes().size());
   for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
     if (!scene.is_moving(mesh)) continue;
-    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[static_cast<size_t>(node)].parent) {
-      moves[static_cast<size_t>(node)] = true;
+    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[node].parent) {
+      moves[node] = true;
     }
   }
   return moves;
@@ -180,7 +180,7 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
     const Stratum& stratum = paths.frame.strata[k];
     if (stratum.is_focus()) continue;
     const double missing = missing_db(powers[k], least);
-    const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
+    const bool is_moving = stratum.object >= 0 && moves[stratum.object];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
     const double growth = growth_of(missing, target, wanted.law);
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth, wanted.least_growth));

@@ -36,7 +36,7 @@ std::vector<Fft> ffts_of_rows() {
 std::vector<std::complex<double>> tones_sum(const std::vector<double>& factor, int64_t reference, int64_t size) {
   FftBuffer buffer(size);
   for (int64_t n = 0; n < static_cast<int64_t>(factor.size()); ++n) {
-    buffer[((n - reference) % size + size) % size] += factor[static_cast<size_t>(n)];
+    buffer[((n - reference) % size + size) % size] += factor[n];
   }
   Fft(static_cast<int>(size), FftDirection::kBackward).transform(buffer);
   return {buffer.data(), buffer.data() + size};
@@ -105,8 +105,8 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
   const Band band = takes_all ? extent_of(of, num_channels) : band_of(of, num_channels);
   const std::vector<int64_t> columns = columns_of(band, takes_all ? -1.0 : least, asked);
   if (band.count * (std::ssize(columns) + band.count / 2) > kMostProducts) {
-    asked.assign(static_cast<size_t>(num_ranges_), 0);
-    for (const int64_t column : columns) asked[static_cast<size_t>(column)] = 1;
+    asked.assign(num_ranges_, 0);
+    for (const int64_t column : columns) asked[column] = 1;
     return false;
   }
   out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
@@ -131,7 +131,7 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
 
 // Returns the largest over chirps and channels, by cell of a row.
 std::vector<double> BandMap::magnitude_of(const Synthesizer& signals, int group, int num_channels) const {
-  std::vector<double> largest(static_cast<size_t>(spread_->row_length()));
+  std::vector<double> largest(spread_->row_length());
   for (int channel = 0; channel < num_channels; ++channel) {
     for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
       const RowCells cells = signals.moving_cells(channel, group, chirp);
@@ -152,7 +152,7 @@ std::vector<double> BandMap::magnitude_of(const Synthesizer& signals, int group,
 }
 
 BandMap::Band BandMap::band_of(const SummedGroups& of, int num_channels) const {
-  std::vector<double> sum(static_cast<size_t>(spread_->row_length()));
+  std::vector<double> sum(spread_->row_length());
   for (const int group : of.groups) {
     const std::vector<double> of_group = magnitude_of(*of.signals, group, num_channels);
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += of_group[i];
@@ -181,10 +181,10 @@ BandMap::Band BandMap::extent_of(const SummedGroups& of, int num_channels) const
 std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const {
   std::vector<int64_t> columns;
   for (int64_t column = 0; column < num_ranges_; ++column) {
-    if (!asked.empty() && !asked[static_cast<size_t>(column)]) continue;
+    if (!asked.empty() && !asked[column]) continue;
     double most = 0.0;
     for (int64_t i = 0; i < std::ssize(band.magnitude); ++i) {
-      most += band.magnitude[static_cast<size_t>(i)] * size_of_response_[place_of(band.first + i, column)];
+      most += band.magnitude[i] * size_of_response_[place_of(band.first + i, column)];
     }
     if (most * most > least) columns.push_back(column);
   }
@@ -194,7 +194,7 @@ std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const s
 // Sorts the cells of the band of all chirps to [cell, re/im, num_lanes + band_loops::kApart].
 void BandMap::gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const {
   const int64_t stride = num_lanes_ + band_loops::kApart;
-  lanes.assign(static_cast<size_t>(2 * band.count * stride), 0.0);
+  lanes.assign(2 * band.count * stride, 0.0);
   for (const int group : of.groups) {
     for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
       RowCells rows[kTogether];
@@ -234,15 +234,15 @@ void BandMap::add_column(const SummedGroups& of, int num_channels, const Band& b
 
 void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
                           std::vector<double>& cells) const {
-  std::vector<std::complex<double>> factor(static_cast<size_t>(band.count));
-  std::vector<double> profile(static_cast<size_t>(2 * num_lanes_));
+  std::vector<std::complex<double>> factor(band.count);
+  std::vector<double> profile(2 * num_lanes_);
   FftBuffer buffer(doppler_fft_.size());
   for (const int64_t column : columns) {
-    for (int64_t i = 0; i < band.count; ++i) factor[static_cast<size_t>(i)] = response_[place_of(band.first + i, column)];
+    for (int64_t i = 0; i < band.count; ++i) factor[i] = response_[place_of(band.first + i, column)];
     run_simd<band_loops::combine_cells>(lanes.data(), num_lanes_, band.count, reinterpret_cast<const double*>(factor.data()),
                                         profile.data());
     for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
-      buffer[chirp] = {profile[static_cast<size_t>(chirp)], profile[static_cast<size_t>(num_lanes_ + chirp)]};
+      buffer[chirp] = {profile[chirp], profile[num_lanes_ + chirp]};
     }
     add_velocities(buffer, column, cells);
   }
@@ -251,11 +251,11 @@ void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, co
 // Adds the power of a column at all velocities. The buffer holds its value in every chirp, and is used up.
 void BandMap::add_velocities(FftBuffer& buffer, int64_t column, std::vector<double>& cells) const {
   const int64_t size = buffer.size(), first = size - size / 2;  // row v holds frequency v - size / 2
-  for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) buffer[chirp] *= doppler_taper_[static_cast<size_t>(chirp)];
+  for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) buffer[chirp] *= doppler_taper_[chirp];
   std::fill(buffer.data() + num_chirps_, buffer.data() + size, 0.0);
   doppler_fft_.transform(buffer);
   for (int64_t v = 0; v < size; ++v) {
-    cells[static_cast<size_t>(v * num_ranges_ + column)] += std::norm(buffer[(first + v) % size]);
+    cells[v * num_ranges_ + column] += std::norm(buffer[(first + v) % size]);
   }
 }
 

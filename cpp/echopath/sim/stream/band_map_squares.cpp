@@ -34,10 +34,10 @@ double BandMap::sum_over_pairs(const std::vector<double>& lanes, int64_t count) 
 // squares of the transforms of all rows, which are long enough for the distances of both signs.
 double BandMap::sum_of_transforms(const SummedGroups& of, int num_channels, const Band& band) const {
   if (band.count == 0) return 0.0;
-  const Fft& fft = row_ffts_[static_cast<size_t>(std::bit_width(static_cast<uint64_t>(2 * band.count - 1)))];
+  const Fft& fft = row_ffts_[std::bit_width(static_cast<uint64_t>(2 * band.count - 1))];
   const int64_t size = fft.size();
   FftBuffer buffer(size);
-  std::vector<double> squares(static_cast<size_t>(size));
+  std::vector<double> squares(size);
   const int group = of.groups.front();
   for (int channel = 0; channel < num_channels; ++channel) {
     for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {

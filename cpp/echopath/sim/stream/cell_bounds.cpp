@@ -41,8 +41,8 @@ class WindowReach {
     const std::vector<double> samples = window_samples(window, num_cells);
     FftBuffer buffer(int64_t{kFine} * num_cells);
     double sum = 0.0;
-    for (int i = 0; i < num_cells; ++i) sum += samples[static_cast<size_t>(i)];
-    for (int i = 0; i < num_cells; ++i) buffer[i] = samples[static_cast<size_t>(i)] / sum;
+    for (int i = 0; i < num_cells; ++i) sum += samples[i];
+    for (int i = 0; i < num_cells; ++i) buffer[i] = samples[i] / sum;
     Fft(static_cast<int>(buffer.size()), FftDirection::kForward).transform(buffer);
     std::vector<double> fine;
     for (int64_t i = 0; i < buffer.size(); ++i) fine.push_back(std::min(1.0, kBetweenSteps * std::abs(buffer[i])));
@@ -50,13 +50,12 @@ class WindowReach {
   }
 
   std::vector<double> table(const std::vector<double>& fine, int reach, int zero_pad) const {
-    std::vector<double> values(static_cast<size_t>(num_cells_ * zero_pad));
+    std::vector<double> values(num_cells_ * zero_pad);
     const auto size = static_cast<int64_t>(fine.size());
     for (int64_t i = 0; i < static_cast<int64_t>(values.size()); ++i) {
       const int64_t centre = i * kFine / zero_pad;
       for (int64_t step = centre - reach * kFine; step <= centre + reach * kFine + 1; ++step) {
-        values[static_cast<size_t>(i)] =
-            std::max(values[static_cast<size_t>(i)], fine[static_cast<size_t>((step + size) % size)]);
+        values[i] = std::max(values[i], fine[(step + size) % size]);
       }
     }
     return values;
@@ -69,9 +68,8 @@ class WindowReach {
 // Adds a bin of that amplitude to the bounds of all cells of a circle.
 void add_bin(double amplitude, int64_t first, const std::vector<double>& reach, std::vector<double>& row) {
   const auto size = static_cast<int64_t>(row.size());
-  for (int64_t r = 0; r < first; ++r)
-    row[static_cast<size_t>(r)] += amplitude * reach[static_cast<size_t>(r - first + size)];
-  for (int64_t r = first; r < size; ++r) row[static_cast<size_t>(r)] += amplitude * reach[static_cast<size_t>(r - first)];
+  for (int64_t r = 0; r < first; ++r) row[r] += amplitude * reach[r - first + size];
+  for (int64_t r = first; r < size; ++r) row[r] += amplitude * reach[r - first];
 }
 
 }  // namespace
@@ -88,14 +86,14 @@ void CellBounds::see(std::span<const Echoes> blocks, std::span<const int64_t> fi
     first = first.subspan(static_cast<size_t>(block.num_echoes));
   }
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
-    const Echoes& block = blocks[static_cast<size_t>(i)];
+    const Echoes& block = blocks[i];
     const int num_chirps = waveform_.num_chirps, step = std::max(1, num_chirps / kChirps);
     for (int64_t begin = 0; begin < block.num_echoes; begin += EchoStates::kCapacity) {
       const int count = static_cast<int>(std::min<int64_t>(EchoStates::kCapacity, block.num_echoes - begin));
       for (int chirp = 0; chirp < (block.sampling.is_static() ? 1 : num_chirps); chirp += step) {
-        see_some(block, chirp, begin, count, paths[static_cast<size_t>(i)] + begin);
+        see_some(block, chirp, begin, count, paths[i] + begin);
       }
-      see_some(block, num_chirps - 1, begin, count, paths[static_cast<size_t>(i)] + begin);
+      see_some(block, num_chirps - 1, begin, count, paths[i] + begin);
     }
   });
 }
@@ -126,21 +124,21 @@ std::vector<double> CellBounds::bounds(std::span<const uint32_t> group, uint32_t
     const bool is_heard = amplitude_[path] > 0.0f && highest_[path] >= -kBeatSpare && lowest_[path] <= last_cell;
     if (group[path] < num_groups && is_heard) paths_of[group[path]].push_back(path);
   }
-  std::vector<double> bounds(static_cast<size_t>(num_groups * num_ranges));
+  std::vector<double> bounds(num_groups * num_ranges);
   parallel_for(num_groups, [&](int64_t g) {
     // Amplitudes by table and bin.
     std::vector<std::vector<double>> bins(reach.num_tables(), std::vector<double>(static_cast<size_t>(num_cells)));
-    for (const size_t path : paths_of[static_cast<size_t>(g)]) {
+    for (const size_t path : paths_of[g]) {
       const double middle = 0.5 * (double{lowest_[path]} + highest_[path]);
       const double half = 0.5 * (double{highest_[path]} - lowest_[path]) + kBeatSpare;
       const int64_t bin = std::llround(middle) % num_cells;
       const size_t table = per_sample_ ? reach.num_tables() - 1 : reach.index_for(half);
-      bins[table][static_cast<size_t>(bin < 0 ? bin + num_cells : bin)] += kSpare * amplitude_[path];
+      bins[table][bin < 0 ? bin + num_cells : bin] += kSpare * amplitude_[path];
     }
-    std::vector<double> row(static_cast<size_t>(num_cells * zero_pad));
+    std::vector<double> row(num_cells * zero_pad);
     for (size_t table = 0; table < bins.size(); ++table) {
       for (int64_t bin = 0; bin < num_cells; ++bin) {
-        const double amplitude = bins[table][static_cast<size_t>(bin)];
+        const double amplitude = bins[table][bin];
         if (amplitude > 0.0) add_bin(amplitude, bin * zero_pad, reach.table_of(table), row);
       }
     }
@@ -148,7 +146,7 @@ std::vector<double> CellBounds::bounds(std::span<const uint32_t> group, uint32_t
     for (int64_t r = 0; r < num_ranges; ++r) {
       const auto at = static_cast<size_t>(r);
       const double mirrored = waveform_.real ? row[(row.size() - at) % row.size()] : 0.0;
-      bounds[static_cast<size_t>(g * num_ranges + r)] = (row[at] + mirrored) * (row[at] + mirrored);
+      bounds[g * num_ranges + r] = (row[at] + mirrored) * (row[at] + mirrored);
     }
   });
   return bounds;

@@ -15,11 +15,10 @@ void set_groups(const PathGroups& way, std::span<const int64_t> indices, std::sp
   for (Echoes& block : blocks) block.group.clear();
   if (!way.group) return;
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
-    const auto at = static_cast<size_t>(i);
-    std::vector<uint32_t>& group = blocks[at].group;
-    group.reserve(first[at + 1] - first[at]);
-    for (const int64_t path : indices.subspan(first[at], first[at + 1] - first[at])) {
-      group.push_back((*way.group)[static_cast<size_t>(path)]);
+    std::vector<uint32_t>& group = blocks[i].group;
+    group.reserve(first[i + 1] - first[i]);
+    for (const int64_t path : indices.subspan(first[i], first[i + 1] - first[i])) {
+      group.push_back((*way.group)[path]);
     }
   });
 }

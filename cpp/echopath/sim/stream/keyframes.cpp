@@ -74,7 +74,7 @@ void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stre
   std::vector<double> times;
   for (ptrdiff_t look = 0; look < num_looks; ++look) {
     SurfaceSearchSettings settings;
-    settings.time = stretches[static_cast<size_t>((2 * look + 1) * num_stretches / (2 * num_looks))].middle;
+    settings.time = stretches[(2 * look + 1) * num_stretches / (2 * num_looks)].middle;
     settings.num_rays = paths_.frame.statistics.num_rays;
     settings.seed = seed_of_search(paths_.frame.seed, static_cast<int>(look));
     const SurfaceSearch seen = trace_new_surface(paths_, radar, settings, job_, &then, &kept_);

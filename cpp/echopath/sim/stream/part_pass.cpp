@@ -24,7 +24,7 @@ void set_local_groups(std::span<const int64_t> paths, const std::vector<uint32_t
   for (Echoes& block : blocks) {
     const auto count = static_cast<size_t>(block.num_echoes);
     block.group.clear();
-    for (size_t i = 0; !as_one && i < count; ++i) block.group.push_back(local[group[static_cast<size_t>(paths[i])]]);
+    for (size_t i = 0; !as_one && i < count; ++i) block.group.push_back(local[group[paths[i]]]);
     paths = paths.subspan(count);
   }
 }
@@ -182,10 +182,9 @@ std::vector<SetPower> PartPass::powers(const Sets& sets, const MapWindows& windo
   std::vector<SetPower> powers(sets.size());
   parallel_for(some.num_sets, [&](int64_t set) {
     if (job) job->throw_if_cancelled();
-    const auto at = static_cast<size_t>(set);
-    std::vector<uint8_t> asked = ranges.empty() ? std::vector<uint8_t>() : ranges[at];
-    if (band.power(sums[at], stream_.num_channels(), least, asked, powers[at])) return;
-    powers[at] = power_of(sums[at], map, asked);
+    std::vector<uint8_t> asked = ranges.empty() ? std::vector<uint8_t>() : ranges[set];
+    if (band.power(sums[set], stream_.num_channels(), least, asked, powers[set])) return;
+    powers[set] = power_of(sums[set], map, asked);
   });
   keep(sets, some, std::move(signals));
   return powers;
@@ -196,7 +195,7 @@ SetPower PartPass::power_of(const SummedGroups& of, const MapTransform& map, std
   const int num_channels = stream_.num_channels(), num_chirps = radar_.waveform.num_chirps;
   const auto num_samples = static_cast<size_t>(radar_.waveform.num_samples);
   std::vector<std::complex<double>> profiles, values, samples;
-  std::vector<double> still(static_cast<size_t>(map.num_ranges()));  // power of channels where nothing moves
+  std::vector<double> still(map.num_ranges());  // power of channels where nothing moves
   SetPower power{std::vector<double>(num_cells), 0.0};
   for (int channel = 0; channel < num_channels; ++channel) {
     const auto any = [&](auto is_so) { return std::any_of(of.groups.begin(), of.groups.end(), is_so); };

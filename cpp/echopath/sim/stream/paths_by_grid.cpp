@@ -19,7 +19,7 @@ class SortByGrid {
       : lists_(no_paths_by_grid(grids.grids())), paths_of_task_(std::max(kPathsOfTask, kPathsPerGrid * std::ssize(lists_))),
         grid_(static_cast<size_t>(num_paths)) {
     const int64_t num_tasks = (num_paths + paths_of_task_ - 1) / paths_of_task_;
-    place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(lists_.size()));
+    place_.assign(num_tasks, std::vector<size_t>(lists_.size()));
     parallel_for(num_tasks, [&](int64_t task) {
       if (job) job->throw_if_cancelled();
       find_grids(grids, task);
@@ -39,7 +39,7 @@ class SortByGrid {
     const auto [begin, end] = range_of(task);
     const std::span<GridIndex> here(grid_.data() + begin, static_cast<size_t>(end - begin));
     grids.first(begin, here);
-    for (const GridIndex grid : here) ++place_[static_cast<size_t>(task)][grid.place()];
+    for (const GridIndex grid : here) ++place_[task][grid.place()];
   }
 
   // Turns the counts of the tasks into the places where each begins to write.
@@ -53,9 +53,9 @@ class SortByGrid {
 
   void fill(int64_t task) {
     const auto [begin, end] = range_of(task);
-    auto& places = place_[static_cast<size_t>(task)];
+    auto& places = place_[task];
     for (int64_t path = begin; path < end; ++path) {
-      const size_t grid = grid_[static_cast<size_t>(path)].place();
+      const size_t grid = grid_[path].place();
       lists_[grid][places[grid]++] = path;
     }
   }

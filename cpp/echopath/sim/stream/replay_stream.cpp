@@ -184,7 +184,7 @@ void ReplayStream::add_chirps(const PathsByGrid& by_grid, int transmitter, Windo
   if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
-  std::unique_ptr<PartlyPosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
+  std::unique_ptr<PartlyPosedGrid>& kept = kept_chirps_[transmitter];
   const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), paths, kept);
   for (const GridIndex polynomial : replayer_.grids().polynomials()) {
     run_blocks(by_grid[polynomial.place()], extent,
@@ -204,7 +204,7 @@ const PosedGrid& ReplayStream::posed(const TimeGrid& grid, std::span<const int64
 void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) {
   if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
-  std::unique_ptr<PartlyPosedGrid>& kept = kept_samples_[static_cast<size_t>(transmitter)];
+  std::unique_ptr<PartlyPosedGrid>& kept = kept_samples_[transmitter];
   const PosedGrid& samples = posed(replayer_.grids().samples(transmitter), paths, kept);
   run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()},
              [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
@@ -234,12 +234,12 @@ std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t>
   const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
   window.first_channel = extent.first_channel;
   window.num_channels = static_cast<size_t>(extent.num_channels);
-  window.blocks.resize(static_cast<size_t>(num_blocks));
+  window.blocks.resize(num_blocks);
   parallel_for(num_blocks, [&](int64_t i) {
     if (job_) job_->throw_if_cancelled();
     const int64_t first = i * block_size;
     const auto part = paths.subspan(static_cast<size_t>(first), static_cast<size_t>(std::min(block_size, count - first)));
-    window.blocks[static_cast<size_t>(i)] = run_block(part, static_cast<size_t>(i), extent, replay);
+    window.blocks[i] = run_block(part, static_cast<size_t>(i), extent, replay);
   });
   if (watcher_) watcher_->end_blocks();
   std::vector<UnfollowedPath> all_left;
@@ -267,7 +267,7 @@ ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size
   if (!joins_at_once) {
     for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
       const int channel = extent.first_channel + i;
-      if (watcher_->watches(channel)) watcher_->see(channel, index, block.channels[static_cast<size_t>(i)], block.paths);
+      if (watcher_->watches(channel)) watcher_->see(channel, index, block.channels[i], block.paths);
     }
     if (!join_rule_ || extent.has_logarithms) return block;
     joined = (*join_rule_)(block.paths);

@@ -120,7 +120,7 @@ void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, Chir
   const int longest = std::max(1, (num_samples - 1) / (kSamples - 1)), shortest = (longest + 1) / 2;
   const int step = shortest + draw(seed, index, 2, longest - shortest + 1);
   const int first = draw(seed, index, 3, num_samples - (target.num_samples - 1) * step);
-  for (int s = 0; s < kSamples; ++s) target.sample[static_cast<size_t>(s)] = first + s * step;
+  for (int s = 0; s < kSamples; ++s) target.sample[s] = first + s * step;
 }
 
 PassProbe::~PassProbe() = default;
@@ -203,7 +203,7 @@ void PassProbe::add_samples(const ChirpTarget& target, const Echoes& block, int6
   const int count = static_cast<int>(row.size());
   if (per_sample_ && !block.sampling.is_static()) {
     for (int i = 0; i < count; ++i) {
-      SampleRow& to = tally.rows[row[static_cast<size_t>(i)]];
+      SampleRow& to = tally.rows[row[i]];
       per_sample_->add_samples(block, target.chirp, begin + i, 1, target.sample, to.re, to.im);
     }
     return;
@@ -225,8 +225,7 @@ void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std:
   std::sort(echoes.begin(), echoes.end());
   echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
   for (const int64_t echo : echoes) {
-    if (!has_no_amplitude(block, echo))
-      tally.drawn.push_back(state_of(block, target.chirp, echo, paths[static_cast<size_t>(echo)]));
+    if (!has_no_amplitude(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[echo]));
   }
 }
 

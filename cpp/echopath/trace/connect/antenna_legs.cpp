@@ -34,7 +34,7 @@ void AntennaLegs::find_transmit(const SurfaceHit& surface, int max_mirrors, Mirr
 
 double density_over(const LaunchPlan& plan, uint32_t mesh_id, const Leg& leg) {
   const int stratum = plan.owners.owner(mesh_id, leg.sequence);
-  if (leg.sequence == kNoMirrors && plan.has_surface_scatterers()) return plan.default_density[static_cast<size_t>(stratum)];
+  if (leg.sequence == kNoMirrors && plan.has_surface_scatterers()) return plan.default_density[stratum];
   return plan.density(stratum) * (plan.is_field_of_view(stratum) ? leg.specular_share : 1.0);
 }
 

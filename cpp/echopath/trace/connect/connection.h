@@ -36,7 +36,7 @@ struct Connection {
   PathBlock& block;  // gets the paths
 
   // Returns the axes of one of the receive legs, in a polarised trace.
-  const FieldPair& axes_of(const Leg& leg) const { return fields.axes[static_cast<size_t>(&leg - legs.receive.data())]; }
+  const FieldPair& axes_of(const Leg& leg) const { return fields.axes[&leg - legs.receive.data()]; }
 };
 
 }  // namespace echopath

@@ -86,7 +86,7 @@ ECHOPATH_INLINE void depolarize_lanes(const FirstHits* first, const LaneModes* m
 }
 
 // Returns whether the hit of a lane sends an echo that the receiver sees.
-bool is_open(const FirstHits& first, int lane) { return first.receiver[static_cast<size_t>(lane)] == ShadowState::kOpen; }
+bool is_open(const FirstHits& first, int lane) { return first.receiver[lane] == ShadowState::kOpen; }
 
 bool any_open(const FirstHits& first) {
   return std::find(first.receiver.begin(), first.receiver.end(), ShadowState::kOpen) != first.receiver.end();
@@ -124,7 +124,7 @@ void JonesEchoes::find(const FirstHits& first, const Vec3& receiver) {
 
 // Finds how the surface of a lane's hit reflects and scatters field vectors.
 void JonesEchoes::find_modes(const FirstHits& first, int lane) {
-  const SurfaceModel& model = *first.models[static_cast<size_t>(lane)];
+  const SurfaceModel& model = *first.models[lane];
   const ModeCoefficients modes = model.modes(first.cos_incidence[lane]);
   modes_.te_re[lane] = modes.te.real();
   modes_.te_im[lane] = modes.te.imag();
@@ -137,14 +137,13 @@ void JonesEchoes::find_modes(const FirstHits& first, int lane) {
 }
 
 void JonesEchoes::add(const FirstHits& first, int lane, PathBlock& block) const {
-  const auto k = static_cast<size_t>(lane);
-  if (first.receiver[k] != ShadowState::kOpen) return;
+  if (first.receiver[lane] != ShadowState::kOpen) return;
   if (first.coherent[lane] > 0) {
-    block.add_prefix(1, 0, weights_.field(lane), first.places.strata[k]);
+    block.add_prefix(1, 0, weights_.field(lane), first.places.strata[lane]);
     block.set_jones(entries_of(field_matrices_, lane));
   }
   if (first.diffuse[lane] > 0) {
-    block.add_prefix(1, 1, weights_.power(lane), first.places.strata[k]);
+    block.add_prefix(1, 1, weights_.power(lane), first.places.strata[lane]);
     block.set_jones(entries_of(power_matrices_, lane));
   }
 }

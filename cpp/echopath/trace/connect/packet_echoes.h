@@ -9,7 +9,7 @@ namespace echopath {
 
 // Returns whether the hit of a lane is plain, where all legs are straight.
 inline bool is_plain(const FirstHits& first, int lane) {
-  return !first.models[static_cast<size_t>(lane)]->material().mirror && reaches_antenna_by_square(first.near_squared[lane]);
+  return !first.models[lane]->material().mirror && reaches_antenna_by_square(first.near_squared[lane]);
 }
 
 // Holds the weights of the coherent and of the diffuse echo to the receiver.
@@ -26,10 +26,9 @@ class ScalarEchoes {
  public:
   void find(const FirstHits& first, const Vec3& receiver);
   void add(const FirstHits& first, int lane, PathBlock& block) const {
-    const auto k = static_cast<size_t>(lane);
-    if (first.receiver[k] != ShadowState::kOpen) return;
-    if (first.coherent[lane] > 0) block.add_prefix(1, 0, weights_.field(lane), first.places.strata[k]);
-    if (first.diffuse[lane] > 0) block.add_prefix(1, 1, weights_.power(lane), first.places.strata[k]);
+    if (first.receiver[lane] != ShadowState::kOpen) return;
+    if (first.coherent[lane] > 0) block.add_prefix(1, 0, weights_.field(lane), first.places.strata[lane]);
+    if (first.diffuse[lane] > 0) block.add_prefix(1, 1, weights_.power(lane), first.places.strata[lane]);
   }
 
  private:

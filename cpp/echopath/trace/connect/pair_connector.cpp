@@ -47,13 +47,13 @@ void PairConnector<Weight>::write_fan(Connection& at, std::complex<double> weigh
   block.begin_fan(surface.point.hit, ray.stratum, context_.settings.max_bounces);
   for (const Leg& in : at.legs.transmit) {
     block.add_leg_in(weight * weight_.held_toward(surface, in.to_antenna) * weight_.held(in.gain));
-    for (int k = in.num_bounces; k-- > 0;) block.add_leg_hit(in.bounces[static_cast<size_t>(k)].hit);
+    for (int k = in.num_bounces; k-- > 0;) block.add_leg_hit(in.bounces[k].hit);
   }
   block.add_leg_in(weight * weight_.held(diffuse_coefficient(surface.response)) * weight_.held(ray.coefficient));
-  for (int k = 0; k < ray.depth - 1; ++k) block.add_leg_hit(ray.hits[static_cast<size_t>(k)]);
+  for (int k = 0; k < ray.depth - 1; ++k) block.add_leg_hit(ray.hits[k]);
   for (const Leg& out : at.legs.receive) {
     block.add_leg_out(weight_.held(out.gain));
-    for (int k = 0; k < out.num_bounces; ++k) block.add_leg_hit(out.bounces[static_cast<size_t>(k)].hit);
+    for (int k = 0; k < out.num_bounces; ++k) block.add_leg_hit(out.bounces[k].hit);
   }
   weight_.add_pair_matrices(at);
   block.end_fan();

@@ -12,7 +12,7 @@ RayHits hits_over(const Ray& ray, const Leg& leg) {
   RayHits hits;
   std::copy_n(ray.hits.begin(), ray.depth, hits.begin());
   for (int k = 0; k < leg.num_bounces; ++k) {
-    hits[static_cast<size_t>(ray.depth + k)] = leg.bounces[static_cast<size_t>(k)].hit;
+    hits[ray.depth + k] = leg.bounces[k].hit;
   }
   return hits;
 }
@@ -22,7 +22,7 @@ RayHits hits_back_over(const Ray& ray, const Leg& leg) {
   const DiffuseChain& chain = ray.chain;
   RayHits hits = hits_over(ray, leg);
   for (int k = 0; k < chain.back->num_bounces; ++k) {
-    hits[static_cast<size_t>(chain.first - 1 - k)] = chain.back->bounces[static_cast<size_t>(k)].hit;
+    hits[chain.first - 1 - k] = chain.back->bounces[k].hit;
   }
   return hits;
 }

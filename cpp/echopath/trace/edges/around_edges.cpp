@@ -110,8 +110,7 @@ std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std
   const AroundEdges around(query);
   std::vector<LegAroundEdge> legs(points.size());
   if (job) job->start(std::ssize(points));
-  parallel_for(std::ssize(points),
-               [&](int64_t i) { legs[static_cast<size_t>(i)] = around.best_to(points[static_cast<size_t>(i)]); }, job);
+  parallel_for(std::ssize(points), [&](int64_t i) { legs[i] = around.best_to(points[i]); }, job);
   return legs;
 }
 

@@ -195,10 +195,10 @@ class EdgeTracer {
     if (in.num_bounces + std::ssize(on_edges) + out.num_bounces > query_.settings.max_bounces) return;
     std::array<Hit, 2 * kMaxLegMirrors + kMostEdges> hits;
     int count = 0;
-    for (int k = in.num_bounces; k-- > 0;) hits[static_cast<size_t>(count++)] = in.bounces[static_cast<size_t>(k)].hit;
+    for (int k = in.num_bounces; k-- > 0;) hits[count++] = in.bounces[k].hit;
     const int at = count;
-    for (const Hit& hit : on_edges) hits[static_cast<size_t>(count++)] = hit;
-    for (int k = 0; k < out.num_bounces; ++k) hits[static_cast<size_t>(count++)] = out.bounces[static_cast<size_t>(k)].hit;
+    for (const Hit& hit : on_edges) hits[count++] = hit;
+    for (int k = 0; k < out.num_bounces; ++k) hits[count++] = out.bounces[k].hit;
     const Material& material = *query_.scene.node_of(on_edges.back().mesh_id).material;
     const double kept = kept_share(material, query_.settings.frequency, wedge, in.to_antenna);
     const std::complex<double> weight = kept * coefficients_.held(in.gain * out.gain);
@@ -223,7 +223,7 @@ std::vector<PathBlock> edge_paths(const EdgeQuery& query, Job* job) {
   std::vector<PathBlock> blocks((num_edges + kEdgesPerBlock - 1) / kEdgesPerBlock);
   Job own(job);
   parallel_for(std::ssize(blocks), [&](int64_t i) {
-    PathBlock& block = blocks[static_cast<size_t>(i)];
+    PathBlock& block = blocks[i];
     typename EdgeTracer<Coefficients>::Scratch scratch;
     const size_t begin = static_cast<size_t>(i) * kEdgesPerBlock, end = std::min(num_edges, begin + kEdgesPerBlock);
     for (size_t edge = begin; edge < end; ++edge) tracer.add(edge, scratch, block);

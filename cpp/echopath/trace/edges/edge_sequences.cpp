@@ -52,7 +52,7 @@ void EdgeSequences::find_planes() {
       if (is_taken[k] || !is_one) continue;
       is_taken[k] = true;
       plane.push_back(faces[k]);
-      plane_[faces[k].edge][static_cast<size_t>(faces[k].face)] = planes_.size() - 1;
+      plane_[faces[k].edge][faces[k].face] = planes_.size() - 1;
     }
   }
 }
@@ -61,7 +61,7 @@ void EdgeSequences::find_planes() {
 bool EdgeSequences::find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const {
   double nearest = longest_;
   bool is_found = false;
-  for (const OnPlane& one : planes_[plane_[edge][static_cast<size_t>(face)]]) {
+  for (const OnPlane& one : planes_[plane_[edge][face]]) {
     const double slope = direction.dot(one.inward), height = one.inward.dot(position - one.from);
     if (one.edge == edge || slope > -kLeastSlope || height <= 0 || height >= -slope * nearest) continue;
     const Vec3 at = position - height / slope * direction - one.from;

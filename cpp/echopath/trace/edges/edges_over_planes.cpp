@@ -45,7 +45,7 @@ std::pair<double, double> stretch_within(const Vec3& from, const Vec3& to, const
 class EdgesOnPlanes {
  public:
   EdgesOnPlanes(const LitPlanes& lit, const std::vector<LitPlane>& of_antenna) : lit_(lit), by_plane_(lit.planes().size()) {
-    for (const LitPlane& one : of_antenna) by_plane_[static_cast<size_t>(one.plane)].push_back(&one);
+    for (const LitPlane& one : of_antenna) by_plane_[one.plane].push_back(&one);
   }
 
   std::vector<const LitPlane*> of(const PosedEdge& edge) const {
@@ -56,7 +56,7 @@ class EdgesOnPlanes {
       const int plane = lit_.plane_through(std::array<Vec3, 3>{edge.from, edge.to, inside}, face.normal);
       if (plane < 0 || plane == before) continue;
       before = plane;
-      for (const LitPlane* one : by_plane_[static_cast<size_t>(plane)]) {
+      for (const LitPlane* one : by_plane_[plane]) {
         const auto [begin, end] = stretch_within(edge.from, edge.to, one->box);
         if (begin <= end) found.push_back(one);
       }
@@ -201,7 +201,7 @@ class LitEdgeTracer {
 
   // Returns the shares of both orders in which rays go over these planes and the face of the edge, to the other antenna.
   OrderShares orders_of(const PlaneLeg& leg, const LitPlane& over, const Vec3& other) {
-    const Plane& plane = lit_.planes()[static_cast<size_t>(over.plane)];
+    const Plane& plane = lit_.planes()[over.plane];
     const Vec3 normal = plane.height(point_ + leg.to_antenna) >= plane.height(point_) ? plane.normal : Vec3(-plane.normal);
     const Vec3 middle = over.box.center() - plane.height(over.box.center()) * plane.normal;
     RayHit face;
@@ -220,7 +220,7 @@ class LitEdgeTracer {
   // Returns whether the lit face goes on from the edge to the plane that is next to it, as in a corner.
   bool meets_next_plane(const LitPlane& over) {
     const int next = over.mirrors.back();
-    const Plane& mirror = lit_.planes()[static_cast<size_t>(next)];
+    const Plane& mirror = lit_.planes()[next];
     const double gap = query_.geometry.plane_tolerance(kSpeedOfLight / query_.settings.frequency);
     for (const WedgeFace& face : edge_.wedge.faces) {
       const Vec3 from = point_ + gap * (face.inward + face.normal);
@@ -284,9 +284,8 @@ std::vector<PathBlock> paths_over_planes(const EdgeQuery& query, const LitPlanes
   const std::vector<LitEdge> edges = lit_edges(query, lit);
   std::vector<PathBlock> blocks(edges.size());
   Job own(job);
-  parallel_for(std::ssize(blocks), [&](int64_t i) {
-    LitEdgeTracer<Coefficients>(query, lit, edges[static_cast<size_t>(i)], blocks[static_cast<size_t>(i)]).trace();
-  }, &own);
+  parallel_for(std::ssize(blocks), [&](int64_t i) { LitEdgeTracer<Coefficients>(query, lit, edges[i], blocks[i]).trace(); },
+               &own);
   return blocks;
 }
 

@@ -64,7 +64,7 @@ int LitPlanes::plane_through(std::span<const Vec3> points, const Vec3& normal) c
   int found = -1;
   auto one = std::lower_bound(by_slope_.begin(), by_slope_.end(), std::pair(key - kSlope, -1));
   for (; one != by_slope_.end() && one->first <= key + kSlope; ++one) {
-    const Plane& plane = planes_[static_cast<size_t>(one->second)];
+    const Plane& plane = planes_[one->second];
     const auto lies_in = [&](const Vec3& point) { return std::abs(plane.height(point)) <= tolerance_; };
     const bool is_parallel = plane.normal.cross(normal).norm() < kSlope;
     if (is_parallel && std::all_of(points.begin(), points.end(), lies_in) && (found < 0 || one->second < found))

@@ -40,7 +40,7 @@ class PlaneLegFinder {
                                          int64_t& num_queries) const;
 
  private:
-  const Plane& plane(int index) const { return lit_.planes()[static_cast<size_t>(index)]; }
+  const Plane& plane(int index) const { return lit_.planes()[index]; }
   bool follow(const Vec3& point, const Vec3& lift, const Vec3& antenna, const std::vector<Vec3>& images,
               const LitPlane& over, PlaneLeg& leg, int64_t& num_queries) const;
   bool bounce(const Vec3& from, const Vec3& position, const Vec3& image, int index, RayHit& met, int64_t& num_queries) const;

@@ -91,27 +91,25 @@ void take(const RTCHit16& found, std::array<Hit, kPacketSize>& out) {
 }  // namespace
 
 RayHit EmbreeScene::PacketHits::operator[](int lane) const {
-  const auto k = static_cast<size_t>(lane);
   RayHit hit;
-  hit.hit = met[k];
+  hit.hit = met[lane];
   hit.position = position[lane];
   hit.normal = normal[lane];
   hit.distance = distance[lane];
   hit.stretch = stretch[lane];
-  hit.is_smooth = is_smooth[k];
-  if (hit.is_smooth) hit.curvature = curvature[k];
+  hit.is_smooth = is_smooth[lane];
+  if (hit.is_smooth) hit.curvature = curvature[lane];
   return hit;
 }
 
 void EmbreeScene::PacketHits::set(int lane, const RayHit& hit) {
-  const auto k = static_cast<size_t>(lane);
-  met[k] = hit.hit;
+  met[lane] = hit.hit;
   position.set(lane, unpacked(hit.position));
   normal.set(lane, unpacked(hit.normal));
   distance[lane] = hit.distance;
   stretch[lane] = hit.stretch;
-  is_smooth[k] = hit.is_smooth;
-  if (hit.is_smooth) curvature[k] = hit.curvature;
+  is_smooth[lane] = hit.is_smooth;
+  if (hit.is_smooth) curvature[lane] = hit.curvature;
 }
 
 void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out, Sees sees,
@@ -139,14 +137,13 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   fetch(out, facets);
   run_simd<&confirm_lanes>(&facets, unpacked(from), &directions, ConfirmedLanes{&out, &is_close});
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto k = static_cast<size_t>(lane);
-    out.verdicts[k] = is_met(out.met[k]) ? Verdict::kHit : Verdict::kMiss;
-    out.is_smooth[k] = false;
-    if (out.verdicts[k] == Verdict::kMiss || (is_close[lane] > 0 && !surfaces_[out.met[k].mesh_id].normals)) continue;
+    out.verdicts[lane] = is_met(out.met[lane]) ? Verdict::kHit : Verdict::kMiss;
+    out.is_smooth[lane] = false;
+    if (out.verdicts[lane] == Verdict::kMiss || (is_close[lane] > 0 && !surfaces_[out.met[lane].mesh_id].normals)) continue;
     RayHit hit;
-    hit.hit = out.met[k];
-    out.verdicts[k] = confirm(from, directions[lane], hit);
-    if (out.verdicts[k] == Verdict::kHit) out.set(lane, hit);
+    hit.hit = out.met[lane];
+    out.verdicts[lane] = confirm(from, directions[lane], hit);
+    if (out.verdicts[lane] == Verdict::kHit) out.set(lane, hit);
   }
 }
 
@@ -165,9 +162,8 @@ void EmbreeScene::intersect_meshes(const Vec3& from, const LaneVectors& directio
   forget_hits(queries.hit);
   queries_->intersect(valid, queries);
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto k = static_cast<size_t>(lane);
     const bool is_met = valid.lanes[lane] != 0 && queries.hit.geomID[lane] != kNothing;
-    out.mesh_id[k] = is_met ? named(queries.hit.geomID[lane], queries.hit.primID[lane], 0.0f, 0.0f).mesh_id : kNothing;
+    out.mesh_id[lane] = is_met ? named(queries.hit.geomID[lane], queries.hit.primID[lane], 0.0f, 0.0f).mesh_id : kNothing;
     out.distance[lane] = double{queries.ray.tfar[lane]} + moved[lane];
   }
 }
@@ -193,7 +189,7 @@ void EmbreeScene::fetch(const PacketHits& hits, PacketFacets& facets) const {
     for (const uint32_t vertex : surface.triangles[hit->triangle_id]) __builtin_prefetch(surface.vertices + vertex);
   }
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const Hit& hit = *met[static_cast<size_t>(lane)];
+    const Hit& hit = *met[lane];
     const Surface& surface = surfaces_[hit.mesh_id];
     const Triangle& triangle = surface.triangles[hit.triangle_id];
     facets.u[lane] = hit.u;
@@ -219,7 +215,7 @@ void EmbreeScene::occluded(const LaneVectors& from, const Vec3& to, const LaneFl
   if (num_asked == 0) return;
   if (num_asked == 1) {  // a packet of one would be slower
     const auto lane = static_cast<int>(std::find(asked.begin(), asked.end(), true) - asked.begin());
-    blocked[static_cast<size_t>(lane)] = occluded(from[lane], to);
+    blocked[lane] = occluded(from[lane], to);
     return;
   }
   RayLanes rays;
@@ -227,9 +223,9 @@ void EmbreeScene::occluded(const LaneVectors& from, const Vec3& to, const LaneFl
   LaneVectors ends;
   for (int lane = 0; lane < kPacketSize; ++lane) ends.set(lane, unpacked(to));
   run_simd<&connect_lanes>(&from, &ends, 2.0 * lift_, reach_, &rays);
-  for (int lane = 0; lane < kPacketSize; ++lane) rays.far[lane] = asked[static_cast<size_t>(lane)] ? rays.far[lane] : -1.0;
+  for (int lane = 0; lane < kPacketSize; ++lane) rays.far[lane] = asked[lane] ? rays.far[lane] : -1.0;
   ask_segments(rays, met);
-  for (int lane = 0; lane < kPacketSize; ++lane) blocked[static_cast<size_t>(lane)] = met.lanes[lane] != 0;
+  for (int lane = 0; lane < kPacketSize; ++lane) blocked[lane] = met.lanes[lane] != 0;
 }
 
 void EmbreeScene::occluded(const Segment* segments, size_t count, uint8_t* blocked) const {

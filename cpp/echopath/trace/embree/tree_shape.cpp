@@ -22,7 +22,7 @@ TreeShape turned(const Mat3& rotation) {
   TreeShape shape;
   shape.is_present = false;
   for (int i = 0; i < 9; ++i) {
-    shape.turn[static_cast<size_t>(i)] = static_cast<int8_t>(std::lround(rotation.data()[i] / TreeShape::kTurnStep));
+    shape.turn[i] = static_cast<int8_t>(std::lround(rotation.data()[i] / TreeShape::kTurnStep));
   }
   return shape;
 }
@@ -31,7 +31,7 @@ TreeShape turned(const Mat3& rotation) {
 
 Mat3 TreeShape::rotation() const {
   Mat3 rotation;
-  for (int i = 0; i < 9; ++i) rotation.data()[i] = kTurnStep * turn[static_cast<size_t>(i)];
+  for (int i = 0; i < 9; ++i) rotation.data()[i] = kTurnStep * turn[i];
   return rotation;
 }
 

@@ -28,8 +28,7 @@ class FrustumLocator {
     std::vector<size_t> begin;  // [frusta + 1] into halves
 
     std::span<const HalfSpace> of(int frustum) const {
-      const auto k = static_cast<size_t>(frustum);
-      return {halves.data() + begin[k], begin[k + 1] - begin[k]};
+      return {halves.data() + begin[frustum], begin[frustum + 1] - begin[frustum]};
     }
   };
   struct Growth;

@@ -113,8 +113,8 @@ bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, con
   if (verdict != EmbreeScene::Verdict::kHit || met.distance > length - kBefore) return false;
   const uint32_t mesh = met.hit.mesh_id;
   const int mirror = mirror_of_(mesh, met.hit.triangle_id);
-  if (mirror >= 0 && mirrors_[static_cast<size_t>(mirror)].is_solid) {
-    occluder = mirrors_[static_cast<size_t>(mirror)].outline;
+  if (mirror >= 0 && mirrors_[mirror].is_solid) {
+    occluder = mirrors_[mirror].outline;
   } else {
     const auto corners = geometry_.corners(mesh, met.hit.triangle_id);
     occluder.assign(corners.begin(), corners.end());

@@ -63,7 +63,7 @@ bool FrustumFinder::cut_window(const MirrorFrustum* frustum, const Vec3& source,
 // Reflects the frustum in one mirror; returns false where it shows nothing.
 bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, const FrustumSearch& search,
                             MirrorFrustum& out) const {
-  const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
+  const Mirror& mirror = mirrors_[index];
   if (std::abs(mirror.height(source)) < kNoImageWithin) return false;
   thread_local std::vector<Vec3> window;
   if (!cut_window(frustum, source, mirror, search.slack, window)) return false;
@@ -109,7 +109,7 @@ void FrustumFinder::follow(size_t begin, size_t end, const FrustumSearch& search
     Job own(job);
     parallel_for(std::ssize(next), [&](int64_t i) {
       const MirrorFrustum& frustum = out.frusta[first + static_cast<size_t>(i)];
-      extend(&frustum, frustum.image(), wanted, next[static_cast<size_t>(i)]);
+      extend(&frustum, frustum.image(), wanted, next[i]);
     }, &own);
     for (std::vector<MirrorFrustum>& of_one : next) {
       std::move(of_one.begin(), of_one.end(), std::back_inserter(out.frusta));

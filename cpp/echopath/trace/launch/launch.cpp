@@ -221,25 +221,20 @@ std::vector<std::pair<int64_t, int64_t>> LaunchPlan::pieces(int64_t size) const 
   return bounds;
 }
 
-int LaunchPlan::batch_of(int stratum, int64_t ray) const {
-  const auto k = static_cast<size_t>(stratum);
-  return points[k]->batch_of(ray - first_ray[k]);
-}
+int LaunchPlan::batch_of(int stratum, int64_t ray) const { return points[stratum]->batch_of(ray - first_ray[stratum]); }
 
 Eigen::Vector2d LaunchPlan::point_of(int stratum, int64_t ray) const {
-  const auto k = static_cast<size_t>(stratum);
-  return points[k]->point(ray - first_ray[k]);
+  return points[stratum]->point(ray - first_ray[stratum]);
 }
 
 void LaunchPlan::place(int64_t begin, int count, Places& out) const {
   int stratum = stratum_of(begin);
   for (int lane = 0; lane < count; ++stratum) {
-    const auto k = static_cast<size_t>(stratum);
-    const int end = static_cast<int>(std::min<int64_t>(count, first_ray[k + 1] - begin));
-    points[k]->points(begin + lane - first_ray[k], end - lane, out.x.lanes + lane, out.y.lanes + lane);
+    const int end = static_cast<int>(std::min<int64_t>(count, first_ray[stratum + 1] - begin));
+    points[stratum]->points(begin + lane - first_ray[stratum], end - lane, out.x.lanes + lane, out.y.lanes + lane);
     for (; lane < end; ++lane) {
-      out.strata[static_cast<size_t>(lane)] = stratum;
-      out.batches[static_cast<size_t>(lane)] = batches == 1 ? 0 : batch_of(stratum, begin + lane);
+      out.strata[lane] = stratum;
+      out.batches[lane] = batches == 1 ? 0 : batch_of(stratum, begin + lane);
     }
   }
 }

@@ -66,7 +66,7 @@ struct LaunchPlan {
   std::vector<std::pair<int64_t, int64_t>> pieces(int64_t size) const;
   int batch_of(int stratum, int64_t ray) const;
   // Returns the rays per sr inside the stratum, of all batches together; the next function those of one batch.
-  double density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density; }
+  double density(int stratum) const { return strata[stratum].ray_density; }
   double lattice_density(int stratum) const { return density(stratum) / batches; }
   Eigen::Vector2d point_of(int stratum, int64_t ray) const;
   // Finds the places of `count` rays in a row.

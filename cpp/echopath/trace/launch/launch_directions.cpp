@@ -31,13 +31,13 @@ StratumFrame::StratumFrame(const Stratum& stratum)
       is_strip_(stratum.is_strip()) {}
 
 Vec3 LaunchDirections::direction(int stratum, const Eigen::Vector2d& point) const {
-  const StratumFrame& frame = frames_[static_cast<size_t>(stratum)];
+  const StratumFrame& frame = frames_[stratum];
   return packed(frame.is_strip() ? frame.in_strip(point.x(), point.y()) : frame.in_cone(point.x(), point.y()));
 }
 
 void LaunchDirections::launch(int stratum, const LaneValues& x, const LaneValues& y, LaneRange lanes,
                               LaneVectors& directions) const {
-  const StratumFrame& frame = frames_[static_cast<size_t>(stratum)];
+  const StratumFrame& frame = frames_[stratum];
   if (frame.is_strip()) run_simd<&direct_into_strip>(&frame, &x, &y, lanes, &directions);
   else run_simd<&direct_into_cone>(&frame, &x, &y, lanes, &directions);
 }

@@ -29,7 +29,7 @@ LaunchGuide guide_like(const std::vector<Stratum>& strata) {
     if (!stratum.is_focus()) {
       guide.shares[stratum.name] = rays;
     } else {
-      guide.foci.push_back({strata[static_cast<size_t>(stratum.focus_of)].name, stratum.axis, stratum.versine, rays});
+      guide.foci.push_back({strata[stratum.focus_of].name, stratum.axis, stratum.versine, rays});
     }
   }
   return guide;
@@ -56,7 +56,7 @@ LaunchFoci::LaunchFoci(const std::vector<Stratum>& strata) {
 double LaunchFoci::rays_of_owner(int stratum, const Vec3& direction) const {
   if (!has_any(stratum)) return 1.0;
   double rest = 1.0;
-  for (const Focus& focus : foci_[static_cast<size_t>(owner(stratum))]) {
+  for (const Focus& focus : foci_[owner(stratum)]) {
     const double weight = focus_weight(focus.cone, direction);
     if (focus.stratum == stratum) return rest * weight * focus.spacing;
     rest *= 1.0 - weight;

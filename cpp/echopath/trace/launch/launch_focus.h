@@ -41,11 +41,11 @@ class LaunchFoci {
   LaunchFoci() = default;
   explicit LaunchFoci(const std::vector<Stratum>& strata);
   // Returns the stratum whose echoes the rays of a stratum count; for a focus this is its owner.
-  int owner(int stratum) const { return owner_.empty() ? stratum : owner_[static_cast<size_t>(stratum)]; }
+  int owner(int stratum) const { return owner_.empty() ? stratum : owner_[stratum]; }
   // Returns how many rays of its owner one ray of this stratum stands for in that direction; it is 1 where there are no
   // foci.
   double rays_of_owner(int stratum, const Vec3& direction) const;
-  bool has_any(int stratum) const { return !owner_.empty() && !foci_[static_cast<size_t>(owner(stratum))].empty(); }
+  bool has_any(int stratum) const { return !owner_.empty() && !foci_[owner(stratum)].empty(); }
 
  private:
   struct Focus {

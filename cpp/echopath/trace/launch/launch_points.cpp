@@ -36,7 +36,7 @@ class EqualShares : public LaunchPoints {
   }
   Eigen::Vector2d point(int64_t index) const override {
     const int batch = batch_of(index);
-    return of_batch(index - first(batch), first(batch + 1) - first(batch), shifts_[static_cast<size_t>(batch)]);
+    return of_batch(index - first(batch), first(batch + 1) - first(batch), shifts_[batch]);
   }
 
  protected:

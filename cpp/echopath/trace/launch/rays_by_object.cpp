@@ -37,7 +37,7 @@ std::vector<int64_t> rays_by_object(const Scene& scene, const std::vector<RayTar
   std::vector<int64_t> rays;
   double dropped = 0.0;
   for (const RayTarget& target : targets) {
-    const std::string& name = scene.nodes()[static_cast<size_t>(target.stratum.object)].name;
+    const std::string& name = scene.nodes()[target.stratum.object].name;
     const double of_object = rounded(aimed / weights, name);
     const double of_target = of_object * target.weight;
     const int64_t own = std::llround(of_target);

@@ -44,8 +44,8 @@ Filled fill(Tracer& tracer, const RecordMatch& match, const LiveRecord* before, 
     const auto [begin, end] = bounds[i];
     const int64_t known = match.kept(i, begin, end);
     filled.is_kept[i] = known >= 0;
-    if (known >= 0) filled.is_kept_before[static_cast<size_t>(known)] = 1;
-    after.blocks[i] = known >= 0 ? match.renumbered(before->blocks[static_cast<size_t>(known)]) : shot(tracer, begin, end);
+    if (known >= 0) filled.is_kept_before[known] = 1;
+    after.blocks[i] = known >= 0 ? match.renumbered(before->blocks[known]) : shot(tracer, begin, end);
   }, job);
   for (size_t i = 0; i < bounds.size(); ++i) filled.num_rays_shot += filled.is_kept[i] ? 0 : after.blocks[i]->num_rays;
   return filled;

@@ -30,7 +30,7 @@ CommonNames names_before(const CommonParts& common, size_t num_strata) {
   CommonNames names{common.meshes.of_before, common.meshes.id_after, std::vector<int>(num_strata, -1)};
   for (size_t k = 0; k < common.stratum_before.size(); ++k) {
     const int before = common.stratum_before[k];
-    if (before >= 0) names.stratum[static_cast<size_t>(before)] = static_cast<int>(k);
+    if (before >= 0) names.stratum[before] = static_cast<int>(k);
   }
   return names;
 }
@@ -49,7 +49,7 @@ class PathSums {
   PathSums(const Paths& paths, CommonNames names) : paths_(paths), names_(std::move(names)) {}
 
   std::vector<uint64_t> all(Job* job) const {
-    std::vector<uint64_t> sums(static_cast<size_t>(paths_.num_paths()));
+    std::vector<uint64_t> sums(paths_.num_paths());
     Job own(job);
     parallel_for((paths_.num_paths() + kSumsTogether - 1) / kSumsTogether, [&](int64_t task) {
       const size_t end = std::min(sums.size(), static_cast<size_t>((task + 1) * kSumsTogether));

@@ -77,10 +77,10 @@ void RecordMatch::match_strata() {
   for (size_t k = 0; k < is.size(); ++k) {
     const auto found = by_name.find(is[k].name);
     const int known = found == by_name.end() ? -1 : found->second;
-    const bool is_alike = known >= 0 && is_launched_alike(was[static_cast<size_t>(known)], is[k]);
+    const bool is_alike = known >= 0 && is_launched_alike(was[known], is[k]);
     of_same_name_.push_back(known);
     common_.stratum_before.push_back(is_alike ? known : -1);
-    if (is_alike) stratum_after_[static_cast<size_t>(known)] = static_cast<int>(k);
+    if (is_alike) stratum_after_[known] = static_cast<int>(k);
   }
   has_same_numbers_ = common_.meshes.has_same_ids && was.size() == is.size();
   for (size_t k = 0; k < is.size(); ++k) {
@@ -95,9 +95,9 @@ void RecordMatch::match_strata() {
 void RecordMatch::match_owners() {
   const RayOwners &was = before_->shared.owners, &is = after_.shared.owners;
   const auto is_same = [&](const auto& a, const auto& b) {
-    return a.first == b.first && of_same_name_[static_cast<size_t>(b.second)] == a.second;
+    return a.first == b.first && of_same_name_[b.second] == a.second;
   };
-  const auto is_alike = [&](const auto& one) { return common_.stratum_before[static_cast<size_t>(one.second)] >= 0; };
+  const auto is_alike = [&](const auto& one) { return common_.stratum_before[one.second] >= 0; };
   has_other_density_.assign(common_.meshes.of_before.size(), false);
   for (uint32_t id = 0; id < common_.meshes.of_after.size(); ++id) {
     if (common_.meshes.of_after[id]) continue;
@@ -136,7 +136,7 @@ int64_t RecordMatch::known_block(size_t index) const {
   }
   const auto stratum = static_cast<size_t>(std::upper_bound(is.begin(), is.end(), index) - is.begin()) - 1;
   const int before = common_.stratum_before[stratum];
-  return before < 0 ? -1 : static_cast<int64_t>(was[static_cast<size_t>(before)] + index - is[stratum]);
+  return before < 0 ? -1 : static_cast<int64_t>(was[before] + index - is[stratum]);
 }
 
 // Points hang on the ID of their mesh.
@@ -146,7 +146,7 @@ bool RecordMatch::aims_alike(int64_t begin, int64_t end) const {
     const auto k = static_cast<size_t>(ray - is.first_point);
     if (k >= was.surface_scatterers.size() || !(was.surface_scatterers[k] == is.surface_scatterers[k])) return false;
     const SurfacePoint& point = is.surface_scatterers[k];
-    if (common_.stratum_before[static_cast<size_t>(point.stratum)] != point.stratum) return false;
+    if (common_.stratum_before[point.stratum] != point.stratum) return false;
     if (common_.meshes.id_before[point.on.mesh_id] != point.on.mesh_id) return false;
   }
   return true;
@@ -155,7 +155,7 @@ bool RecordMatch::aims_alike(int64_t begin, int64_t end) const {
 int64_t RecordMatch::kept(size_t index, int64_t begin, int64_t end) const {
   const int64_t known = shares_rays_ ? known_block(index) : -1;
   if (known < 0) return -1;
-  const LiveBlock& block = *before_->blocks[static_cast<size_t>(known)];
+  const LiveBlock& block = *before_->blocks[known];
   if (block.num_rays != end - begin) return -1;
   if (index >= after_.first_block.back() && !aims_alike(begin, end)) return -1;
   return block.space->meets(boxes_) || has_hits_of_other_density(block.paths) ? -1 : known;

@@ -29,15 +29,14 @@ std::vector<bool> moved_nodes(const Scene& before, const Scene& after, const std
   for (size_t i = 0; i < has_moved.size(); ++i) {
     const Node& node = after.nodes()[i];
     const int known = index_before[i];
-    has_moved[i] = (node.parent >= 0 && has_moved[static_cast<size_t>(node.parent)]) || known < 0 ||
-                   !is_same_place(before.nodes()[static_cast<size_t>(known)], node);
+    has_moved[i] = (node.parent >= 0 && has_moved[node.parent]) || known < 0 || !is_same_place(before.nodes()[known], node);
   }
   return has_moved;
 }
 
 std::vector<uint32_t> mesh_of_node(const Scene& scene) {
   std::vector<uint32_t> ids(scene.nodes().size(), kNoMesh);
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) ids[static_cast<size_t>(scene.meshes()[id].node)] = id;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) ids[scene.meshes()[id].node] = id;
   return ids;
 }
 
@@ -59,7 +58,7 @@ SceneChanges changes_between(const Scene& before, const Scene& after, bool time_
   for (uint32_t id = 0; id < after.meshes().size(); ++id) {
     const auto node = static_cast<size_t>(after.meshes()[id].node);
     const int known = index_before[node];
-    const uint32_t is = known < 0 ? kNoMesh : ids[static_cast<size_t>(known)];
+    const uint32_t is = known < 0 ? kNoMesh : ids[known];
     changes.id_before.push_back(is);
     changes.of_after.push_back(true);
     if (is == kNoMesh) continue;

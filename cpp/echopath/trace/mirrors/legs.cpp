@@ -28,7 +28,7 @@ void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vec
   if (query.skip != kNoMirrors && query.direct != ShadowState::kBlocked) add_direct(query, antenna, legs, search);
   const size_t num_known = search.segments.empty() ? legs.size() : 0;
   for (const int index : antenna.locator.near(query.point)) {
-    const MirrorFrustum& frustum = antenna.frusta[static_cast<size_t>(index)];
+    const MirrorFrustum& frustum = antenna.frusta[index];
     if (static_cast<int>(frustum.mirrors.size()) > query.max_mirrors) break;
     if (frustum.sequence != query.skip) add_over_mirrors(query, antenna, frustum, legs, search);
   }
@@ -71,7 +71,7 @@ bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& a
   Vec3 position = point, from = geometry_.lifted(point, normal), met;
   for (size_t k = frustum.mirrors.size(); k-- > 0;) {
     if (!bounce(frustum.mirrors[k], position, frustum.images[k], leg, met)) return false;
-    const Vec3 to = geometry_.lifted(met, leg.bounces[static_cast<size_t>(leg.num_bounces - 1)].normal);
+    const Vec3 to = geometry_.lifted(met, leg.bounces[leg.num_bounces - 1].normal);
     segments.push_back({from, to});
     position = met;
     from = to;
@@ -83,13 +83,13 @@ bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& a
 
 // Adds the bounce of a wave from a point toward an image behind the mirror; `met` is set to the point where they meet.
 bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const {
-  const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
+  const Mirror& mirror = mirrors_[index];
   if (!mirror.lies_between(from, image)) return false;
   const std::optional<Hit> hit = mirror.mesh.locate(mirror.met_on_line(from, image));
   if (!hit) return false;
   // The point is moved to the facet itself, which may lie a little beside the plane.
   met = hit_point(geometry_.corners(hit->mesh_id, hit->triangle_id), *hit);
-  LegBounce& bounce = leg.bounces[static_cast<size_t>(leg.num_bounces++)];
+  LegBounce& bounce = leg.bounces[leg.num_bounces++];
   bounce.mirror = index;
   bounce.hit = *hit;
   bounce.direction = (image - from).normalized();
@@ -120,8 +120,8 @@ void LegFinder::keep_open(size_t num_known, std::vector<Leg>& legs, LegSearch& s
 
 void LegFinder::set_gain(Leg& leg) const {
   for (int k = 0; k < leg.num_bounces; ++k) {
-    LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
-    const SurfaceModel& model = models_[static_cast<size_t>(bounce.mirror)];
+    LegBounce& bounce = leg.bounces[k];
+    const SurfaceModel& model = models_[bounce.mirror];
     const SurfaceResponse response = respond_as_mirror(model, polarization_, bounce.direction, bounce.normal);
     leg.gain *= response.gamma * response.coherent;
     bounce.specular_share = response.coherent * response.coherent;

@@ -68,7 +68,7 @@ bool PlaneDoubles::is_double(const Paths& paths, size_t path, Sequence& of_path)
 void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
   if (!any()) return;
   constexpr int64_t kTogether = 1 << 14;
-  std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()));
+  std::vector<uint8_t> keep(paths.num_paths());
   Job own(job);
   parallel_for((paths.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
     const size_t end = std::min(keep.size(), static_cast<size_t>((task + 1) * kTogether));

@@ -185,7 +185,7 @@ bool PlaneImages::is_same_plane(const Mirror& plane, const Mirror& other) const 
 std::vector<int> PlaneImages::joined(const std::vector<int>& sequence) {
   std::vector<int> out;
   for (const int index : sequence) {
-    const Mirror& plane = planes_[static_cast<size_t>(index)];
+    const Mirror& plane = planes_[index];
     const auto same =
         std::find_if(joined_.begin(), joined_.end(), [&](const Mirror& old) { return is_same_plane(old, plane); });
     out.push_back(static_cast<int>(same - joined_.begin()));

@@ -53,16 +53,13 @@ struct FirstHits {
     facet[lane] = response.facet;
     specular_probability[lane] = lobes.specular;
     diffuse_probability[lane] = lobes.diffuse;
-    sign[lane] = modes[static_cast<size_t>(lane)] == PolarizationMode::kTm ? -1.0 : 1.0;
+    sign[lane] = modes[lane] == PolarizationMode::kTm ? -1.0 : 1.0;
   }
   SurfaceResponse response(int lane) const {
     return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane], facet[lane]};
   }
   // Returns whether the ray of a lane is both scattered, which is what `sample` tells, and mirrored.
-  bool is_split(int lane) const {
-    const auto k = static_cast<size_t>(lane);
-    return goes_on[k] && goes_both_ways[k] && !sample(lane).is_specular;
-  }
+  bool is_split(int lane) const { return goes_on[lane] && goes_both_ways[lane] && !sample(lane).is_specular; }
   ScatterSample mirrored_sample(int lane) const {
     ScatterSample sample;
     sample.from = lifted[lane];
@@ -78,7 +75,7 @@ struct FirstHits {
     sample.direction = out[lane];
     sample.is_specular = samples.lobe_sample[lane] < specular_probability[lane];
     sample.lobe_probability = sample.is_specular ? specular_probability[lane] : diffuse_probability[lane];
-    if (sample.is_specular && goes_both_ways[static_cast<size_t>(lane)]) sample.lobe_probability = 1.0;
+    if (sample.is_specular && goes_both_ways[lane]) sample.lobe_probability = 1.0;
     return sample;
   }
 };

@@ -64,8 +64,8 @@ void JonesWeight::scatter(Ray& ray, const SurfaceHit& surface, const Vec3& out) 
 FieldPair JonesWeight::fields_over(const Leg& leg, FieldPair fields) const {
   Vec3 direction = leg.at_antenna;
   for (int k = leg.num_bounces; k-- > 0;) {
-    const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
-    const Mirror& mirror = context_.mirrors[static_cast<size_t>(bounce.mirror)];
+    const LegBounce& bounce = leg.bounces[k];
+    const Mirror& mirror = context_.mirrors[bounce.mirror];
     const SurfaceModel& model = context_.surfaces.model(mirror.mesh_id);
     reflect_fields(fields, direction, bounce.normal, model, std::sqrt(bounce.specular_share));
     direction = mirror.mirrored(direction);

@@ -74,11 +74,10 @@ void PacketFront::find_hits(FirstHits& first, const LaneValues* begins, TraceSta
 // Gives rays that leave diffusely the directions of lobes other than Lambert's, by the same numbers.
 void PacketFront::leave_along_lobes(FirstHits& first) const {
   for (int lane = 0; lane < first.count; ++lane) {
-    const auto k = static_cast<size_t>(lane);
-    if (!first.goes_on[k] || !first.arrives[k] || first.models[k]->lobe().is_lambert()) continue;
+    if (!first.goes_on[lane] || !first.arrives[lane] || first.models[lane]->lobe().is_lambert()) continue;
     if (first.samples.lobe_sample[lane] < first.specular_probability[lane]) continue;
     const Vec3 in = first.directions[lane], normal = first.hits.normal[lane], drawn = first.samples.lobe[lane];
-    first.out.set(lane, unpacked(first.models[k]->lobe().sample(in, normal, numbers_of(drawn))));
+    first.out.set(lane, unpacked(first.models[lane]->lobe().sample(in, normal, numbers_of(drawn))));
   }
 }
 
@@ -87,9 +86,8 @@ bool PacketFront::trace_behind_sheets(FirstHits& first, TraceStatistics& statist
   LaneValues begins;
   int num_rays = 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto k = static_cast<size_t>(lane);
-    const bool is_at_sheet = lane < first.count && first.hits.verdicts[k] == EmbreeScene::Verdict::kHit &&
-                             context_.geometry.is_sheet(first.hits.met[k].mesh_id);
+    const bool is_at_sheet = lane < first.count && first.hits.verdicts[lane] == EmbreeScene::Verdict::kHit &&
+                             context_.geometry.is_sheet(first.hits.met[lane].mesh_id);
     begins[lane] = is_at_sheet ? context_.geometry.behind(first.hits.distance[lane]) : -1.0;
     num_rays += is_at_sheet;
   }
@@ -105,8 +103,7 @@ void PacketFront::draw_samples(FirstHits& first) const {
   if (!context_.draws_samples(1)) return first.samples.clear();
   if (!first.points) return first.samples.draw(seed, first.index(0), first.count, first.places.batches.data());
   std::array<int64_t, kPacketSize> keys;
-  for (int lane = 0; lane < kPacketSize; ++lane)
-    keys[static_cast<size_t>(lane)] = first.index(std::min(lane, first.count - 1));
+  for (int lane = 0; lane < kPacketSize; ++lane) keys[lane] = first.index(std::min(lane, first.count - 1));
   first.samples.draw_by_keys(seed, keys.data(), first.count);
 }
 
@@ -115,8 +112,8 @@ void PacketFront::launch(FirstHits& first) const {
   LaunchPlan::Places& places = first.places;
   plan.place(first.begin, first.count, places);
   for (LaneRange lanes{0, 0}; lanes.begin < first.count; lanes.begin = lanes.end) {
-    const int stratum = places.strata[static_cast<size_t>(lanes.begin)];
-    while (lanes.end < first.count && places.strata[static_cast<size_t>(lanes.end)] == stratum) ++lanes.end;
+    const int stratum = places.strata[lanes.begin];
+    while (lanes.end < first.count && places.strata[lanes.end] == stratum) ++lanes.end;
     directions_.launch(stratum, places.x, places.y, lanes, first.directions);
     const double density = plan.density(plan.foci.owner(stratum));
     const bool has_foci = plan.foci.has_any(stratum);
@@ -131,11 +128,10 @@ void PacketFront::launch_at_points(FirstHits& first) const {
   first.points = plan.surface_scatterers.data() + (first.begin - plan.first_point);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const SurfacePoint& point = first.points[std::min(lane, first.count - 1)];
-    const auto k = static_cast<size_t>(lane);
-    first.places.strata[k] = point.stratum;
-    first.places.batches[k] = static_cast<int>(point.key % plan.batches);
+    first.places.strata[lane] = point.stratum;
+    first.places.batches[lane] = static_cast<int>(point.key % plan.batches);
     first.directions.set(lane, unpacked((point.position - context_.settings.transmitter).normalized()));
-    first.densities[lane] = plan.default_density[static_cast<size_t>(point.stratum)];
+    first.densities[lane] = plan.default_density[point.stratum];
   }
 }
 
@@ -143,13 +139,12 @@ void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
   const Antennas antennas{unpacked(context_.settings.transmitter), unpacked(context_.settings.receiver)};
   run_simd<&see_lanes>(&first, antennas, context_.geometry.lift());
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto k = static_cast<size_t>(lane);
-    const EmbreeScene::Verdict verdict = first.hits.verdicts[k];
+    const EmbreeScene::Verdict verdict = first.hits.verdicts[lane];
     const bool is_hit = verdict == EmbreeScene::Verdict::kHit, is_grazing = first.cos_incidence[lane] < kGrazing;
     if (verdict == EmbreeScene::Verdict::kFalseHit) ++statistics.num_false_hits;
     if (is_hit && is_grazing) ++statistics.num_grazing;
-    first.arrives[k] = is_hit && !is_grazing && counts(first, lane);
-    if (!first.arrives[k]) continue;
+    first.arrives[lane] = is_hit && !is_grazing && counts(first, lane);
+    if (!first.arrives[lane]) continue;
     ++statistics.num_hits;
     find_response(first, lane);
   }
@@ -157,18 +152,17 @@ void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
 
 // Returns whether the stratum of the ray owns its hit, or the ray passes over a mirror.
 bool PacketFront::counts(FirstHits& first, int lane) const {
-  const auto k = static_cast<size_t>(lane);
-  if (first.points) return first.is_owned[k] = meets_point(first, lane);
-  const uint32_t mesh = first.hits.met[k].mesh_id;
-  const bool passes_on = context_.is_passed(first.places.strata[k], mesh);
-  first.is_owned[k] = !passes_on && context_.is_owner(first.places.strata[k], mesh, kNoMirrors);
-  return (first.is_owned[k] || passes_on) && std::isfinite(first.densities[lane]);  // else foci have it all
+  if (first.points) return first.is_owned[lane] = meets_point(first, lane);
+  const uint32_t mesh = first.hits.met[lane].mesh_id;
+  const bool passes_on = context_.is_passed(first.places.strata[lane], mesh);
+  first.is_owned[lane] = !passes_on && context_.is_owner(first.places.strata[lane], mesh, kNoMirrors);
+  return (first.is_owned[lane] || passes_on) && std::isfinite(first.densities[lane]);  // else foci have it all
 }
 
 // Returns whether the ray of a lane meets the point at which it is aimed, on its triangle or on its edge.
 bool PacketFront::meets_point(const FirstHits& first, int lane) const {
   const SurfacePoint& point = first.points[lane];
-  const Hit& met = first.hits.met[static_cast<size_t>(lane)];
+  const Hit& met = first.hits.met[lane];
   if (met.mesh_id != point.on.mesh_id) return false;
   return met.triangle_id == point.on.triangle_id ||
          (first.hits[lane].position - point.position).norm() <= context_.geometry.lift();
@@ -176,26 +170,24 @@ bool PacketFront::meets_point(const FirstHits& first, int lane) const {
 
 // Leaves the ray its part of the echo and of the ways on: a ray of a lattice is mirrored, one aimed at a point scattered.
 void PacketFront::share_out(FirstHits& first, int lane) const {
-  const auto k = static_cast<size_t>(lane);
-  if (!context_.plan.has_surface_scatterers() || !first.is_owned[k]) return;
+  if (!context_.plan.has_surface_scatterers() || !first.is_owned[lane]) return;
   (first.points ? first.coherent : first.diffuse)[lane] = 0.0;
-  if (first.goes_both_ways[k]) first.samples.lobe_sample[lane] = 0.0;
+  if (first.goes_both_ways[lane]) first.samples.lobe_sample[lane] = 0.0;
   const bool is_specular = first.samples.lobe_sample[lane] < first.specular_probability[lane];
-  first.goes_on[k] = first.goes_on[k] && is_specular != (first.points != nullptr);
+  first.goes_on[lane] = first.goes_on[lane] && is_specular != (first.points != nullptr);
 }
 
 void PacketFront::find_response(FirstHits& first, int lane) const {
-  const auto k = static_cast<size_t>(lane);
-  const SurfaceModel& model = context_.surfaces.model(first.hits.met[k], first.hits.normal[lane]);
-  first.models[k] = &model;
-  first.modes[k] = model.is_constant()
-                       ? PolarizationMode::kTe
-                       : mode_along(model, context_.settings.polarization, first.directions[lane], first.hits.normal[lane]);
-  const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[k]);
-  const LobeProbabilities lobes = first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn;
+  const SurfaceModel& model = context_.surfaces.model(first.hits.met[lane], first.hits.normal[lane]);
+  first.models[lane] = &model;
+  first.modes[lane] = model.is_constant() ? PolarizationMode::kTe
+                                          : mode_along(model, context_.settings.polarization, first.directions[lane],
+                                                       first.hits.normal[lane]);
+  const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[lane]);
+  const LobeProbabilities lobes = first.is_owned[lane] ? context_.probabilities(model, response) : kPassingOn;
   first.set_response(lane, response, lobes);
-  first.goes_both_ways[k] = !first.points && context_.goes_both_ways(model, lobes, 1);
-  first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
+  first.goes_both_ways[lane] = !first.points && context_.goes_both_ways(model, lobes, 1);
+  first.goes_on[lane] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
   share_out(first, lane);
 }
 
@@ -214,24 +206,23 @@ void PacketFront::see_receiver(FirstHits& first, TraceStatistics& statistics) co
 }
 
 void PacketFront::start(const FirstHits& first, int lane, Ray& ray, SurfaceHit& surface) const {
-  const auto k = static_cast<size_t>(lane);
   std::construct_at(&ray);
   std::construct_at(&surface);
   ray.index = first.index(lane);
-  ray.stratum = first.places.strata[k];
+  ray.stratum = first.places.strata[lane];
   ray.direction = first.directions[lane];
   ray.launch_direction = first.directions[lane];  // a copy of the other one would wait for its parts to be stored
-  ray.is_owned = first.is_owned[k];
+  ray.is_owned = first.is_owned[lane];
   ray.leg_density = first.densities[lane];
   ray.launch_density = first.points ? ray.leg_density : context_.plan.density(context_.plan.foci.owner(ray.stratum));
   ray.stands_for = ray.launch_density / ray.leg_density;
   if (context_.surfaces.has_smooth()) ray.differential = RayDifferential::from_point(ray.direction);
   surface.point = first.hits[lane];
-  surface.receiver = first.receiver[k];
+  surface.receiver = first.receiver[lane];
   surface.samples = first.samples.hit(lane);
   surface.cos_incidence = first.cos_incidence[lane];
-  surface.model = first.models[k];
-  surface.mode = first.modes[k];
+  surface.model = first.models[lane];
+  surface.mode = first.modes[lane];
   surface.response = first.response(lane);
 }
 

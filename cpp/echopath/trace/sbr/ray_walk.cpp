@@ -35,7 +35,7 @@ void RayWalk<Weight>::shoot(int64_t begin, int64_t end, PathBlock& block) const 
     do {
       if (has_straight_legs_) scratch.echoes.find(scratch.first, context_.settings.receiver);
       for (int lane = 0; lane < count; ++lane) {
-        if (scratch.first.arrives[static_cast<size_t>(lane)]) shoot_lane(lane, scratch, block);
+        if (scratch.first.arrives[lane]) shoot_lane(lane, scratch, block);
       }
     } while (front_.trace_behind_sheets(scratch.first, block.statistics));
   }
@@ -45,19 +45,18 @@ void RayWalk<Weight>::shoot(int64_t begin, int64_t end, PathBlock& block) const 
 // Follows a ray from its first hit on. A ray is made only where there is more than a plain hit.
 template <class Weight>
 void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) const {
-  const auto k = static_cast<size_t>(lane);
   const FirstHits& first = scratch.first;
-  block.current_batch = static_cast<uint8_t>(first.places.batches[k]);
+  block.current_batch = static_cast<uint8_t>(first.places.batches[lane]);
   block.current_ray = half_of_ray(first.ray(lane)) | (first.points ? 0 : turn_flags(first.ray(lane)));
   scratch.launch_index = first.index(lane);
   scratch.num_branches = 0;
   if (context_.geometry.has_sheets()) return shoot_lane_among_sheets(lane, scratch, block);
   RayHit met, met_mirrored;
-  const bool goes_on = first.goes_on[k] && meets(first.lifted[lane], first.out[lane], met, block);
+  const bool goes_on = first.goes_on[lane] && meets(first.lifted[lane], first.out[lane], met, block);
   const bool is_split = first.is_split(lane) && meets(first.lifted[lane], first.mirrored[lane], met_mirrored, block);
   const bool has_plain_hit = has_straight_legs_ && is_plain(first, lane);
   if (has_plain_hit) add_plain_echoes(lane, scratch, block);
-  if (has_plain_hit && !goes_on && !is_split) return block.end_ray(&first.hits.met[k]);
+  if (has_plain_hit && !goes_on && !is_split) return block.end_ray(&first.hits.met[lane]);
   start(lane, scratch);
   if (!has_plain_hit) connect(scratch, block);
   const auto go_on = [&] {
@@ -90,10 +89,9 @@ void RayWalk<Weight>::take_beside(Scratch& scratch, PathBlock& block, const GoOn
 template <class Weight>
 void RayWalk<Weight>::add_plain_echoes(int lane, const Scratch& scratch, PathBlock& block) const {
   const FirstHits& first = scratch.first;
-  const auto k = static_cast<size_t>(lane);
   scratch.echoes.add(first, lane, block);
   const bool shows_image = first.receiver_reach[lane] > 0 && first.coherent[lane] > 0;
-  if (shows_image && first.receiver[k] == ShadowState::kOpen) block.add_chain(1);
+  if (shows_image && first.receiver[lane] == ShadowState::kOpen) block.add_chain(1);
 }
 
 template <class Weight>
@@ -170,7 +168,7 @@ void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBl
   if (first.is_split(lane)) {
     take_beside(scratch, block, go_on);
     go_on_among_sheets(first.mirrored_sample(lane), scratch, block);
-  } else if (first.goes_on[static_cast<size_t>(lane)]) {
+  } else if (first.goes_on[lane]) {
     go_on();
   }
   block.end_ray(scratch.ray.hits.data());

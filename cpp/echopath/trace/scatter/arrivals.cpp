@@ -39,7 +39,7 @@ bool Arrivals::finds_owner(Ray& ray, uint32_t mesh_id) const {
 
 void Arrivals::record(Ray& ray, SurfaceHit& surface) const {
   surface.material = &surface.model->material();
-  ray.hits[static_cast<size_t>(ray.depth++)] = surface.point.hit;
+  ray.hits[ray.depth++] = surface.point.hit;
   ray.leg_length += surface.point.distance;
   if (context_.surfaces.has_smooth() && ray.coherent) carry_tube(ray, surface, context_.wavelength);
   if (!surface.material->mirror) {

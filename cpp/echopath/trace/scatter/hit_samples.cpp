@@ -57,9 +57,8 @@ ECHOPATH_INLINE VectorOf<double> direction_of(double u, double v) {
 ECHOPATH_INLINE void draw_lobes(uint64_t seed, uint64_t first, LaneVectors* lanes) {
   const PhiloxWords<kPacketSize> words = draw_words<kPacketSize>(seed, Stream::kScatterPoint, first, 0);
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const auto i = static_cast<size_t>(lane);
-    const double u = (lanes->x[lane] + unit_interval(words[0][i], words[1][i])) * (1.0 / kScatterNetSize);
-    const double v = (lanes->y[lane] + unit_interval(words[2][i], words[3][i])) * (1.0 / kScatterNetSize);
+    const double u = (lanes->x[lane] + unit_interval(words[0][lane], words[1][lane])) * (1.0 / kScatterNetSize);
+    const double v = (lanes->y[lane] + unit_interval(words[2][lane], words[3][lane])) * (1.0 / kScatterNetSize);
     lanes->set(lane, direction_of(u, v));
   }
 }

@@ -34,7 +34,7 @@ ScatterCell scatter_shift(uint64_t seed, int batch, int64_t ray, int hit) {
 }
 
 ScatterCell scatter_cell(const ScatterCell& shift, int64_t ray) {
-  const ScatterCell& net = kNet[static_cast<size_t>(ray % kScatterNetSize)];
+  const ScatterCell& net = kNet[ray % kScatterNetSize];
   return {net[0] ^ shift[0], net[1] ^ shift[1]};
 }
 

@@ -143,10 +143,10 @@ class PassFinder {
     const Matrix2 through = passage.te / co_polar * of_te + passage.tm / co_polar * of_tm;
     JonesMatrix& entries = paths_.jones[path];
     Matrix2 matrix;
-    for (int i = 0; i < 4; ++i) matrix(i / 2, i % 2) = std::complex<double>(entries[static_cast<size_t>(i)]);
+    for (int i = 0; i < 4; ++i) matrix(i / 2, i % 2) = std::complex<double>(entries[i]);
     // The columns of the matrix belong to the end at which the path was traced from.
     matrix = leg.is_first != is_reversed ? Matrix2(matrix * through) : Matrix2(through * matrix);
-    for (int i = 0; i < 4; ++i) entries[static_cast<size_t>(i)] = std::complex<float>(matrix(i / 2, i % 2));
+    for (int i = 0; i < 4; ++i) entries[i] = std::complex<float>(matrix(i / 2, i % 2));
   }
 
   Paths& paths_;  // each task changes its own paths
@@ -173,11 +173,11 @@ void add_passes(Paths& paths, Job* job) {
   const SheetScene sheets(*paths.scene, paths.frame.trace_time, paths.frame.transmitter, job);
   if (sheets.is_empty() || paths.num_paths() == 0) return;
   const PassFinder finder(paths, sheets);
-  std::vector<PassBlock> blocks(static_cast<size_t>((paths.num_paths() + kPathsTogether - 1) / kPathsTogether));
+  std::vector<PassBlock> blocks((paths.num_paths() + kPathsTogether - 1) / kPathsTogether);
   Job own(job);
   parallel_for(std::ssize(blocks), [&](int64_t i) {
     const int64_t begin = i * kPathsTogether;
-    blocks[static_cast<size_t>(i)] = finder.find(begin, std::min(begin + kPathsTogether, paths.num_paths()));
+    blocks[i] = finder.find(begin, std::min(begin + kPathsTogether, paths.num_paths()));
   }, &own);
   join(blocks, paths);
 }

@@ -91,8 +91,8 @@ PlanePoints points_outside_of_circle(const PlanePoints& points) {
   std::array<Eigen::Vector2d, 4> corners;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (int k = 0; k < 4; ++k) {
-    corners[static_cast<size_t>(k)] = outermost_point(points, k * kOutwardDirections / 4);
-    centre += 0.25 * corners[static_cast<size_t>(k)];
+    corners[k] = outermost_point(points, k * kOutwardDirections / 4);
+    centre += 0.25 * corners[k];
   }
   double radius = std::numeric_limits<double>::max();
   for (size_t k = 0; k < 4; ++k) {
@@ -112,7 +112,7 @@ PlanePoints points_outside_of_circle(const PlanePoints& points) {
 PlanePoints outer_points(const PlanePoints& all) {
   const PlanePoints points = points_outside_of_circle(all);
   std::array<Eigen::Vector2d, kOutwardDirections> outermost;
-  for (int k = 0; k < kOutwardDirections; ++k) outermost[static_cast<size_t>(k)] = outermost_point(points, k);
+  for (int k = 0; k < kOutwardDirections; ++k) outermost[k] = outermost_point(points, k);
   const auto is_inside = [&](const Eigen::Vector2d& point) {
     for (size_t k = 0; k < kOutwardDirections; ++k) {
       const Eigen::Vector2d edge = outermost[(k + 1) % kOutwardDirections] - outermost[k];

@@ -5,13 +5,12 @@
 namespace echopath {
 
 void RayOwners::assign(int object, MirrorSequence sequence, int stratum) {
-  const auto k = static_cast<size_t>(object);
   if (sequence == kNoMirrors) {
-    direct_[k] = stratum;
+    direct_[object] = stratum;
     return;
   }
   const std::pair<MirrorSequence, int> entry{sequence, stratum};
-  over_mirrors_[k].insert(std::lower_bound(over_mirrors_[k].begin(), over_mirrors_[k].end(), entry), entry);
+  over_mirrors_[object].insert(std::lower_bound(over_mirrors_[object].begin(), over_mirrors_[object].end(), entry), entry);
 }
 
 int RayOwners::owner_over_mirrors(size_t object, MirrorSequence sequence) const {
@@ -24,8 +23,8 @@ int RayOwners::owner_over_mirrors(size_t object, MirrorSequence sequence) const 
 std::vector<std::pair<MirrorSequence, int>> RayOwners::strata_of(uint32_t mesh_id) const {
   const int object = object_of_mesh_.empty() ? -1 : object_of_mesh_[mesh_id];
   if (object < 0) return {};
-  std::vector<std::pair<MirrorSequence, int>> strata{{kNoMirrors, direct_[static_cast<size_t>(object)]}};
-  const auto& over_mirrors = over_mirrors_[static_cast<size_t>(object)];
+  std::vector<std::pair<MirrorSequence, int>> strata{{kNoMirrors, direct_[object]}};
+  const auto& over_mirrors = over_mirrors_[object];
   strata.insert(strata.end(), over_mirrors.begin(), over_mirrors.end());
   return strata;
 }

@@ -25,8 +25,7 @@ class RayOwners {
   int owner(uint32_t mesh_id, MirrorSequence sequence) const {
     const int object = object_of_mesh_.empty() ? -1 : object_of_mesh_[mesh_id];
     if (object < 0) return field_of_view_;
-    return sequence == kNoMirrors ? direct_[static_cast<size_t>(object)]
-                                  : owner_over_mirrors(static_cast<size_t>(object), sequence);
+    return sequence == kNoMirrors ? direct_[object] : owner_over_mirrors(static_cast<size_t>(object), sequence);
   }
   int field_of_view() const { return field_of_view_; }
   // Returns the stratum of first hits on a mesh, straight from the transmitter and over each sequence of mirrors that has

@@ -25,8 +25,7 @@ constexpr double kSameStratum = 1e-6;
 class Target {
  public:
   Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index)
-      : object(index), node(of.node), name(scene.nodes()[static_cast<size_t>(of.node)].name), geometry_(&geometry),
-        mesh_ids_(of.mesh_ids) {
+      : object(index), node(of.node), name(scene.nodes()[of.node].name), geometry_(&geometry), mesh_ids_(of.mesh_ids) {
     sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, mesh_ids_);
     BitSum sum;
     for (const uint32_t id : mesh_ids_) {
@@ -111,7 +110,7 @@ class RayTargetFinder {
     bits.add_bytes(settings_.transmitter.data(), sizeof(Vec3));
     bits.add(settings_.may_use_strips);
     for (const int index : sequence) {
-      const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
+      const Mirror& mirror = mirrors_[index];
       bits.add_bytes(mirror.point.data(), sizeof(Vec3));
       bits.add_bytes(mirror.normal.data(), sizeof(Vec3));
       const std::string own_name = name_of(mirror, scene_);  // an ID hangs on what else is in the scene
@@ -138,7 +137,7 @@ class RayTargetFinder {
   std::string name_over(const Target& target, const MirrorFrustum& frustum) const {
     std::string name = target.name;
     for (size_t k = frustum.mirrors.size(); k-- > 0;) {
-      name += " over " + name_of(mirrors_[static_cast<size_t>(frustum.mirrors[k])], scene_);
+      name += " over " + name_of(mirrors_[frustum.mirrors[k]], scene_);
     }
     return name;
   }
@@ -285,9 +284,8 @@ class TargetSearch {
       EmbreeScene::PacketHits hits;
       geometry_.intersect(settings_.transmitter, directions, kPacketSize, hits);
       for (int lane = 0; lane < kPacketSize; ++lane) {
-        const auto k = static_cast<size_t>(lane);
-        const bool meets_other = hits.verdicts[k] == EmbreeScene::Verdict::kHit && hits.distance[lane] < reach[lane] &&
-                                 out_.object_of_mesh[hits.met[k].mesh_id] != target.object;
+        const bool meets_other = hits.verdicts[lane] == EmbreeScene::Verdict::kHit && hits.distance[lane] < reach[lane] &&
+                                 out_.object_of_mesh[hits.met[lane].mesh_id] != target.object;
         if (!meets_other) return true;
       }
     }

@@ -38,7 +38,7 @@ std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object)
   ByNode found;
   for (const uint32_t id : object.mesh_ids) {
     int node = scene.meshes()[id].node;
-    const auto parent = [&] { return scene.nodes()[static_cast<size_t>(node)].parent; };
+    const auto parent = [&] { return scene.nodes()[node].parent; };
     while (node != object.node && parent() != object.node) node = parent();
     found.add(node, id);
   }

@@ -57,8 +57,8 @@ class PointFinder {
 
   std::vector<SurfacePoint> find(const TriangleRange& range) const {
     const int stratum = plan_.owners.owner(range.mesh_id, kNoMirrors);
-    const Stratum& directions = plan_.strata[static_cast<size_t>(plan_.foci.owner(stratum))];
-    const PointDensity density{settings_.transmitter, plan_.default_density[static_cast<size_t>(stratum)]};
+    const Stratum& directions = plan_.strata[plan_.foci.owner(stratum)];
+    const PointDensity density{settings_.transmitter, plan_.default_density[stratum]};
     std::vector<SurfacePoint> points;
     for (int64_t i = range.begin; i < range.end; ++i) {
       const auto triangle = static_cast<uint32_t>(i);
@@ -93,8 +93,7 @@ std::vector<SurfacePoint> find_surface_scatterers(const Scene& scene, const Embr
   const PointFinder finder(geometry, plan, settings);
   std::vector<std::vector<SurfacePoint>> of_range(ranges.size());
   Job own(job);  // its progress is no part of that of the rays
-  parallel_for(std::ssize(ranges),
-               [&](int64_t i) { of_range[static_cast<size_t>(i)] = finder.find(ranges[static_cast<size_t>(i)]); }, &own);
+  parallel_for(std::ssize(ranges), [&](int64_t i) { of_range[i] = finder.find(ranges[i]); }, &own);
   std::vector<SurfacePoint> points;
   for (const auto& found : of_range) points.insert(points.end(), found.begin(), found.end());
   return points;

@@ -22,8 +22,8 @@ int64_t breakpoints_within(const Scene& scene, const Radar& radar, uint32_t mesh
   };
   if (radar.motion) add(radar.motion->breakpoints(frame));
   if (const auto& deformation = scene.node_of(mesh_id).deformation) add(deformation->breakpoints(frame));
-  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[static_cast<size_t>(i)].parent) {
-    if (const auto& motion = scene.nodes()[static_cast<size_t>(i)].motion) add(motion->breakpoints(frame));
+  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[i].parent) {
+    if (const auto& motion = scene.nodes()[i].motion) add(motion->breakpoints(frame));
   }
   return count;
 }

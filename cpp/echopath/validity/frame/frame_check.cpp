@@ -86,7 +86,7 @@ void FrameCheck::find_sweeps() {
   std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
   std::vector<double> radii(times_.of_mesh.size());
   for (int k = times_.num_base; k < std::ssize(times_.times); ++k) {
-    const PosedScene pose(*paths_.scene, times_.times[static_cast<size_t>(k)]);
+    const PosedScene pose(*paths_.scene, times_.times[k]);
     for (uint32_t id = 0; id < times_.of_mesh.size(); ++id) {
       if (times_.of_mesh[id] <= k) continue;
       const auto [centre, radius] = ball_of(pose, id);

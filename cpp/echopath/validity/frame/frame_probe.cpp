@@ -68,7 +68,7 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
   std::vector<Antenna> out = {antennas[0]};
   out[0].position = carried;
   if (antennas.size() == 1 && (antennas[0].position - carried).norm() > kOnePlace) out.push_back(antennas[0]);
-  for (const int corner : array_corners(antennas)) out.push_back(antennas[static_cast<size_t>(corner)]);
+  for (const int corner : array_corners(antennas)) out.push_back(antennas[corner]);
   return out;
 }
 
@@ -78,10 +78,8 @@ void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start
                   std::vector<double>& out) {
   if (path.edge >= 0) return;
   int previous = path.first_material;
-  const auto set_arrival = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
-  const auto set_departure = [&](int k, const Vec3& travel) {
-    out[static_cast<size_t>(2 * k + 1)] = hits[k].normal.dot(travel);
-  };
+  const auto set_arrival = [&](int k, const Vec3& travel) { out[2 * k] = -hits[k].normal.dot(travel); };
+  const auto set_departure = [&](int k, const Vec3& travel) { out[2 * k + 1] = hits[k].normal.dot(travel); };
   set_arrival(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
   for (int k = previous + 1; k <= path.last_material; ++k) {
     if (path.is_image(k)) continue;
@@ -214,7 +212,7 @@ LegShadows FrameProbe::shadows_of(const LocalPath& path, const PosedHit* hits, L
 }
 
 void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const {
-  out.assign(static_cast<size_t>(2 * path.count), 0.0);
+  out.assign(2 * path.count, 0.0);
   if (path.first_material < 0) return;
   pose_hits(path, rim_, scratch.hits.data());
   fill_cosines(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
@@ -223,7 +221,7 @@ void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vect
 // Takes the antennas at both rims by turns, because the cosines at an end change with its own antenna only.
 void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
   if (path.first_material < 0) return;
-  scratch.cosines.assign(static_cast<size_t>(2 * path.count), 0.0);
+  scratch.cosines.assign(2 * path.count, 0.0);
   const size_t num_pairs = std::max(starts(path).size(), ends(path).size());
   for (size_t i = 0; i < num_pairs; ++i) {
     const Vec3& start = starts(path)[std::min(i, starts(path).size() - 1)].position;

@@ -14,12 +14,12 @@ class PathKinds {
     for (int64_t path = 0; path < paths.num_paths(); ++path) ++count_[of(path)];
   }
   size_t of(int64_t path) const {
-    const int bounces = paths_.num_bounces[static_cast<size_t>(path)];
+    const int bounces = paths_.num_bounces[path];
     const Hit& last = paths_.hits_of(path)[std::max(0, bounces - 1)];
     const auto object = static_cast<size_t>(paths_.scene->meshes()[last.mesh_id].object);
     return kKinds * object + 4 * is_coherent(path) + static_cast<size_t>(std::min(bounces, 4) - 1);
   }
-  bool is_coherent(int64_t path) const { return paths_.diffuse[static_cast<size_t>(path)] == 0; }
+  bool is_coherent(int64_t path) const { return paths_.diffuse[path] == 0; }
   const std::vector<int64_t>& count() const { return count_; }
 
  private:

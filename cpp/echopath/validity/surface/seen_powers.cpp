@@ -39,7 +39,7 @@ std::pair<size_t, bool> end_of(const Paths& paths, size_t path) {
 // Sums up what a look finds by object, for the first channel of `radar`.
 std::map<size_t, SeenNow> seen_by(const SurfaceSearch& found, Radar radar, const BandSum::Band& band, Job* job) {
   radar.waveform.num_chirps = radar.waveform.num_samples = 1;
-  std::vector<int64_t> all(static_cast<size_t>(found.paths.num_paths()));
+  std::vector<int64_t> all(found.paths.num_paths());
   std::iota(all.begin(), all.end(), 0);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;

@@ -61,7 +61,7 @@ Crossing SurfaceWalk::Surface::cross_toward(uint32_t at, const Vec3& weights, co
   std::array<int, 3> sides = {0, 1, 2};
   std::sort(sides.begin(), sides.end(), [&](int a, int b) { return behind(a) < behind(b); });
   for (const int side : sides) {
-    const uint32_t next = neighbours[at][static_cast<size_t>(side)];
+    const uint32_t next = neighbours[at][side];
     if (behind(side) >= kInside || next == kNoTriangle) continue;
     if (is_one_plane(at, next, vertices)) return {next, true};
     if (is_smooth(at, vertices) && is_smooth(next, vertices)) return {next, false};

@@ -65,7 +65,7 @@ MorphTargets::MorphTargets(std::vector<Vec3> vertices, std::vector<std::vector<V
 
 MorphTargets::~MorphTargets() = default;
 
-int64_t MorphTargets::num_vertices() const { return static_cast<int64_t>(data_->vertices.size()); }
+int64_t MorphTargets::num_vertices() const { return std::ssize(data_->vertices); }
 
 std::vector<Vec3> MorphTargets::at(double time) const {
   const std::vector<double> shares = data_->shares(time);

@@ -102,7 +102,7 @@ int64_t Skin::Data::longest_row() const {
 Skin::Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights,
            std::shared_ptr<const Deformation> shape) {
   check_shapes(vertices, weights);
-  const auto num_vertices = static_cast<int64_t>(vertices.size());
+  const auto num_vertices = std::ssize(vertices);
   require(!shape || shape->num_vertices() == num_vertices, "shape", "must have as many vertices as the skin",
           shape ? shape->num_vertices() : 0);
   require(!dynamic_cast<const Skin*>(shape.get()), "shape", "must not be a skin itself", "one");
@@ -114,7 +114,7 @@ Skin::Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeig
 
 Skin::~Skin() = default;
 
-int64_t Skin::num_vertices() const { return static_cast<int64_t>(data_->vertices.size()); }
+int64_t Skin::num_vertices() const { return std::ssize(data_->vertices); }
 const std::vector<Vec3>& Skin::vertices() const { return data_->vertices; }
 const std::vector<Joint>& Skin::joints() const { return data_->joints; }
 const std::shared_ptr<const Deformation>& Skin::shape() const { return data_->shape; }

@@ -29,7 +29,7 @@ Frames frame_curvatures(const SplineKnots& knots, const Frames& frames) {
     rows.push_back(frames[i].data()->data());
     out.push_back(result[i].data()->data());
   }
-  knots.second_derivatives(rows, 3 * static_cast<int64_t>(frames.front().size()), out);
+  knots.second_derivatives(rows, 3 * std::ssize(frames.front()), out);
   return result;
 }
 
@@ -55,7 +55,7 @@ VertexSequence::VertexSequence(std::vector<double> times, Frames vertices, Inter
 
 VertexSequence::~VertexSequence() = default;
 
-int64_t VertexSequence::num_vertices() const { return static_cast<int64_t>(data_->frames.front().size()); }
+int64_t VertexSequence::num_vertices() const { return std::ssize(data_->frames.front()); }
 
 std::vector<Vec3> VertexSequence::at(double time) const {
   const SplineKnots::Weights weights = data_->knots.weights(time);

@@ -119,7 +119,7 @@ double ChirpSequence::slot_start(int64_t slot) const {
   // One product of an exact integer: equal spacing up to one rounding, however long the frame.
   const double even = static_cast<double>(slot) * chirp_interval;
   if (extra_idle.empty()) return even;
-  const auto length = static_cast<int64_t>(extra_idle.size());
+  const auto length = std::ssize(extra_idle);
   const int64_t num_whole = slot / length;
   return even + static_cast<double>(num_whole) * sum_of(extra_idle, extra_idle.size()) +
          sum_of(extra_idle, static_cast<size_t>(slot % length));
@@ -205,7 +205,7 @@ void Radar::validate() const {
 
 void Radar::validate_code_fits() const {
   if (multiplexing == Multiplexing::kDdm) {
-    const int64_t shares = static_cast<int64_t>(transmitters.size()) + empty_slots;
+    const int64_t shares = std::ssize(transmitters) + empty_slots;
     require(waveform.num_chirps % shares == 0, "waveform.num_chirps",
             "must be a multiple of transmitters + empty_slots = " + std::to_string(shares), waveform.num_chirps);
   }

@@ -88,7 +88,7 @@ void validate_passes(const Paths& paths) {
   const size_t size = paths.offsets.size();
   require(offsets.empty() || offsets.size() == size + 1, "pass_offsets", "must be empty or have one entry more than paths",
           offsets.size());
-  const auto end = static_cast<int64_t>(paths.passes.size());
+  const auto end = std::ssize(paths.passes);
   require((offsets.empty() ? 0 : offsets.back()) == end, "pass_offsets", "must end with the number of passes", end);
   require(offsets.empty() || (offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end())), "pass_offsets",
           "must begin with 0 and ascend, entries", offsets.size());
@@ -113,7 +113,7 @@ void select_passes(const Paths& paths, const std::vector<uint8_t>& keep, Paths& 
     if (!keep[path]) continue;
     const std::span<const Pass> own = paths.passes_of(path);
     out.passes.insert(out.passes.end(), own.begin(), own.end());
-    out.pass_offsets.push_back(static_cast<int64_t>(out.passes.size()));
+    out.pass_offsets.push_back(std::ssize(out.passes));
   }
   if (out.passes.empty()) out.pass_offsets.clear();
 }
@@ -187,7 +187,7 @@ void Paths::validate_path(size_t path) const {
 }
 
 Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
-  require(static_cast<int64_t>(keep.size()) == num_paths(), "selection", "must have one entry per path", keep.size());
+  require(std::ssize(keep) == num_paths(), "selection", "must have one entry per path", keep.size());
   const auto count = static_cast<size_t>(std::count_if(keep.begin(), keep.end(), [](uint8_t value) { return value != 0; }));
   const auto column = [&](const auto& values) { return kept(values, keep, count, job); };
   Paths out;

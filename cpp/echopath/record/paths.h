@@ -175,8 +175,8 @@ struct Paths {
   Radar radar;                         // snapshot
   TraceFrame frame;
 
-  int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }
-  int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
+  int64_t num_paths() const { return std::ssize(offsets); }
+  int64_t num_hits() const { return hits ? std::ssize(*hits) : 0; }
   const Hit* hits_of(int64_t path) const { return hits->data() + offsets[path]; }
   bool is_reversed(size_t path) const { return (flags[path] & kReversedPath) != 0; }
   // Returns whether a ray found the path; its amplitude, where it is coherent, then is that of the ray's launch cell.

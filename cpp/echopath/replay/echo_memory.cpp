@@ -34,7 +34,7 @@ void keep_echoes(std::span<const size_t> places, Echoes& echoes) {
       echoes.amplitude[node * places.size() + i] = echoes.amplitude[node * count + places[i]];
     }
   }
-  echoes.num_echoes = static_cast<int64_t>(places.size());
+  echoes.num_echoes = std::ssize(places);
   echoes.delay.resize(num_nodes * places.size());
   echoes.amplitude.resize(num_nodes * places.size());
 }

@@ -20,8 +20,8 @@ std::complex<double> gaussian_pair(uint64_t seed, int64_t index) {
 }  // namespace
 
 int64_t cube_size(const Radar& radar) {
-  return static_cast<int64_t>(radar.transmitters.size()) * static_cast<int64_t>(radar.receivers.size()) *
-         radar.waveform.num_chirps * radar.waveform.num_samples;
+  return std::ssize(radar.transmitters) * std::ssize(radar.receivers) * radar.waveform.num_chirps *
+         radar.waveform.num_samples;
 }
 
 uint64_t noise_seed_of_frame(uint64_t seed, double start_time) {
@@ -51,7 +51,7 @@ void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uin
 }
 
 void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job) {
-  add_noise(cube.data(), static_cast<int64_t>(cube.size()), radar, seed, job);
+  add_noise(cube.data(), std::ssize(cube), radar, seed, job);
 }
 
 }  // namespace echopath

@@ -79,8 +79,7 @@ int64_t Synthesizer::row_size(bool moving) const {
 
 void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
   require_channel(channel);
-  parallel_for(static_cast<int64_t>(blocks.size()),
-               [&](int64_t i) { require_echoes(blocks[i], waveform_.num_chirps, num_groups_); });
+  parallel_for(std::ssize(blocks), [&](int64_t i) { require_echoes(blocks[i], waveform_.num_chirps, num_groups_); });
   while (!blocks.empty()) {
     const std::span<const Echoes> run = blocks.first(run_of_one_sampling(blocks));
     if (run.front().sampling.is_static()) {

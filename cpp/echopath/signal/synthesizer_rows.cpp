@@ -103,7 +103,7 @@ void Synthesizer::write_samples(int channel, std::span<const int> groups, std::c
 
 void Synthesizer::absorb(const Synthesizer& other, int num_groups) {
   require(num_groups_ == 1, "num_groups", "must be 1 of what absorbs others", num_groups_);
-  parallel_for(static_cast<int64_t>(channels_.size()), [&](int64_t channel) {
+  parallel_for(std::ssize(channels_), [&](int64_t channel) {
     for (int group = 0; group < num_groups; ++group) absorb_group(other, static_cast<int>(channel), group);
   });
 }

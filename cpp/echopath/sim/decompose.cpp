@@ -75,7 +75,7 @@ void sum_groups(const CubePass& pass, size_t way, const ViewSet& set, Views& out
   const auto at_once = static_cast<uint32_t>(std::clamp<size_t>(kCubesAtOnce / pass.cube_bytes(), 1, kGroupsAtOnce));
   for (uint32_t first = 0; first < num_groups; first += at_once) {
     std::vector<Cube> cubes(std::min(at_once, num_groups - first));
-    parallel_for(static_cast<int64_t>(cubes.size()),
+    parallel_for(std::ssize(cubes),
                  [&](int64_t i) { cubes[i] = pass.cube(way, static_cast<int>(first) + static_cast<int>(i), job); });
     for (uint32_t i = 0; i < cubes.size(); ++i) add_group(std::move(cubes[i]), first + i, set, out);
   }

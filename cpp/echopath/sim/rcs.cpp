@@ -215,7 +215,7 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   if (!settings.cavities.empty()) outside.emplace(scene, settings.cavities, kInPlane * target.radius);
   std::vector<RadarCrossSection> out(directions.size() * settings.channels.size());
   const bool is_one = shots.size() == 1;  // its progress is that of its trace, else by shots
-  if (job) job->start(static_cast<int64_t>(shots.size()));
+  if (job) job->start(std::ssize(shots));
   KeptGeometry kept;
   for (const Shot& shot : shots) {
     Job part(job);

@@ -28,7 +28,7 @@ Taper make_taper(const Window& window, int n, double scale = 1.0) {
 
 void transform_row(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges, FftBuffer& buffer,
                    std::complex<double>* out) {
-  const auto num_samples = static_cast<int64_t>(taper.size());
+  const auto num_samples = std::ssize(taper);
   for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper[i] * in[i];
   std::fill(buffer.data() + num_samples, buffer.data() + buffer.size(), 0.0);
   fft.transform(buffer);
@@ -39,7 +39,7 @@ void transform_row(const Fft& fft, const Taper& taper, const std::complex<double
 std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows, const Taper& taper,
                                                   int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
-  const int64_t num_samples = static_cast<int64_t>(taper.size());
+  const int64_t num_samples = std::ssize(taper);
   std::vector<std::complex<double>> profiles(num_rows * num_ranges);
   parallel_for(num_rows, [&](int64_t row) {
     if (job) job->throw_if_cancelled();
@@ -72,7 +72,7 @@ void transform_strip(const Fft& fft, const Taper& taper, const std::complex<doub
 std::vector<std::complex<double>> doppler_transform(const std::vector<std::complex<double>>& profiles, int64_t num_maps,
                                                     const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
-  const int64_t num_chirps = static_cast<int64_t>(taper.size());
+  const int64_t num_chirps = std::ssize(taper);
   const int64_t num_strips = (num_ranges + kColumnsPerTask - 1) / kColumnsPerTask;
   std::vector<std::complex<double>> values(num_maps * fft_size * num_ranges);
   parallel_for(num_maps * num_strips, [&](int64_t task) {
@@ -151,8 +151,8 @@ int64_t MapTransform::num_ranges() const { return plan_->num_ranges; }
 
 void MapTransform::transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
                              std::complex<double>* values, std::span<const uint8_t> asked) const {
-  const int64_t num_chirps = static_cast<int64_t>(plan_->doppler_taper.size());
-  const int64_t num_samples = static_cast<int64_t>(plan_->range_taper.size()), num_ranges = plan_->num_ranges;
+  const int64_t num_chirps = std::ssize(plan_->doppler_taper);
+  const int64_t num_samples = std::ssize(plan_->range_taper), num_ranges = plan_->num_ranges;
   profiles.resize(num_chirps * num_ranges);
   FftBuffer buffer(plan_->range_fft.size());
   for (int64_t chirp = 0; chirp < num_chirps; ++chirp) {
@@ -199,7 +199,7 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   map.range = range_axis(waveform, range_size);
   map.velocity = velocity_axis(waveform, radar.num_slots(), doppler_size);
 
-  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
+  const int64_t num_ranges = std::ssize(map.range);
   const Taper range_taper = range_taper_of(waveform, window.range);
   const Taper doppler_taper = make_taper(window.velocity, waveform.num_chirps);
   const auto profiles = range_transform(cube, num_rows, range_taper, range_size, num_ranges, job);
@@ -209,15 +209,15 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
 
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window,
                            int zero_pad, Job* job) {
-  return range_doppler(cube.data(), static_cast<int64_t>(cube.size()), radar, window, zero_pad, job);
+  return range_doppler(cube.data(), std::ssize(cube), radar, window, zero_pad, job);
 }
 
 std::vector<double> mean_power(const RangeDoppler& map, Job* job) {
-  const auto num_ranges = static_cast<int64_t>(map.range.size());
-  const int64_t size = static_cast<int64_t>(map.velocity.size()) * num_ranges;
+  const auto num_ranges = std::ssize(map.range);
+  const int64_t size = std::ssize(map.velocity) * num_ranges;
   const int num_channels = map.num_transmitters * map.num_receivers;
   std::vector<double> power(size);
-  parallel_for(static_cast<int64_t>(map.velocity.size()), [&](int64_t v) {
+  parallel_for(std::ssize(map.velocity), [&](int64_t v) {
     double* row = power.data() + v * num_ranges;
     for (int c = 0; c < num_channels; ++c) {
       const std::complex<double>* values = map.values.data() + c * size + v * num_ranges;

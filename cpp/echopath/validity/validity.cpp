@@ -78,7 +78,7 @@ class ValidityCheck {
                                            static_cast<size_t>(std::min(kPathsPerBlock, size - from)));
         check_block(some, first, parts[i]);
       };
-      parallel_for(static_cast<int64_t>(parts.size()), check, job_);
+      parallel_for(std::ssize(parts), check, job_);
       for (const ObjectsAtTimes& part : parts) add(part, at_times_);
     }
   }

@@ -46,7 +46,7 @@ py::array_t<bool> as_mask(const std::vector<uint8_t>& values, const Shape& shape
 }
 
 py::array mean_power_of(const RangeDoppler& map) {
-  const Shape shape{static_cast<py::ssize_t>(map.velocity.size()), static_cast<py::ssize_t>(map.range.size())};
+  const Shape shape{std::ssize(map.velocity), std::ssize(map.range)};
   return numpy_take(run_job("power", py::none(), [&](Job& job) { return mean_power(map, &job); }), shape);
 }
 

@@ -41,7 +41,7 @@ struct Record : Instance<std::shared_ptr<Paths>> {
 py::array_t<bool> matches_of(const Selection& selection, Arg<"paths", Record> paths) {
   const std::vector<uint8_t> taken =
       run_job("matches", py::none(), [&](Job& job) { return selection.matches(**paths, &job); });
-  py::array_t<bool> mask(static_cast<py::ssize_t>(taken.size()));
+  py::array_t<bool> mask(std::ssize(taken));
   std::copy(taken.begin(), taken.end(), mask.mutable_data());
   return mask;
 }

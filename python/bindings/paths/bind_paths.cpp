@@ -44,12 +44,12 @@ py::array hits_of(const py::object& self) {
 
 py::array curved_cell_of(const py::object& self) {
   const auto& cells = self.cast<const Paths&>().curved_cell;
-  return numpy_view(cells.empty() ? nullptr : cells.front().data(), {static_cast<py::ssize_t>(cells.size()), 7}, self);
+  return numpy_view(cells.empty() ? nullptr : cells.front().data(), {std::ssize(cells), 7}, self);
 }
 
 py::array jones_of(const py::object& self) {
   const auto& matrices = self.cast<const Paths&>().jones;
-  const Shape shape{static_cast<py::ssize_t>(matrices.size()), 2, 2};
+  const Shape shape{std::ssize(matrices), 2, 2};
   return numpy_view(matrices.empty() ? nullptr : matrices.front().data(), shape, self);
 }
 

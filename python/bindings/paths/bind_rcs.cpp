@@ -139,7 +139,7 @@ py::dict fields_of(const std::vector<RadarCrossSection>& entries, const std::vec
       append(received, channel.receive.across(back));
     }
   }
-  const Shape rows{static_cast<py::ssize_t>(entries.size()), 3};
+  const Shape rows{std::ssize(entries), 3};
   py::dict parts;
   parts["field"] = numpy_take(std::move(fields), shape);
   parts["diffuse"] = numpy_take(std::move(diffuse), shape);
@@ -243,8 +243,8 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
     warn_of_few_rays(entries, channels.rows.size(), effort.num_rays, largest_of_null(frequency));
   }
   Shape shape;
-  if (!is_one) shape.push_back(static_cast<py::ssize_t>(pairs.size()));
-  if (channels.is_list) shape.push_back(static_cast<py::ssize_t>(channels.rows.size()));
+  if (!is_one) shape.push_back(std::ssize(pairs));
+  if (channels.is_list) shape.push_back(std::ssize(channels.rows));
   if (!cavities.empty()) return fields_of(entries, pairs, channels.rows, shape);
   const py::object values = columns(entries, shape, components, false);
   return return_error ? py::make_tuple(values, columns(entries, shape, components, true)) : values;

@@ -147,8 +147,8 @@ py::array bounds_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::o
   const MapWindows taper = as_map_windows(window);
   std::vector<double> bounds =
       run_job("families", progress, [&](Job& job) { return pass.bounds(sets, taper, zero_pad, &job); });
-  const auto rows = static_cast<py::ssize_t>(sets.size());
-  const py::ssize_t columns = rows > 0 ? static_cast<py::ssize_t>(bounds.size()) / rows : 0;
+  const auto rows = std::ssize(sets);
+  const py::ssize_t columns = rows > 0 ? std::ssize(bounds) / rows : 0;
   return numpy_take(std::move(bounds), {rows, columns});
 }
 

@@ -89,14 +89,14 @@ py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const st
     for (const Vec3& point : points) segments.push_back({from - geometry.origin(), point - geometry.origin()});
     geometry.occluded(segments.data(), segments.size(), blocked.data());
   }
-  py::array_t<bool> clear(static_cast<py::ssize_t>(points.size()));
+  py::array_t<bool> clear(std::ssize(points));
   for (size_t i = 0; i < points.size(); ++i) clear.mutable_data()[i] = !blocked[i];
   return clear;
 }
 
 py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points, const py::object& progress) {
   const auto legs = run_job("legs around edges", progress, [&](Job& job) { return legs_around_edges(query, points, &job); });
-  const auto count = static_cast<py::ssize_t>(legs.size());
+  const auto count = std::ssize(legs);
   py::array_t<uint32_t> mesh_id(count);
   py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
   for (py::ssize_t i = 0; i < count; ++i) {

@@ -22,7 +22,7 @@ static_assert(sizeof(PassRow) == sizeof(Pass));
 inline py::array passes_of(const py::object& self) {
   const auto& passes = self.cast<const Paths&>().passes;
   const auto* rows = reinterpret_cast<const PassRow*>(passes.data());
-  return numpy_view(rows, {static_cast<py::ssize_t>(passes.size())}, self);
+  return numpy_view(rows, {std::ssize(passes)}, self);
 }
 
 // [N] structured, as Paths.passes has them.

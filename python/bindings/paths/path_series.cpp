@@ -73,7 +73,7 @@ std::vector<std::complex<double>> series_of_amplitudes(const Paths& paths, const
 }
 
 Shape series_shape(const Paths& paths, const std::vector<double>& times) {
-  return {static_cast<py::ssize_t>(times.size()), static_cast<py::ssize_t>(paths.num_paths())};
+  return {std::ssize(times), static_cast<py::ssize_t>(paths.num_paths())};
 }
 
 }  // namespace
@@ -133,8 +133,7 @@ py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> ti
     }
     replayer.recycle(channels);
   });
-  const Shape shape{static_cast<py::ssize_t>(paths.radar.transmitters.size()),
-                    static_cast<py::ssize_t>(paths.radar.receivers.size()), static_cast<py::ssize_t>((*times).size()),
+  const Shape shape{std::ssize(paths.radar.transmitters), std::ssize(paths.radar.receivers), std::ssize((*times)),
                     static_cast<py::ssize_t>(paths.num_paths())};
   return py::make_tuple(numpy_take(std::move(delays), shape), numpy_take(std::move(amplitudes), shape));
 }
@@ -155,7 +154,7 @@ py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"t
     std::iota(indices.begin(), indices.end(), 0);
     Replayer(paths, radar).evaluate(indices, *time, lengths, amplitudes, &job);
   });
-  const Shape shape{static_cast<py::ssize_t>(radar.receivers.size()), static_cast<py::ssize_t>(paths.num_paths())};
+  const Shape shape{std::ssize(radar.receivers), static_cast<py::ssize_t>(paths.num_paths())};
   return py::make_tuple(numpy_take(std::move(lengths), shape), numpy_take(std::move(amplitudes), shape));
 }
 

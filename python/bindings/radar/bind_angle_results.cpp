@@ -20,7 +20,7 @@
 namespace echopath::bindings {
 namespace {
 
-py::ssize_t size_of(const std::vector<double>& values) { return static_cast<py::ssize_t>(values.size()); }
+py::ssize_t size_of(const std::vector<double>& values) { return std::ssize(values); }
 
 // Getters of arrays that live in the object itself.
 template <class Type>
@@ -197,7 +197,7 @@ void bind_estimates(py::module_& m) {
   def_travel_checked(
       bound,
       [](const AngleEstimates& made) {
-        const auto count = static_cast<py::ssize_t>(made.cell.size());
+        const auto count = std::ssize(made.cell);
         for (const auto* column : {&made.range, &made.velocity, &made.azimuth, &made.elevation, &made.power})
           require_shape(*column, {count}, "range, velocity, azimuth, elevation and power");
         require_shape(made.points, {count}, "points");

@@ -36,7 +36,7 @@ void check_cfar(const RangeDoppler& map, const Radar& radar, const std::string& 
 }
 
 py::array_t<int64_t> cells_array(const std::vector<std::array<int64_t, 2>>& values) {
-  py::array_t<int64_t> cells({static_cast<py::ssize_t>(values.size()), py::ssize_t{2}});
+  py::array_t<int64_t> cells({std::ssize(values), py::ssize_t{2}});
   for (size_t i = 0; i < values.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) cells.mutable_at(i, axis) = values[i][axis];
   }
@@ -75,7 +75,7 @@ std::string text_of(const CfarResult& result) {
 
 void check_result(const CfarResult& made) {
   require_shape(made.power, {made.num_velocities, made.num_ranges}, "power");
-  require_shape(made.noise, {static_cast<py::ssize_t>(made.cells.size())}, "noise");
+  require_shape(made.noise, {std::ssize(made.cells)}, "noise");
   for (const auto& [velocity, range] : made.cells) {
     require(velocity >= 0 && velocity < made.num_velocities, "cells", "must lie in the map", velocity);
     require(range >= 0 && range < made.num_ranges, "cells", "must lie in the map", range);

@@ -30,8 +30,7 @@ AntennaPattern gain_table(Arg<"azimuth", VectorOf<double>> azimuth, Arg<"elevati
                           Arg<"gain", Array<double, "[E, A]">> gain, Arg<"phase", Optional<Array<double, "[E, A]">>> phase,
                           Arg<"normalize", Flag> normalize) {
   const auto samples = [&](const py::array_t<double>& given, const char* argument) {
-    const bool fits = given.shape(0) == static_cast<py::ssize_t>(elevation->size()) &&
-                      given.shape(1) == static_cast<py::ssize_t>(azimuth->size());
+    const bool fits = given.shape(0) == std::ssize(*elevation) && given.shape(1) == std::ssize(*azimuth);
     require(fits, argument, "must have a row for each elevation and a column for each azimuth",
             std::to_string(given.shape(0)) + " x " + std::to_string(given.shape(1)));
     return std::vector<double>(given.data(), given.data() + given.size());
@@ -53,8 +52,7 @@ py::object axis_of(const AntennaPattern& pattern, const std::vector<double>& (Ga
 py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
   if (!pattern.table || ((*pattern.table).*getter)().empty()) return py::none();
   const GainTable& table = *pattern.table;
-  return numpy_take(std::vector<double>((table.*getter)()),
-                    {static_cast<py::ssize_t>(table.elevation().size()), static_cast<py::ssize_t>(table.azimuth().size())});
+  return numpy_take(std::vector<double>((table.*getter)()), {std::ssize(table.elevation()), std::ssize(table.azimuth())});
 }
 
 double gain_of(const AntennaPattern& pattern, Arg<"cos_boresight", Real> cos_boresight) {

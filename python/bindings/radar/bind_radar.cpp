@@ -87,8 +87,8 @@ py::object code_phases_of(const Radar& self) {
   if (self.code_phases.empty()) return py::none();
   std::vector<double> values;
   for (const std::vector<double>& row : self.code_phases) values.insert(values.end(), row.begin(), row.end());
-  const auto num_rows = static_cast<py::ssize_t>(self.code_phases.size());
-  const auto length = static_cast<py::ssize_t>(self.code_phases.front().size());
+  const auto num_rows = std::ssize(self.code_phases);
+  const auto length = std::ssize(self.code_phases.front());
   return numpy_take(std::move(values), {num_rows, length});
 }
 

@@ -26,9 +26,7 @@ RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const
 py::array values_of(const py::object& self) {
   const auto& map = self.cast<const RangeDoppler&>();
   return numpy_view(map.values.data(),
-                    {map.num_transmitters, map.num_receivers, static_cast<py::ssize_t>(map.velocity.size()),
-                     static_cast<py::ssize_t>(map.range.size())},
-                    self);
+                    {map.num_transmitters, map.num_receivers, std::ssize(map.velocity), std::ssize(map.range)}, self);
 }
 
 void check_map(const RangeDoppler& map) {

@@ -54,7 +54,7 @@ py::object grid_index(const VirtualArray& array) {
   if (!array.grid) return py::none();
   std::vector<int64_t> index;
   for (const VirtualElement& element : array.elements) index.insert(index.end(), {element.row, element.column});
-  return numpy_take(std::move(index), {static_cast<py::ssize_t>(array.elements.size()), 2});
+  return numpy_take(std::move(index), {std::ssize(array.elements), 2});
 }
 
 py::array gaps_of(const VirtualArray& array) {

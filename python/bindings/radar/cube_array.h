@@ -11,8 +11,8 @@
 namespace echopath::bindings {
 
 inline Shape cube_shape(const Radar& radar) {
-  return {static_cast<py::ssize_t>(radar.transmitters.size()), static_cast<py::ssize_t>(radar.receivers.size()),
-          radar.waveform.num_chirps, radar.waveform.num_samples};
+  return {std::ssize(radar.transmitters), std::ssize(radar.receivers), radar.waveform.num_chirps,
+          radar.waveform.num_samples};
 }
 
 // Raises ValueError unless `value` has the shape of the radar's cube.

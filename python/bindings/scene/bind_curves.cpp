@@ -47,7 +47,7 @@ Curve curve(Arg<"times", VectorOf<double>> times, Arg<"values", Rows> values,
 }
 
 py::array_t<double> rows_of(const Curve& self, std::vector<double> numbers) {
-  const auto rows = static_cast<py::ssize_t>(self.times.size());
+  const auto rows = std::ssize(self.times);
   return numpy_take(std::move(numbers), {rows, static_cast<py::ssize_t>(self.num_columns())});
 }
 

@@ -70,7 +70,7 @@ py::dict fields_of(const Material& self) {
 
 py::array_t<double> backscatter(const Material& self, Arg<"grazing", VectorOf<double>> grazing,
                                 Arg<"frequency", Real> frequency) {
-  py::array_t<double> found(static_cast<py::ssize_t>(grazing->size()));
+  py::array_t<double> found(std::ssize(*grazing));
   for (size_t i = 0; i < grazing->size(); ++i) {
     const double angle = (*grazing)[i];
     require(angle >= 0 && angle <= 0.5 * kPi, "grazing", "must lie in [0, pi/2] rad", angle);

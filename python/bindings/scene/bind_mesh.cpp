@@ -59,7 +59,7 @@ std::shared_ptr<Mesh> part_of(const std::shared_ptr<Mesh>& self, const py::objec
 // What makes the mesh again: the input, as far as it was kept. The same repair then gives the same vertices and triangles,
 // and triangles without an area at the end stand for those that were removed.
 py::dict keywords_of_whole(const Mesh& self) {
-  const auto num_kept = static_cast<py::ssize_t>(self.triangles().size());
+  const auto num_kept = std::ssize(self.triangles());
   std::vector<Vec3> vertices(self.num_input_vertices(), Vec3::Zero());
   for (size_t v = 0; v < self.vertices().size(); ++v) vertices[self.original_vertex()[v]] = self.vertices()[v];
   std::vector<Triangle> triangles(num_kept + self.num_removed_triangles(), Triangle{0, 0, 0});

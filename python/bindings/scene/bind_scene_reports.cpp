@@ -24,7 +24,7 @@ py::tuple look_at_bodies(const Scene& scene, const Radar& radar, double time) {
   const PosedScene pose(scene, time);
   const std::vector<Body> bodies = bodies_of(scene, pose);
   const std::vector<ObjectSize> sizes = object_sizes(scene, bodies);
-  const auto count = static_cast<py::ssize_t>(sizes.size());
+  const auto count = std::ssize(sizes);
   py::array_t<int32_t> node(count);
   py::array_t<double> sides({count, py::ssize_t{2}});
   py::array_t<bool> closed(count);

@@ -83,7 +83,7 @@ MeshEntry entry_of_state(const py::dict& state) {
 }
 
 uint32_t checked_mesh_id(const Scene& scene, int mesh_id) {
-  const auto count = static_cast<int64_t>(scene.meshes().size());
+  const auto count = std::ssize(scene.meshes());
   if (mesh_id >= 0 && mesh_id < count) return static_cast<uint32_t>(mesh_id);
   throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " + std::to_string(mesh_id));
 }

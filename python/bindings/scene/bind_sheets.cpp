@@ -25,7 +25,7 @@ py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material
   if (*behind) std::reverse(layers.begin(), layers.end());
   const LayerStack stack(layers, *frequency);
   const SheetModel sheet(*material, *frequency);
-  const auto count = static_cast<py::ssize_t>(incidence->size());
+  const auto count = std::ssize(*incidence);
   py::array_t<std::complex<double>> out({py::ssize_t{5}, count});
   auto rows = out.mutable_unchecked<2>();
   for (py::ssize_t i = 0; i < count; ++i) {

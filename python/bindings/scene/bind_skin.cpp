@@ -98,12 +98,12 @@ std::vector<NamedJoint> named_joints(const Skin& skin) {
 
 template <class T>
 py::array_t<T> by_vertex(const Skin& skin, std::vector<T> values) {
-  const py::ssize_t rows = skin.num_vertices(), columns = static_cast<py::ssize_t>(values.size()) / rows;
+  const py::ssize_t rows = skin.num_vertices(), columns = std::ssize(values) / rows;
   return numpy_take(std::move(values), {rows, columns});
 }
 
 py::array_t<double> matrices(const std::vector<Transform>& transforms) {
-  py::array_t<double> out({static_cast<py::ssize_t>(transforms.size()), py::ssize_t{4}, py::ssize_t{4}});
+  py::array_t<double> out({std::ssize(transforms), py::ssize_t{4}, py::ssize_t{4}});
   for (size_t i = 0; i < transforms.size(); ++i) {
     Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(out.mutable_data() + 16 * i) = transforms[i].matrix();
   }

@@ -29,7 +29,7 @@ Shape parse_shape(std::string_view text) {
 }
 
 bool fits(const py::array& array, const Shape& shape) {
-  if (array.ndim() != static_cast<py::ssize_t>(shape.size())) return false;
+  if (array.ndim() != std::ssize(shape)) return false;
   for (size_t k = 0; k < shape.size(); ++k)
     if (shape[k] != kAnySize && shape[k] != array.shape(static_cast<py::ssize_t>(k))) return false;
   return true;
@@ -70,7 +70,7 @@ void put(const Quaternion& q, double* wxyz) {
 
 template <class Number, class Row>
 py::array_t<Number> rows_to_numpy(const std::vector<Row>& rows) {
-  py::array_t<Number> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
+  py::array_t<Number> array({std::ssize(rows), py::ssize_t{3}});
   Number* to = array.mutable_data();
   for (const Row& row : rows) to = std::copy_n(row.data(), 3, to);
   return array;
@@ -179,15 +179,14 @@ py::array_t<double> to_numpy(const Transform& value) {
 py::array_t<double> to_numpy(const std::vector<Vec3>& values) { return rows_to_numpy<double>(values); }
 
 py::array_t<double> to_numpy(const std::vector<Quaternion>& values) {
-  py::array_t<double> array({static_cast<py::ssize_t>(values.size()), py::ssize_t{4}});
+  py::array_t<double> array({std::ssize(values), py::ssize_t{4}});
   for (size_t i = 0; i < values.size(); ++i) put(values[i], array.mutable_data() + 4 * i);
   return array;
 }
 
 py::array_t<double> to_numpy(const std::vector<std::vector<Vec3>>& frames) {
   const size_t num_vertices = frames.empty() ? 0 : frames.front().size();
-  py::array_t<double> array(
-      {static_cast<py::ssize_t>(frames.size()), static_cast<py::ssize_t>(num_vertices), py::ssize_t{3}});
+  py::array_t<double> array({std::ssize(frames), static_cast<py::ssize_t>(num_vertices), py::ssize_t{3}});
   double* out = array.mutable_data();
   for (const std::vector<Vec3>& frame : frames)
     for (const Vec3& vertex : frame) out = std::copy_n(vertex.data(), 3, out);
@@ -197,11 +196,11 @@ py::array_t<double> to_numpy(const std::vector<std::vector<Vec3>>& frames) {
 py::array_t<uint32_t> to_numpy(const std::vector<IndexTriple>& values) { return rows_to_numpy<uint32_t>(values); }
 
 py::array_t<double> numpy_view(const std::vector<Vec3>& values, py::handle owner) {
-  return numpy_view(values.empty() ? nullptr : values.data()->data(), {static_cast<py::ssize_t>(values.size()), 3}, owner);
+  return numpy_view(values.empty() ? nullptr : values.data()->data(), {std::ssize(values), 3}, owner);
 }
 
 py::array_t<uint32_t> numpy_view(const std::vector<IndexTriple>& values, py::handle owner) {
-  return numpy_view(values.empty() ? nullptr : values.data()->data(), {static_cast<py::ssize_t>(values.size()), 3}, owner);
+  return numpy_view(values.empty() ? nullptr : values.data()->data(), {std::ssize(values), 3}, owner);
 }
 
 }  // namespace echopath::bindings

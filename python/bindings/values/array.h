@@ -54,7 +54,7 @@ py::array_t<double> to_numpy(const std::vector<std::vector<Vec3>>& frames);  // 
 py::array_t<uint32_t> to_numpy(const std::vector<IndexTriple>& values);      // [F, 3]
 template <class T>
 py::array_t<T> to_numpy(const std::vector<T>& values) {  // [N]
-  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+  return py::array_t<T>(std::ssize(values), values.data());
 }
 
 // An owner for numpy_view: a Python object that keeps `pointer` alive.
@@ -72,7 +72,7 @@ py::array_t<T> numpy_view(const T* data, const Shape& shape, py::handle owner) {
 }
 template <class T>
 py::array_t<T> numpy_view(const std::vector<T>& values, py::handle owner) {  // [N]
-  return numpy_view(values.data(), {static_cast<py::ssize_t>(values.size())}, owner);
+  return numpy_view(values.data(), {std::ssize(values)}, owner);
 }
 py::array_t<double> numpy_view(const std::vector<Vec3>& values, py::handle owner);           // [N, 3]
 py::array_t<uint32_t> numpy_view(const std::vector<IndexTriple>& values, py::handle owner);  // [F, 3]
@@ -86,7 +86,7 @@ py::array_t<T> numpy_take(std::vector<T>&& values, const Shape& shape) {
 }
 template <class T>
 py::array_t<T> numpy_take(std::vector<T>&& values) {  // [N]
-  const Shape shape{static_cast<py::ssize_t>(values.size())};
+  const Shape shape{std::ssize(values)};
   return numpy_take(std::move(values), shape);
 }
 

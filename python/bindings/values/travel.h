@@ -73,7 +73,7 @@ struct Codec<std::vector<std::array<int64_t, 2>>> {
   static py::object state(const Pairs& pairs) {
     std::vector<int64_t> flat;
     for (const auto& [first, second] : pairs) flat.insert(flat.end(), {first, second});
-    return numpy_take(std::move(flat), {static_cast<py::ssize_t>(pairs.size()), 2});
+    return numpy_take(std::move(flat), {std::ssize(pairs), 2});
   }
   static Pairs value(py::handle state, const char* name) {
     const std::vector<int64_t> flat = as_vector<int64_t>(state, name, "[N, 2]");
@@ -159,7 +159,7 @@ NamedField<Access, Names> field(const char* name, Access access, Names names) {
 
 template <class Value>
 py::ssize_t num_of(const std::vector<Value>& values) {
-  return static_cast<py::ssize_t>(values.size());
+  return std::ssize(values);
 }
 
 // Raises ValueError unless `values` has as many as fit the shape.

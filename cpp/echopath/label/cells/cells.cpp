@@ -58,7 +58,7 @@ CellMask cell_mask(std::span<const double> power, double noise_floor, double dyn
 
 std::vector<int16_t> strongest_part(std::span<const double> power, int64_t num_parts, std::span<const uint8_t> labelled) {
   const int64_t num_cells = cells_of(power.size(), num_parts, "num_parts");
-  require(static_cast<int64_t>(labelled.size()) == num_cells, "labelled",
+  require(std::ssize(labelled) == num_cells, "labelled",
           "must have one value for each of " + std::to_string(num_cells) + " cells", labelled.size());
   std::vector<int16_t> strongest(num_cells, kNoLabel);
   for_cells(num_cells, [&](int64_t begin, int64_t end) {
@@ -105,8 +105,8 @@ void set_rows(LabelRegion& region, const std::vector<int64_t>& occupied, const M
 void check_label_map(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels,
                      const MapShape& shape) {
   const std::string cells = "must have one value for each of " + std::to_string(shape.size()) + " cells";
-  require(static_cast<int64_t>(label.size()) == shape.size(), "label", cells, label.size());
-  require(static_cast<int64_t>(power.size()) == shape.size(), "power", cells, power.size());
+  require(std::ssize(label) == shape.size(), "label", cells, label.size());
+  require(std::ssize(power) == shape.size(), "power", cells, power.size());
   for (const int16_t l : label) require(l >= kNoLabel && l < num_labels, "label", "must be -1 or an index of a label", l);
 }
 

@@ -6,7 +6,7 @@
 namespace echopath {
 
 void PathBlock::add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum) {
-  add_record(static_cast<int64_t>(hits.size()), count, diffuse_bits, path_weight, path_stratum);
+  add_record(std::ssize(hits), count, diffuse_bits, path_weight, path_stratum);
   hits.insert(hits.end(), first, first + count);
 }
 
@@ -14,7 +14,7 @@ void PathBlock::add_reversal(const Hit* first, int count, uint64_t diffuse_bits,
                              int path_stratum) {
   uint64_t reversed_bits = 0;
   for (int k = 0; k < count; ++k) reversed_bits |= (diffuse_bits >> k & 1) << (count - 1 - k);
-  add_record(static_cast<int64_t>(hits.size()), count, reversed_bits, path_weight, path_stratum);
+  add_record(std::ssize(hits), count, reversed_bits, path_weight, path_stratum);
   rows.flags[rows.size() - 1] |= kReversedPath;
   for (int k = count; k-- > 0;) hits.push_back(first[k]);
 }

@@ -77,7 +77,7 @@ class PathBlock {
   void set_curved_cell(const std::array<float, 7>& cell);
   // Stores the hits of the current ray as far as its paths use them.
   void end_ray(const Hit* ray_hits) {
-    const auto base = static_cast<int64_t>(hits.size());
+    const auto base = std::ssize(hits);
     for (int k = 0; k < used_depth_; ++k) hits.push_back(ray_hits[k]);
     for (size_t i = first_of_ray_; i < rows.size(); ++i) {
       if (rows.offset[i] == kOfRay) rows.offset[i] = base;

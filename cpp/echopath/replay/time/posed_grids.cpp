@@ -36,7 +36,7 @@ const PosedGrid& PartlyPosedGrid::with(std::span<const uint32_t> meshes) {
   for (PosedScene& scene : *scenes_) scene.add(places, nodes, patches_);
   grid_.posed.take_meshes(first);
   for (size_t place = first; place < places->meshes.size(); ++place)
-    num_bytes_ += static_cast<int64_t>(scenes_->size()) * bytes_of_pose(scene_, places->meshes[place]);
+    num_bytes_ += std::ssize(*scenes_) * bytes_of_pose(scene_, places->meshes[place]);
   places_ = std::move(places);
   return grid_;
 }

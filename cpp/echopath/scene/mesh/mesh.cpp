@@ -141,7 +141,7 @@ struct Mesh::KeptEdges {
 Mesh::Mesh() : edges_(std::make_shared<KeptEdges>()) {}
 
 Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle) : Mesh() {
-  num_input_vertices_ = static_cast<int64_t>(vertices.size());
+  num_input_vertices_ = std::ssize(vertices);
   constexpr size_t kMaxCount = 0x7fffffff / 3;  // OpenMesh counts half-edges in an int
   require(triangles.size() < kMaxCount, "triangles", "must be fewer than 715 million", triangles.size());
   require(source_triangle.empty() || source_triangle.size() == triangles.size(), "original_triangle",

@@ -94,10 +94,10 @@ class OverlapSearch {
 
   // Returns all pairs, in an order that does not depend on the threads.
   std::vector<OverlapPair> run(Job* job) const {
-    const auto count = static_cast<int64_t>(tree_.size());
+    const auto count = std::ssize(tree_);
     std::vector<std::vector<OverlapPair>> found((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock);
-    if (job) job->start(static_cast<int64_t>(found.size()));
-    parallel_for(static_cast<int64_t>(found.size()), [&](int64_t block) {
+    if (job) job->start(std::ssize(found));
+    parallel_for(std::ssize(found), [&](int64_t block) {
       const int64_t end = std::min((block + 1) * kTrianglesPerBlock, count);
       for (int64_t place = block * kTrianglesPerBlock; place < end; ++place) {
         search_behind(static_cast<uint32_t>(place), found[block]);

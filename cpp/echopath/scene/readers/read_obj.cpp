@@ -197,7 +197,7 @@ class ObjBuilder {
 
   // OBJ counts from 1, and backwards from the latest vertex with negative numbers.
   uint32_t vertex_index(int64_t given) const {
-    const auto count = static_cast<int64_t>(soup.vertices.size());
+    const auto count = std::ssize(soup.vertices);
     const int64_t index = given > 0 ? given - 1 : count + given;
     if (given == 0 || index < 0 || index >= count) {
       refuse("vertex " + std::to_string(given) + " does not exist, there are " + std::to_string(count));
@@ -207,7 +207,7 @@ class ObjBuilder {
 
   // Counts as vertices do; what does not exist is no normal, as surfaces are whole without.
   uint32_t normal_index(int64_t given) const {
-    const auto count = static_cast<int64_t>(soup.normals.size());
+    const auto count = std::ssize(soup.normals);
     const int64_t index = given > 0 ? given - 1 : count + given;
     return given == 0 || index < 0 || index >= count ? kNoNormal : static_cast<uint32_t>(index);
   }

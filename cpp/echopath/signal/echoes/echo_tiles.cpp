@@ -69,7 +69,7 @@ double drift_of(const Echoes& block, int64_t echo) {
 // Returns classes as narrow as a cell, unless that leaves few echoes for each cell and class.
 DriftClasses classes_of_drift(std::span<const Echoes> blocks, double longest_delay, int num_cells) {
   std::vector<std::pair<Extent, Extent>> by_block(blocks.size());
-  parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
+  parallel_for(std::ssize(blocks), [&](int64_t b) {
     const Echoes& block = blocks[b];
     auto& [delay, drift] = by_block[b];
     for (int64_t p = 0; p < block.num_echoes; ++p) {
@@ -111,7 +111,7 @@ void EchoTiles::find_keys(std::span<const Echoes> blocks, double longest_delay, 
   for (size_t b = 0; b < blocks.size(); ++b) first[b + 1] = first[b] + blocks[b].num_echoes;
   const double steps = static_cast<double>((uint64_t{1} << delay_bits_) - 1) / longest_delay;
   order_.resize(first.back());
-  parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t b) {
+  parallel_for(std::ssize(blocks), [&](int64_t b) {
     const Echoes& block = blocks[b];
     const double* delay = block.delay.data() + int64_t{num_nodes_ / 2} * block.num_echoes;
     uint64_t* out = order_.data() + first[b];
@@ -185,7 +185,7 @@ bool EchoTiles::fits(std::span<const Echoes> blocks, double cell) const {
 void EchoTiles::cut() {
   tiles_.clear();
   first_.clear();
-  const auto total = static_cast<int64_t>(order_.size());
+  const auto total = std::ssize(order_);
   const auto group_of = [&](int64_t i) { return static_cast<uint32_t>(order_[i] >> group_shift()); };
   int64_t vector = 0;
   for (int64_t begin = 0; begin < total;) {
@@ -261,7 +261,7 @@ void gather_tile(int count, int num_nodes, double nothing, SourceOf source_of, d
 void EchoTiles::gather(std::span<const Echoes> blocks) {
   const uint64_t local_mask = (uint64_t{1} << local_bits_) - 1, index_mask = (uint64_t{1} << index_bits_) - 1;
   const double nothing = blocks.front().sampling.rows == TimeSampling::Rows::kLogarithms ? kLogarithmOfNothing : 0.0;
-  parallel_for(static_cast<int64_t>(tiles_.size()), [&](int64_t i) {
+  parallel_for(std::ssize(tiles_), [&](int64_t i) {
     const Tile& tile = tiles_[i];
     const auto source_of = [&](int p) {
       const int64_t place = first_[i] + std::min(p, tile.count - 1);

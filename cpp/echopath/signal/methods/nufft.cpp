@@ -77,7 +77,7 @@ class Nufft : public SpreadMethod {
     for (int64_t i = end; i < row_length(); ++i) grid[(i - end) % grid_size_] += std::complex<double>(row[i], imaginary[i]);
     fft_.transform(grid);
     // Sample n is bin n - reference_sample(), modulo the grid.
-    const int64_t num_below = reference_sample(), num_samples = static_cast<int64_t>(correction_.size());
+    const int64_t num_below = reference_sample(), num_samples = std::ssize(correction_);
     const auto* bins = reinterpret_cast<const double*>(grid.data());
     auto* samples = reinterpret_cast<double*>(out);
     run_simd<scale>(bins + 2 * (grid_size_ - num_below), correction_.data(), num_below, samples);

@@ -35,7 +35,7 @@ std::vector<Fft> ffts_of_rows() {
 // Returns sum_n factor_n e^{j 2 pi k (n - reference) / size} for k = 0 ... size - 1.
 std::vector<std::complex<double>> tones_sum(const std::vector<double>& factor, int64_t reference, int64_t size) {
   FftBuffer buffer(size);
-  for (int64_t n = 0; n < static_cast<int64_t>(factor.size()); ++n) {
+  for (int64_t n = 0; n < std::ssize(factor); ++n) {
     buffer[((n - reference) % size + size) % size] += factor[n];
   }
   Fft(static_cast<int>(size), FftDirection::kBackward).transform(buffer);
@@ -87,8 +87,8 @@ BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, con
 
 // Returns the place of what a cell adds to a column in the tables.
 size_t BandMap::place_of(int64_t cell, int64_t column) const {
-  const auto size = static_cast<int64_t>(response_.size());
-  const int64_t grid_size = static_cast<int64_t>(overlap_.size());
+  const auto size = std::ssize(response_);
+  const int64_t grid_size = std::ssize(overlap_);
   const int64_t step = (cell + first_cell_) * (size / grid_size) - column * (size / num_bins_);
   return static_cast<size_t>((step % size + size) % size);
 }

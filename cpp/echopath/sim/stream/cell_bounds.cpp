@@ -51,8 +51,8 @@ class WindowReach {
 
   std::vector<double> table(const std::vector<double>& fine, int reach, int zero_pad) const {
     std::vector<double> values(num_cells_ * zero_pad);
-    const auto size = static_cast<int64_t>(fine.size());
-    for (int64_t i = 0; i < static_cast<int64_t>(values.size()); ++i) {
+    const auto size = std::ssize(fine);
+    for (int64_t i = 0; i < std::ssize(values); ++i) {
       const int64_t centre = i * kFine / zero_pad;
       for (int64_t step = centre - reach * kFine; step <= centre + reach * kFine + 1; ++step) {
         values[i] = std::max(values[i], fine[(step + size) % size]);
@@ -67,7 +67,7 @@ class WindowReach {
 
 // Adds a bin of that amplitude to the bounds of all cells of a circle.
 void add_bin(double amplitude, int64_t first, const std::vector<double>& reach, std::vector<double>& row) {
-  const auto size = static_cast<int64_t>(row.size());
+  const auto size = std::ssize(row);
   for (int64_t r = 0; r < first; ++r) row[r] += amplitude * reach[r - first + size];
   for (int64_t r = first; r < size; ++r) row[r] += amplitude * reach[r - first];
 }
@@ -85,7 +85,7 @@ void CellBounds::see(std::span<const Echoes> blocks, std::span<const int64_t> fi
     paths.push_back(first.data());
     first = first.subspan(static_cast<size_t>(block.num_echoes));
   }
-  parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
+  parallel_for(std::ssize(blocks), [&](int64_t i) {
     const Echoes& block = blocks[i];
     const int num_chirps = waveform_.num_chirps, step = std::max(1, num_chirps / kChirps);
     for (int64_t begin = 0; begin < block.num_echoes; begin += EchoStates::kCapacity) {

@@ -14,7 +14,7 @@ void set_groups(const PathGroups& way, std::span<const int64_t> indices, std::sp
   for (const Echoes& block : blocks) first.push_back(first.back() + static_cast<size_t>(block.num_echoes));
   for (Echoes& block : blocks) block.group.clear();
   if (!way.group) return;
-  parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) {
+  parallel_for(std::ssize(blocks), [&](int64_t i) {
     std::vector<uint32_t>& group = blocks[i].group;
     group.reserve(first[i + 1] - first[i]);
     for (const int64_t path : indices.subspan(first[i], first[i + 1] - first[i])) {
@@ -102,12 +102,12 @@ CubePass::CubePass(const Paths& paths, const Radar& radar, const std::vector<Pat
     probe.emplace(paths, radar, stream.replayer(), settings.synthesis, *settings.probe);
     stream.watch(&*probe);
   }
-  if (job) job->start(paths.num_paths() * stream.num_channels() * static_cast<int64_t>(ways.size()));
+  if (job) job->start(paths.num_paths() * stream.num_channels() * std::ssize(ways));
   stream.run([&](int channel, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
     for (size_t way = 0; way < ways.size(); ++way) {
       set_groups(ways[way], of.first, blocks);
       synthesizers_[way].add(channel, blocks, job);
-      if (job) job->advance(of.count - static_cast<int64_t>(of.first.size()));
+      if (job) job->advance(of.count - std::ssize(of.first));
     }
   });
   if (probe) probe->finish(*settings.probe, job);

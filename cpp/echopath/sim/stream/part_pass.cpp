@@ -128,14 +128,14 @@ void PartPass::keep(const Sets& sets, const Sorted& sorted, Synthesizer signals)
 void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBounds* bounds, Job* job) {
   stream_.set_job(job);
   stream_.watch(adds_up_ && probe_ ? &*probe_ : nullptr);
-  if (job) job->start(static_cast<int64_t>(sorted.paths.size()) * stream_.num_channels());
+  if (job) job->start(std::ssize(sorted.paths) * stream_.num_channels());
   stream_.run(sorted.paths, [&](int channel, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
     if (bounds) bounds->see(blocks, of.first);
     if (out) {
       set_local_groups(of.first, group_, sorted.local, as_one, blocks);
       out->add(channel, blocks, job);
     }
-    if (job) job->advance(of.count - (out ? static_cast<int64_t>(of.first.size()) : 0));
+    if (job) job->advance(of.count - (out ? std::ssize(of.first) : 0));
   });
   stream_.set_job(nullptr);
 }

@@ -214,7 +214,7 @@ void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitte
 // Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
 std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent,
                                                      const Replay& replay, WindowPipeline& out) const {
-  const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = static_cast<int64_t>(paths.size());
+  const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = std::ssize(paths);
   std::vector<UnfollowedPath> all_left;
   const int64_t in_flight = size * blocks_in_flight(extent.num_rows);
   for (int64_t begin = 0; begin < num_paths; begin += in_flight) {
@@ -231,7 +231,7 @@ std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>&
 // Replays a window of blocks. Returns the paths that are left.
 std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
                                                         const Extent& extent, const Replay& replay, Window& window) const {
-  const int64_t count = static_cast<int64_t>(paths.size()), num_blocks = (count + block_size - 1) / block_size;
+  const int64_t count = std::ssize(paths), num_blocks = (count + block_size - 1) / block_size;
   window.first_channel = extent.first_channel;
   window.num_channels = static_cast<size_t>(extent.num_channels);
   window.blocks.resize(num_blocks);

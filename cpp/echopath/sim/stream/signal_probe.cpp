@@ -283,7 +283,7 @@ void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Jo
     of_phase += std::norm(exact) * phase * phase;
     chirp.largest_phase_error = std::max(chirp.largest_phase_error, phase);
   }
-  chirp.num_echoes = static_cast<int64_t>(paths.size());
+  chirp.num_echoes = std::ssize(paths);
   if (power > 0.0) {
     chirp.phase_error = std::sqrt(of_phase / power);
     chirp.amplitude_error = std::sqrt(of_amplitude / power);

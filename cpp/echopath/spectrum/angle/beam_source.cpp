@@ -60,7 +60,7 @@ BeamSource::BeamSource(const RangeDoppler& map, const Radar& radar, const Beamfo
       reader_(checked(map, radar), array_, radar, options.overlaps, options.compensate) {
   options.validate();
   const std::vector<double> weights = element_weights(array_, options.window);
-  weights_ = Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<int64_t>(weights.size()));
+  weights_ = Eigen::Map<const Eigen::VectorXd>(weights.data(), std::ssize(weights));
   if (options.forward_backward) mirrored_ = mirrored_elements(array_);
 }
 

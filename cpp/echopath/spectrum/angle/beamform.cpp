@@ -20,8 +20,8 @@ struct Strip {
 
 std::vector<Strip> strips_of(const RangeDoppler& map) {
   std::vector<Strip> strips;
-  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
-  for (int64_t v = 0; v < static_cast<int64_t>(map.velocity.size()); ++v) {
+  const int64_t num_ranges = std::ssize(map.range);
+  for (int64_t v = 0; v < std::ssize(map.velocity); ++v) {
     for (int64_t first = 0; first < num_ranges; first += BeamKernel::kColumns) {
       strips.push_back({v, first, std::min(BeamKernel::kColumns, num_ranges - first), v * num_ranges + first});
     }
@@ -31,7 +31,7 @@ std::vector<Strip> strips_of(const RangeDoppler& map) {
 
 std::vector<Strip> strips_of(const std::vector<Cell>& cells) {
   std::vector<Strip> strips;
-  for (const Cell& cell : cells) strips.push_back({cell[0], cell[1], 1, static_cast<int64_t>(strips.size())});
+  for (const Cell& cell : cells) strips.push_back({cell[0], cell[1], 1, std::ssize(strips)});
   return strips;
 }
 
@@ -55,8 +55,8 @@ std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, Be
                            const std::vector<Strip>& strips, int64_t num_cells, Job* job) {
   const BeamKernel beams(steering_vectors(source.array(), angles));
   std::vector<double> power(beams.num_directions() * num_cells);
-  if (job) job->start(static_cast<int64_t>(strips.size()));
-  parallel_for(static_cast<int64_t>(strips.size()), [&](int64_t task) {
+  if (job) job->start(std::ssize(strips));
+  parallel_for(std::ssize(strips), [&](int64_t task) {
     const Strip& strip = strips[task];
     const bool is_bartlett = method == BeamMethod::kBartlett;
     const BeamKernel::Powers values =
@@ -82,7 +82,7 @@ void BeamformOptions::validate() const {
 }
 
 void require_cells_of(const RangeDoppler& map, const std::vector<Cell>& cells) {
-  const int64_t limits[] = {static_cast<int64_t>(map.velocity.size()), static_cast<int64_t>(map.range.size())};
+  const int64_t limits[] = {std::ssize(map.velocity), std::ssize(map.range)};
   for (const Cell& cell : cells) {
     for (int k = 0; k < 2; ++k) {
       if (cell[k] >= 0 && cell[k] < limits[k]) continue;
@@ -113,7 +113,7 @@ BeamPower beamform(const RangeDoppler& map, const Radar& radar, const std::vecto
     result.velocity.push_back(map.velocity[cell[0]]);
     result.range.push_back(map.range[cell[1]]);
   }
-  result.power = powers(source, angles, options.method, strips_of(cells), static_cast<int64_t>(cells.size()), job);
+  result.power = powers(source, angles, options.method, strips_of(cells), std::ssize(cells), job);
   return result;
 }
 

@@ -45,8 +45,8 @@ class PeakSearch {
   }
 
  private:
-  int64_t num_azimuths() const { return static_cast<int64_t>(angles_.azimuth.size()); }
-  int64_t num_elevations() const { return static_cast<int64_t>(angles_.elevation.size()); }
+  int64_t num_azimuths() const { return std::ssize(angles_.azimuth); }
+  int64_t num_elevations() const { return std::ssize(angles_.elevation); }
 
   std::vector<Peak> peaks(const CellBeam& beam) const {
     const Eigen::VectorXd power = beam.power(beams_);
@@ -89,7 +89,7 @@ class PeakSearch {
 
   static double step(const std::vector<double>& axis, int64_t i) {
     if (axis.size() == 1) return 0.0;
-    const int64_t last = static_cast<int64_t>(axis.size()) - 1;
+    const int64_t last = std::ssize(axis) - 1;
     return std::max(i > 0 ? axis[i] - axis[i - 1] : 0.0, i < last ? axis[i + 1] - axis[i] : 0.0);
   }
 
@@ -161,11 +161,11 @@ AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, cons
   const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   const PeakSearch search(source, angles, options);
   std::vector<CellPeaks> found(cells.size());
-  if (job) job->start(static_cast<int64_t>(cells.size()));
+  if (job) job->start(std::ssize(cells));
   const auto search_cell = [&](int64_t i) {
     found[i] = search.find(cells[i], (velocity_of(i) - map.velocity[cells[i][0]]) / span);
   };
-  parallel_for(static_cast<int64_t>(cells.size()), search_cell, job);
+  parallel_for(std::ssize(cells), search_cell, job);
 
   const Vec3 middle = 0.5 * (mean_position(radar.transmitters) + mean_position(radar.receivers));
   AngleEstimates result;

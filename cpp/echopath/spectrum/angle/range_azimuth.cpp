@@ -49,7 +49,7 @@ VelocityRows chosen_rows(const RangeDoppler& map, const VelocityChoice& choice) 
     const int64_t row = nearest_velocity(map, *choice.velocity);
     return {row, row + 1};
   }
-  return choice.gate ? rows_in(map, *choice.gate) : VelocityRows{0, static_cast<int64_t>(map.velocity.size())};
+  return choice.gate ? rows_in(map, *choice.gate) : VelocityRows{0, std::ssize(map.velocity)};
 }
 
 // Computes the map of one choice of velocities, by strips of ranges.
@@ -95,8 +95,8 @@ RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const An
   const double scale = is_sum ? share_of_sum(map, radar.waveform.num_chirps) : 1.0;
   const BeamKernel beams(steering_vectors(source.array(), angles));
   const Picture picture{source, beams, rows, choice.velocity.has_value(), choice.combine, job};
-  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
-  const int64_t num_azimuths = static_cast<int64_t>(angles.azimuth.size());
+  const int64_t num_ranges = std::ssize(map.range);
+  const int64_t num_azimuths = std::ssize(angles.azimuth);
   result.power.assign(num_azimuths * num_ranges, 0.0);
 
   const int64_t num_tasks = (num_ranges + BeamKernel::kColumns - 1) / BeamKernel::kColumns;

@@ -11,12 +11,12 @@ using Complex = std::complex<double>;
 
 ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array, const Radar& radar, Overlaps overlaps,
                              bool compensate)
-    : map_(map), num_velocities_(static_cast<int64_t>(map.velocity.size())),
-      num_ranges_(static_cast<int64_t>(map.range.size())), compensate_(compensate && radar.takes_turns()), first_{0} {
+    : map_(map), num_velocities_(std::ssize(map.velocity)), num_ranges_(std::ssize(map.range)),
+      compensate_(compensate && radar.takes_turns()), first_{0} {
   for (const VirtualElement& element : array.elements) {
     const auto end = overlaps == Overlaps::kFirst ? element.channels.begin() + 1 : element.channels.end();
     channel_.insert(channel_.end(), element.channels.begin(), end);
-    first_.push_back(static_cast<int64_t>(channel_.size()));
+    first_.push_back(std::ssize(channel_));
   }
   if (!compensate_) return;
   const double period = radar.num_slots() * radar.waveform.mean_interval();

@@ -18,7 +18,7 @@ class ElementReader {
  public:
   // `compensate` takes out the phase between TDM slots at the velocity of each cell, unless that has been done already.
   ElementReader(const RangeDoppler& map, const VirtualArray& array, const Radar& radar, Overlaps overlaps, bool compensate);
-  int64_t num_elements() const { return static_cast<int64_t>(first_.size()) - 1; }
+  int64_t num_elements() const { return std::ssize(first_) - 1; }
   int64_t num_velocities() const { return num_velocities_; }
   int64_t num_ranges() const { return num_ranges_; }
 

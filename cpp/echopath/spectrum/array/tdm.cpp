@@ -108,8 +108,8 @@ RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fol
   const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   for (double& v : result.velocity) v += fold * span;
   const auto phasors = slot_phasors(radar, result.velocity), carriers = carrier_phasors(radar, result.range);
-  const int64_t num_velocities = static_cast<int64_t>(map.velocity.size());
-  const int64_t num_ranges = static_cast<int64_t>(map.range.size());
+  const int64_t num_velocities = std::ssize(map.velocity);
+  const int64_t num_ranges = std::ssize(map.range);
   parallel_for(map.num_transmitters * map.num_receivers * num_velocities, [&](int64_t row) {
     if (job) job->throw_if_cancelled();
     const int64_t slot = row / (map.num_receivers * num_velocities);

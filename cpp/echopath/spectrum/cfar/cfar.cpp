@@ -115,11 +115,11 @@ CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOp
   const int velocity_lobe = main_lobe_cells(map.window.velocity, waveform.num_chirps, map.zero_pad);
   const int range_lobe = main_lobe_cells(map.window.range, waveform.num_samples, map.zero_pad);
   const auto velocity = half_widths(options.guard_velocity, options.training_velocity, velocity_lobe,
-                                    kTrainingVelocity * map.zero_pad, static_cast<int64_t>(map.velocity.size()));
+                                    kTrainingVelocity * map.zero_pad, std::ssize(map.velocity));
   const auto range = half_widths(options.guard_range, options.training_range, range_lobe, kTrainingRange * map.zero_pad,
-                                 static_cast<int64_t>(map.range.size()));
+                                 std::ssize(map.range));
   design.cells = {velocity.guard, range.guard, velocity.training, range.training};
-  design.cells.validate(static_cast<int64_t>(map.velocity.size()), static_cast<int64_t>(map.range.size()));
+  design.cells.validate(std::ssize(map.velocity), std::ssize(map.range));
   design.validate();
   return design;
 }
@@ -128,8 +128,8 @@ CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& 
   CfarResult result;
   result.design = cfar_design(map, radar, options);
   result.factors = kept_factors(result.design, job);
-  result.num_velocities = static_cast<int64_t>(map.velocity.size());
-  result.num_ranges = static_cast<int64_t>(map.range.size());
+  result.num_velocities = std::ssize(map.velocity);
+  result.num_ranges = std::ssize(map.range);
   result.power = mean_power(map, job);
   for (const double power : result.power)
     require(std::isfinite(power), "spectrum", "must have values whose power is finite", power);

@@ -164,7 +164,7 @@ std::vector<double> averaging_factors(const CfarDesign& design, const TrainingNo
   const std::vector<int> columns =
       computed_columns(design.cells, noise.velocity_factor().cols() * noise.range_factor().cols());
   std::vector<double> factors(columns.size());
-  parallel_for(static_cast<int64_t>(columns.size()), [&](int64_t i) {
+  parallel_for(std::ssize(columns), [&](int64_t i) {
     if (job) job->throw_if_cancelled();
     const double multiplier = coupled_multiplier(ColumnForm(noise, columns[i], job), design, job);
     factors[i] = static_cast<double>(design.cells.num_training()) * multiplier;

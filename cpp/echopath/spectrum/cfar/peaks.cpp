@@ -16,8 +16,8 @@ using Cell = std::array<int64_t, 2>;
 class PeakFinder {
  public:
   PeakFinder(const RangeDoppler& map, const ChirpSequence& waveform, const std::vector<double>& power)
-      : map_(map), power_(power), num_velocities_(static_cast<int64_t>(map.velocity.size())),
-        num_ranges_(static_cast<int64_t>(map.range.size())), ranges_are_a_circle_(!waveform.real),
+      : map_(map), power_(power), num_velocities_(std::ssize(map.velocity)), num_ranges_(std::ssize(map.range)),
+        ranges_are_a_circle_(!waveform.real),
         velocity_(window_samples(map.window.velocity, waveform.num_chirps), map.zero_pad),
         range_(window_samples(map.window.range, waveform.num_samples), map.zero_pad) {}
 
@@ -88,7 +88,7 @@ Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& 
     peaks.cells.push_back(found.cells[i]);
     peaks.noise.push_back(found.noise[i]);
   }
-  const int64_t count = static_cast<int64_t>(peaks.cells.size());
+  const int64_t count = std::ssize(peaks.cells);
   for (auto* values : {&peaks.velocity_offset, &peaks.range_offset, &peaks.velocity, &peaks.range, &peaks.power}) {
     values->resize(count);
   }
@@ -102,7 +102,7 @@ Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& 
     const double away = peaks.range_offset[i] = finder.range_offset(peaks.cells[i]);
     peaks.velocity[i] = folded(map.velocity[v] + up * velocity_step, map.velocity.front() - 0.5 * velocity_step, span);
     peaks.range[i] = map.range[r] + away * range_step;
-    peaks.power[i] = found.power[v * static_cast<int64_t>(map.range.size()) + r] / finder.power_in_cell(up, away);
+    peaks.power[i] = found.power[v * std::ssize(map.range) + r] / finder.power_in_cell(up, away);
   });
   return peaks;
 }

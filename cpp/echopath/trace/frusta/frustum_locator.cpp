@@ -58,7 +58,7 @@ FrustumLocator::FrustumLocator(std::span<const MirrorFrustum> frusta, double rad
 // A frustum that holds all of a cell holds its halves, too, and is looked at no more.
 FrustumLocator::Growth FrustumLocator::half_of(const Regions& regions, const Growth& whole, const Eigen::AlignedBox3d& box) {
   Growth half{box, whole.holding, {}, whole.depth + 1, 0};
-  const auto num_before = static_cast<int64_t>(half.holding.size());
+  const auto num_before = std::ssize(half.holding);
   for (const int frustum : whole.crossing) {
     const Reach reach = reach_into(box, regions.of(frustum));
     if (reach == Reach::kWhole) half.holding.push_back(frustum);

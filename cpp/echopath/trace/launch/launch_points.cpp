@@ -32,7 +32,7 @@ class EqualShares : public LaunchPoints {
   int64_t size() const override { return num_points_; }
   double cell_area() const override { return kPi / static_cast<double>(num_points_); }
   int batch_of(int64_t index) const override {
-    return static_cast<int>(((index + 1) * static_cast<int64_t>(shifts_.size()) - 1) / num_points_);
+    return static_cast<int>(((index + 1) * std::ssize(shifts_) - 1) / num_points_);
   }
   Eigen::Vector2d point(int64_t index) const override {
     const int batch = batch_of(index);
@@ -43,7 +43,7 @@ class EqualShares : public LaunchPoints {
   virtual Eigen::Vector2d of_batch(int64_t index, int64_t count, const Eigen::Vector2d& shift) const = 0;
 
  private:
-  int64_t first(int batch) const { return num_points_ * batch / static_cast<int64_t>(shifts_.size()); }
+  int64_t first(int batch) const { return num_points_ * batch / std::ssize(shifts_); }
 
   int64_t num_points_;
   std::vector<Eigen::Vector2d> shifts_;

@@ -189,7 +189,7 @@ std::vector<Echo> FrameCheck::at_posed_times(std::span<const int64_t> paths, con
     if (!is_still(local.paths[i])) moving.push_back(paths[i]);
   }
   const std::vector<Echo> found = echoes_at(moving, posed_nodes_);
-  const auto num_times = static_cast<int64_t>(views_.size());
+  const auto num_times = std::ssize(views_);
   auto next = found.begin();
   std::vector<Echo> echoes;
   for (size_t i = 0; i < paths.size(); ++i) {

@@ -45,7 +45,7 @@ std::vector<double> sample_times(const Curve& curve, const Playback& playback, c
       for (int i = 0; i < samples; ++i) times.push_back(playback.time_of(curve.times[k] + step * i / samples, run));
     }
   }
-  std::sort(times.begin(), times.end());
+  std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }

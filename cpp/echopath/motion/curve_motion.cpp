@@ -113,7 +113,7 @@ std::vector<double> CurveMotion::breakpoints(const TimeSpan& during) const {
   for (const std::optional<Curve>* curve : {&curves.translation, &curves.rotation, &curves.scale}) {
     if (*curve) playback.append_times((*curve)->times, during, times);
   }
-  std::sort(times.begin(), times.end());
+  std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }

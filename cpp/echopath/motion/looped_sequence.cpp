@@ -12,7 +12,7 @@ namespace {
 std::vector<double> ascending_times(const Playback& playback, const std::vector<double>& own, const TimeSpan& during) {
   std::vector<double> times;
   playback.append_times(own, during, times);
-  std::sort(times.begin(), times.end());
+  std::ranges::sort(times);
   return times;
 }
 

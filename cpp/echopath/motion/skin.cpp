@@ -200,14 +200,14 @@ std::vector<uint32_t> Skin::dominant_joint(std::span<const std::array<uint32_t, 
   dominant.reserve(triangles.size());
   std::vector<double> sums(data_->joints.size(), 0.0);
   for (const std::array<uint32_t, 3>& triangle : triangles) {
-    std::fill(sums.begin(), sums.end(), 0.0);
+    std::ranges::fill(sums, 0.0);
     for (const uint32_t vertex : triangle) {
       require(vertex < data_->vertices.size(), "triangles", "must hold indices below the number of vertices", vertex);
       for (uint32_t i = data_->first[vertex]; i < data_->first[vertex + 1]; ++i) {
         sums[data_->influences[i].joint] += data_->influences[i].weight;
       }
     }
-    dominant.push_back(static_cast<uint32_t>(std::max_element(sums.begin(), sums.end()) - sums.begin()));
+    dominant.push_back(static_cast<uint32_t>(std::ranges::max_element(sums) - sums.begin()));
   }
   return dominant;
 }

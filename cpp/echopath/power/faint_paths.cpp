@@ -34,8 +34,7 @@ bool look_alike(const Antenna& a, const Antenna& b) {
 std::vector<size_t> kinds_of(const std::vector<Antenna>& antennas) {
   std::vector<size_t> kinds;
   for (size_t i = 0; i < antennas.size(); ++i) {
-    const bool is_known =
-        std::any_of(kinds.begin(), kinds.end(), [&](size_t kind) { return look_alike(antennas[kind], antennas[i]); });
+    const bool is_known = std::ranges::any_of(kinds, [&](size_t kind) { return look_alike(antennas[kind], antennas[i]); });
     if (!is_known) kinds.push_back(i);
   }
   return kinds;
@@ -55,8 +54,7 @@ std::vector<double> largest_power(const Paths& paths, std::span<const int64_t> p
   for (const size_t tx : kinds_of(paths.radar.transmitters)) {
     for (const size_t rx : kinds_of(paths.radar.receivers)) {
       const std::vector<double> there = path_power(paths, places, one_channel(paths.radar, tx, rx), job);
-      std::transform(there.begin(), there.end(), power.begin(), power.begin(),
-                     [](double one, double other) { return std::max(one, other); });
+      std::ranges::transform(there, power, power.begin(), std::ranges::max);
     }
   }
   return power;
@@ -122,7 +120,7 @@ class Lot {
       const auto path = static_cast<size_t>(places_[i]);
       entries.push_back({key_of(path), power_[i], path});
     }
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    std::ranges::sort(entries, [](const Entry& a, const Entry& b) { return a.key < b.key; });
     for (size_t i = 0, next = 0; i < entries.size(); i = next) {
       while (next < entries.size() && entries[next].key == entries[i].key) ++next;
       draw_together(std::span(entries).subspan(i, next - i));
@@ -189,7 +187,7 @@ Paths thinned(Paths paths, Job* job) {
   if (places.empty()) return paths;
   const std::vector<double> power = largest_power(paths, places, job);
   const std::vector<uint8_t> keep = Lot(paths, places, power).draw();
-  const auto num_left_out = std::count(keep.begin(), keep.end(), uint8_t{0});
+  const auto num_left_out = std::ranges::count(keep, uint8_t{0});
   if (num_left_out == 0) return paths;
   Paths kept = paths.select(keep, job).with_own_hits(job);
   kept.frame.statistics.num_faint_paths += num_left_out;

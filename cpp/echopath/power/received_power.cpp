@@ -124,7 +124,7 @@ void check(const Sorting& sorting, const Paths& paths) {
   const std::span<const uint32_t> group = sorting.group_of_path;
   require(group.size() == static_cast<size_t>(paths.num_paths()), "group_of_path", "must have one group for each path",
           group.size());
-  const auto last = std::max_element(group.begin(), group.end());
+  const auto last = std::ranges::max_element(group);
   require(last == group.end() || *last < sorting.num_groups, "group_of_path", "must lie below the number of groups",
           last == group.end() ? 0 : *last);
 }
@@ -160,8 +160,8 @@ std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std:
   for (const Sorting& sorting : sortings) check(sorting, paths);
   std::vector<std::vector<ReceivedPower>> powers;
   for (const std::vector<GroupSums>& groups : sum_groups(paths, radar_of(paths.radar, channel), sortings, job, of_paths)) {
-    std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()),
-                   [&](const GroupSums& sums) { return with_interval(sums, paths.frame); });
+    std::ranges::transform(groups, std::back_inserter(powers.emplace_back()),
+                           [&](const GroupSums& sums) { return with_interval(sums, paths.frame); });
   }
   return powers;
 }

@@ -19,7 +19,7 @@ void TrianglePoints::add(const Hit& hit, double power) {
     triangle_id_ = hit.triangle_id;
   }
   const int exponent = static_cast<int>(std::floor(0.5 * std::log2(power)));
-  auto level = std::find_if(levels_.begin(), levels_.end(), [&](const Level& one) { return one.exponent == exponent; });
+  auto level = std::ranges::find_if(levels_, [&](const Level& one) { return one.exponent == exponent; });
   if (level == levels_.end()) level = levels_.insert(level, Level{exponent});
   level->count += 1.0;
   level->squares += power * power;

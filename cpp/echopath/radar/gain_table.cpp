@@ -115,7 +115,7 @@ AntennaGain GainTable::toward(const Vec3& direction) const {
   return {std::norm(found), phase_.empty() ? 0.0 : std::arg(found)};
 }
 
-double GainTable::peak_gain() const { return *std::max_element(gain_.begin(), gain_.end()); }
+double GainTable::peak_gain() const { return *std::ranges::max_element(gain_); }
 
 double GainTable::most_beyond_samples() const {
   const auto largest_ratio = [](const std::vector<double>& axis, double gap) {
@@ -186,7 +186,7 @@ bool GainTable::find_azimuth(double azimuth, Stencil& out) const {
 bool GainTable::find_elevation(double elevation, Stencil& out) const {
   if (elevation < elevation_.front() - kAngleTolerance || elevation > elevation_.back() + kAngleTolerance) return false;
   const double inside = std::clamp(elevation, elevation_.front(), elevation_.back());
-  const auto above = std::upper_bound(elevation_.begin(), elevation_.end(), inside);
+  const auto above = std::ranges::upper_bound(elevation_, inside);
   const int rows = static_cast<int>(elevation_.size());
   const int cell = std::clamp(static_cast<int>(above - elevation_.begin()) - 1, 0, rows - 2);
   double at[4] = {0.0, 0.0, 0.0, 0.0};

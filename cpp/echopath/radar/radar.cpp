@@ -65,8 +65,7 @@ double sum_of(const std::vector<double>& values, size_t count) {
 bool has_complex_code(const Radar& radar) {
   if (radar.multiplexing == Multiplexing::kDdm) return radar.transmitters.size() > 1;  // at least three phases in a turn
   const auto is_complex = [](double phase) { return std::abs(std::sin(phase)) > kSignRounding; };
-  return std::any_of(radar.code_phases.begin(), radar.code_phases.end(),
-                     [&](const auto& row) { return std::any_of(row.begin(), row.end(), is_complex); });
+  return std::ranges::any_of(radar.code_phases, [&](const auto& row) { return std::ranges::any_of(row, is_complex); });
 }
 
 void validate_code(const Radar& radar) {

@@ -90,7 +90,7 @@ void validate_passes(const Paths& paths) {
           offsets.size());
   const auto end = std::ssize(paths.passes);
   require((offsets.empty() ? 0 : offsets.back()) == end, "pass_offsets", "must end with the number of passes", end);
-  require(offsets.empty() || (offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end())), "pass_offsets",
+  require(offsets.empty() || (offsets.front() == 0 && std::ranges::is_sorted(offsets)), "pass_offsets",
           "must begin with 0 and ascend, entries", offsets.size());
   for (size_t path = 0; path < size; ++path) {
     uint32_t leg = 0;
@@ -177,18 +177,17 @@ void Paths::validate_path(size_t path) const {
           int{stratum[path]});
   require(is_finite(weight[path]), "weight", "must be finite", weight[path]);
   if (!curved_cell.empty()) {
-    const bool are_finite =
-        std::all_of(curved_cell[path].begin(), curved_cell[path].end(), [](float x) { return std::isfinite(x); });
+    const bool are_finite = std::ranges::all_of(curved_cell[path], [](float x) { return std::isfinite(x); });
     require(are_finite, "curved_cell", "must be finite, path", path);
   }
   if (!jones.empty()) {
-    require(std::all_of(jones[path].begin(), jones[path].end(), is_finite), "jones", "must be finite, path", path);
+    require(std::ranges::all_of(jones[path], is_finite), "jones", "must be finite, path", path);
   }
 }
 
 Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
   require(std::ssize(keep) == num_paths(), "selection", "must have one entry per path", keep.size());
-  const auto count = static_cast<size_t>(std::count_if(keep.begin(), keep.end(), [](uint8_t value) { return value != 0; }));
+  const auto count = static_cast<size_t>(std::ranges::count_if(keep, [](uint8_t value) { return value != 0; }));
   const auto column = [&](const auto& values) { return kept(values, keep, count, job); };
   Paths out;
   out.hits = hits;

@@ -27,7 +27,7 @@ bool JoinRule::is_joined(size_t before, size_t path) const {
   if (!paths_.passes_of(before).empty() || !paths_.passes_of(path).empty()) return false;
   if (paths_.flags[before] != paths_.flags[path] || paths_.batch[before] != paths_.batch[path]) return false;
   const auto is_alike = [&](const std::vector<uint32_t>* label) { return (*label)[before] == (*label)[path]; };
-  return std::all_of(labels_.begin(), labels_.end(), is_alike) && has_same_images(before, path);
+  return std::ranges::all_of(labels_, is_alike) && has_same_images(before, path);
 }
 
 bool JoinRule::has_same_images(size_t before, size_t path) const {

@@ -74,7 +74,7 @@ JoinRule Replayer::join_rule(std::vector<const std::vector<uint32_t>*> labels) c
 }
 
 std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<const uint8_t> joined) const {
-  const auto num_left = std::count(joined.begin(), joined.end(), 0);
+  const auto num_left = std::ranges::count(joined, 0);
   if (static_cast<size_t>(num_left) == joined.size()) return of_paths;
   std::vector<Echoes> echoes;
   for (Echoes& all : of_paths) {
@@ -182,7 +182,7 @@ std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, GridInd
   Target targets[] = {{polynomial.posed, transmitter * num_receivers(), rows_of(lengths)},
                       {chirps.posed, 0, rows_of(echoes, static_cast<size_t>(sampling.order))}};
   targets[0].wanted.with_amplitudes = false;
-  for (Echoes& channel : echoes) std::fill(channel.amplitude.begin(), channel.amplitude.end(), 0.0);
+  for (Echoes& channel : echoes) std::ranges::fill(channel.amplitude, 0.0);
   for (Target& target : targets) {
     for (ChannelNodes& nodes : target.nodes) nodes.echo_of = joined.empty() ? nullptr : echo_of.data();
   }
@@ -207,7 +207,7 @@ std::vector<Echoes> Replayer::not_dark(std::span<const int64_t> indices, const P
   std::unique_ptr<PathEvaluator> evaluator = take_evaluator();
   evaluator->plan(indices);
   dark = evaluator->leave_out_dark(grid.posed, grid.nodes, radio_, negligible_amplitude());
-  const auto num_left = static_cast<size_t>(std::count(dark.begin(), dark.end(), 0));
+  const auto num_left = static_cast<size_t>(std::ranges::count(dark, 0));
   std::vector<Echoes> echoes = take_echoes_of(grid, num_left);
   Target target{grid.posed, 0, rows_of(echoes), wanted};
   evaluate_planned(*evaluator, 0, {&target, 1});
@@ -230,7 +230,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment
   if (times.empty()) return;
   const PosedNodes posed = posed_.pose(times);
   Wanted wanted;
-  wanted.with_amplitudes = std::any_of(moments.begin(), moments.end(), [](const Moment& one) { return one.amplitudes; });
+  wanted.with_amplitudes = std::ranges::any_of(moments, [](const Moment& one) { return one.amplitudes; });
   parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
     const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
     std::vector<Echoes> echoes = take_echoes(size, 1, times.size());

@@ -192,7 +192,7 @@ std::vector<double> Scene::breakpoints(const TimeSpan& during) const {
     if (node.motion) append(node.motion->breakpoints(during));
     if (node.deformation) append(node.deformation->breakpoints(during));
   }
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }

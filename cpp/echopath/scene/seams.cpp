@@ -45,7 +45,7 @@ void find_contacts(std::vector<Placed>& all) {
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto left = [&](size_t i) { return std::tuple(all[i].group, all[i].box.min().x(), i); };
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return left(a) < left(b); });
+  std::ranges::sort(order, [&](size_t a, size_t b) { return left(a) < left(b); });
   for (size_t i = 0; i < order.size(); ++i) {
     Placed& one = all[order[i]];
     const Vec3 margin = Vec3::Constant(kTouch * extent[one.group].diagonal().norm());
@@ -222,7 +222,7 @@ SeamedEdges::SeamedEdges(const Scene& scene) : edges(scene.meshes().size()), is_
   }
   const auto key = [](const SharpEdge& edge) { return std::tie(edge.triangle, edge.side, edge.begin); };
   for (uint32_t id = 0; id < edges.size(); ++id) {
-    std::sort(edges[id].begin(), edges[id].end(), [&](const SharpEdge& a, const SharpEdge& b) { return key(a) < key(b); });
+    std::ranges::sort(edges[id], [&](const SharpEdge& a, const SharpEdge& b) { return key(a) < key(b); });
     body[id] = root_of(body, id);
   }
 }

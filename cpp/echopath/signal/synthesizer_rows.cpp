@@ -93,7 +93,7 @@ void Synthesizer::write_samples(int channel, std::span<const int> groups, std::c
   }
   std::vector<double> row(row_size(true));
   for (int chirp = 0; chirp < waveform_.num_chirps; ++chirp, out += num_samples) {
-    std::fill(row.begin(), row.end(), 0.0);
+    std::ranges::fill(row, 0.0);
     for (const int group : moving) add_moving_row(channel, group, chirp, row.data());
     if (moving.empty()) std::fill_n(out, num_samples, 0.0);
     else write_row(row.data(), true, out);

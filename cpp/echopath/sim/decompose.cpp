@@ -104,7 +104,7 @@ Views decompose_record(const Paths& paths, const Radar& radar, const std::vector
 
 // Returns the part of that name; one that no earlier record has is put before the last.
 PartCube& part_named(const std::string& name, std::vector<PartCube>& parts, const Radar& radar) {
-  const auto found = std::find_if(parts.begin(), parts.end(), [&](const PartCube& part) { return part.name == name; });
+  const auto found = std::ranges::find_if(parts, [&](const PartCube& part) { return part.name == name; });
   if (found != parts.end()) return *found;
   return *parts.insert(parts.empty() ? parts.end() : parts.end() - 1, {name, Cube::zeros(radar)});
 }

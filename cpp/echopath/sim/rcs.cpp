@@ -91,7 +91,7 @@ void add_shots(const Target& target, const RcsDirections& pair, double distance,
   std::vector<RcsPolarization> transmitted;
   for (size_t i = 0; i < settings.channels.size(); ++i) {
     const auto& [transmit, receive] = settings.channels[i];
-    const auto found = std::find(transmitted.begin(), transmitted.end(), transmit);
+    const auto found = std::ranges::find(transmitted, transmit);
     const size_t index = own + static_cast<size_t>(found - transmitted.begin());
     if (found == transmitted.end()) {
       transmitted.push_back(transmit);

@@ -162,7 +162,7 @@ void MapTransform::transform(const std::complex<double>* samples, std::vector<st
   for (int64_t first = 0; first < num_ranges; first += kColumnsPerTask) {
     const int64_t count = std::min<int64_t>(kColumnsPerTask, num_ranges - first);
     const auto in_strip = asked.empty() ? asked : asked.subspan(static_cast<size_t>(first), static_cast<size_t>(count));
-    if (!asked.empty() && std::none_of(in_strip.begin(), in_strip.end(), [](uint8_t one) { return one != 0; })) continue;
+    if (!asked.empty() && std::ranges::none_of(in_strip, [](uint8_t one) { return one != 0; })) continue;
     transform_strip(plan_->doppler_fft, plan_->doppler_taper, profiles.data() + first, num_ranges, count, values + first);
   }
 }

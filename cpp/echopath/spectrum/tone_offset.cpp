@@ -45,7 +45,7 @@ double ToneOffset::difference(double offset) const {
 
 double ToneOffset::offset(double above, double below) const {
   const double value = std::clamp(above - below, difference_.front(), difference_.back());
-  const auto next = std::upper_bound(difference_.begin(), difference_.end(), value) - difference_.begin();
+  const auto next = std::ranges::upper_bound(difference_, value) - difference_.begin();
   const int first = std::clamp(static_cast<int>(next) - 2, 0, kNodes - 4);
   return cubic(difference_.data() + first, {node(first), node(first + 1), node(first + 2), node(first + 3)}, value);
 }

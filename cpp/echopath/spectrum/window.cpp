@@ -51,7 +51,7 @@ std::vector<double> chebyshev_window(int n, double sidelobe_db) {
     }
     samples[i] = sum;
   }
-  const double largest = *std::max_element(samples.begin(), samples.end());
+  const double largest = *std::ranges::max_element(samples);
   for (double& sample : samples) sample /= largest;
   return samples;
 }
@@ -77,7 +77,7 @@ double sum_of(const std::vector<double>& samples) { return std::accumulate(sampl
 }  // namespace
 
 Window Window::named(const std::string& name, double sidelobe_db) {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  const auto found = std::ranges::find(kNames, name);
   if (found == kNames.end()) {
     const std::string meant = meant_name(name, kNames);
     throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris or chebyshev, got '" + name +

@@ -186,7 +186,7 @@ Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, Kep
 std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   std::vector<uint8_t> out;
   for (const BlockOutcome& block : renew_blocks(paths, radar, time, job, kept)) {
-    std::transform(block.of_path.begin(), block.of_path.end(), std::back_inserter(out), stays);
+    std::ranges::transform(block.of_path, std::back_inserter(out), stays);
   }
   return out;
 }

@@ -185,8 +185,7 @@ class ValidityCheck {
     }
     const double floor = std::max(strongest * std::pow(10.0, -0.1 * kDynamicRangeDb), report_.cell_noise);
     for (ObjectValidity& object : report_.objects) object.is_in_range = std::max(object.power, object.seen_power) >= floor;
-    std::stable_sort(report_.objects.begin(), report_.objects.end(),
-                     [](const auto& a, const auto& b) { return a.power > b.power; });
+    std::ranges::stable_sort(report_.objects, [](const auto& a, const auto& b) { return a.power > b.power; });
   }
 
   size_t object_of(size_t mesh_id) const { return static_cast<size_t>(paths_.scene->meshes()[mesh_id].object); }

@@ -42,7 +42,7 @@ std::string most_of(const Validity& report, double ValidityShares::* share) {
   for (const ObjectValidity& object : report.objects) {
     if (object.*share > kValidityLimit && object.is_in_range) found.push_back(&object);
   }
-  std::stable_sort(found.begin(), found.end(), [&](const auto* a, const auto* b) { return a->*share > b->*share; });
+  std::ranges::stable_sort(found, [&](const auto* a, const auto* b) { return a->*share > b->*share; });
   std::string text;
   for (size_t i = 0; i < std::min(found.size(), kMaxObjects); ++i) {
     text += (i == 0 ? " Of '" : ", of '") + found[i]->name + "' " + percent(found[i]->*share);

@@ -30,8 +30,7 @@ std::string hint_of_keyword(const std::string& word, const std::vector<std::stri
 // The parameters that may be given without their names.
 std::vector<Parameter> by_place(const std::vector<Parameter>& parameters) {
   std::vector<Parameter> found;
-  std::copy_if(parameters.begin(), parameters.end(), std::back_inserter(found),
-               [](const Parameter& each) { return !each.is_keyword_only; });
+  std::ranges::copy_if(parameters, std::back_inserter(found), [](const Parameter& each) { return !each.is_keyword_only; });
   return found;
 }
 
@@ -41,7 +40,7 @@ std::string complaint(const std::vector<Parameter>& parameters, bool takes_keywo
   const std::vector<std::string> names = names_of(parameters);
   for (const auto& [key, value] : keywords) {
     const std::string word = escaped(key);
-    if (takes_keywords || std::find(names.begin(), names.end(), word) != names.end()) continue;
+    if (takes_keywords || std::ranges::find(names, word) != names.end()) continue;
     return "unknown keyword '" + word + "'" + hint_of_keyword(word, names);
   }
   const std::vector<Parameter> placed = by_place(parameters);

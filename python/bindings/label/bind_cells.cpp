@@ -41,7 +41,7 @@ Powers checked_powers(const py::object& value) { return checked_array<double>(va
 
 py::array_t<bool> as_mask(const std::vector<uint8_t>& values, const Shape& shape) {
   py::array_t<bool> mask(shape);
-  std::copy(values.begin(), values.end(), mask.mutable_data());
+  std::ranges::copy(values, mask.mutable_data());
   return mask;
 }
 

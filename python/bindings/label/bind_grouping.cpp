@@ -141,7 +141,7 @@ std::vector<std::string> may_appear_in_frame(const Paths& paths, const Radar& ra
   for (const double share : shares) settings.others.push_back(paths.frame.start_time + share * radar.frame_duration());
   std::vector<uint32_t> asked;
   for (uint32_t i = 0; i < surfaces.num_objects; ++i) {
-    if (std::find(hidden.begin(), hidden.end(), surfaces.names[i]) != hidden.end()) asked.push_back(i);
+    if (std::ranges::find(hidden, surfaces.names[i]) != hidden.end()) asked.push_back(i);
   }
   const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
   const auto found = run_job("visibility", py::none(), [&](Job& job) {

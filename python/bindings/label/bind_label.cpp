@@ -42,7 +42,7 @@ py::array_t<bool> matches_of(const Selection& selection, Arg<"paths", Record> pa
   const std::vector<uint8_t> taken =
       run_job("matches", py::none(), [&](Job& job) { return selection.matches(**paths, &job); });
   py::array_t<bool> mask(std::ssize(taken));
-  std::copy(taken.begin(), taken.end(), mask.mutable_data());
+  std::ranges::copy(taken, mask.mutable_data());
   return mask;
 }
 

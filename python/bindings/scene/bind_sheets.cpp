@@ -22,7 +22,7 @@ py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material
   require(material->is_sheet(), "material", "must have layers", 0);
   require(*frequency > 0, "frequency", "must be > 0 Hz", *frequency);
   std::vector<Layer> layers = material->layers;
-  if (*behind) std::reverse(layers.begin(), layers.end());
+  if (*behind) std::ranges::reverse(layers);
   const LayerStack stack(layers, *frequency);
   const SheetModel sheet(*material, *frequency);
   const auto count = std::ssize(*incidence);

@@ -48,7 +48,7 @@ std::vector<Joint> numbered(const std::vector<NamedJoint>& named) {
   for (const NamedJoint& each : named) {
     Joint joint = each.joint;
     if (each.parent) {
-      const auto found = std::find(names.begin(), names.end(), *each.parent);
+      const auto found = std::ranges::find(names, *each.parent);
       require(found != names.end(), "joints", "must have the name of an earlier one as parent", "'" + *each.parent + "'");
       joint.parent = static_cast<int>(found - names.begin());
     }

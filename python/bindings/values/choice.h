@@ -23,7 +23,7 @@ struct Choice {
   std::array<const char*, N> names;
 
   std::optional<Enum> find(std::string_view name) const {
-    const auto found = std::find(names.begin(), names.end(), name);
+    const auto found = std::ranges::find(names, name);
     return found == names.end() ? std::nullopt : std::optional<Enum>(static_cast<Enum>(found - names.begin()));
   }
 

@@ -10,7 +10,7 @@ void require_fields(const py::dict& state, const std::vector<std::string>& names
   }
   for (const auto& [key, value] : state) {
     const auto name = py::str(key).cast<std::string>();
-    if (std::find(names.begin(), names.end(), name) == names.end())
+    if (std::ranges::find(names, name) == names.end())
       throw py::value_error("state: must have fields that are known, got '" + name + "'");
   }
 }

@@ -41,7 +41,7 @@ class RecentResults {
   }
 
   auto place_of(const Key& key) {
-    return std::find_if(kept_.begin(), kept_.end(), [&](const auto& entry) { return entry.first == key; });
+    return std::ranges::find_if(kept_, [&](const auto& entry) { return entry.first == key; });
   }
 
   const size_t most_;

@@ -64,7 +64,7 @@ constexpr std::array kSynonyms = {
 };
 
 bool is_among(const std::vector<std::string>& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+  return std::ranges::find(words, word) != words.end();
 }
 
 std::vector<std::string> split(std::string_view text, char between) {
@@ -78,8 +78,7 @@ std::vector<std::string> split(std::string_view text, char between) {
 
 std::string in_small_letters(std::string_view word) {
   std::string small(word);
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  std::ranges::transform(small, small.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   return small;
 }
 
@@ -98,7 +97,7 @@ bool is_part_of(const std::string& word, const std::string& name) {
   if (word.size() >= kShortestBeginning && name.starts_with(word)) return true;
   const std::vector<std::string> of_word = split(word, '_'), of_name = split(name, '_');
   const auto holds_all = [](const auto& many, const auto& few) {
-    return !few.empty() && std::all_of(few.begin(), few.end(), [&](const auto& one) { return is_among(many, one); });
+    return !few.empty() && std::ranges::all_of(few, [&](const auto& one) { return is_among(many, one); });
   };
   return holds_all(of_name, of_word) || holds_all(of_word, of_name);
 }
@@ -116,7 +115,7 @@ std::string meant_name(std::string_view given, const std::vector<std::string>& k
     if (slips < fewest && slips < word.size()) best = name, fewest = slips;
   }
   if (!best.empty()) return best;
-  const auto found = std::find_if(known.begin(), known.end(), [&](const auto& name) { return is_part_of(word, name); });
+  const auto found = std::ranges::find_if(known, [&](const auto& name) { return is_part_of(word, name); });
   return found == known.end() ? "" : *found;
 }
 

@@ -59,7 +59,7 @@ std::vector<std::string> nearest_names(std::string_view word, const std::vector<
     const bool begins = !word.empty() && name.starts_with(word);
     ranked.emplace_back(Rank(!begins, word.size() - shared_path(word, name), edits_of_path(word, name)), name);
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::ranges::stable_sort(ranked, [](const auto& x, const auto& y) { return x.first < y.first; });
   std::vector<std::string> nearest;
   for (size_t i = 0; i < std::min(ranked.size(), static_cast<size_t>(count)); ++i) nearest.push_back(ranked[i].second);
   return nearest;

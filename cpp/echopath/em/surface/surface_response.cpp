@@ -21,7 +21,7 @@ std::complex<double> complex_permittivity(const Material& material, double frequ
 std::shared_ptr<const LayerStack> layers_of(const Material& material, double frequency, SheetSide side) {
   if (!material.is_sheet()) return nullptr;
   std::vector<Layer> layers = material.layers;
-  if (side == SheetSide::kBack) std::reverse(layers.begin(), layers.end());
+  if (side == SheetSide::kBack) std::ranges::reverse(layers);
   return std::make_shared<const LayerStack>(layers, frequency);
 }
 

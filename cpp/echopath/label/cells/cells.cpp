@@ -47,7 +47,7 @@ std::vector<double> power_shares(std::span<const double> power, int64_t num_part
 CellMask cell_mask(std::span<const double> power, double noise_floor, double dynamic_range) {
   require(noise_floor >= 0.0, "noise_floor", "must not be negative, in W", noise_floor);
   require(dynamic_range >= 0.0 && dynamic_range <= 1.0, "dynamic_range", "must be in [0, 1]", dynamic_range);
-  const double peak = power.empty() ? 0.0 : *std::max_element(power.begin(), power.end());
+  const double peak = power.empty() ? 0.0 : *std::ranges::max_element(power);
   CellMask mask{std::vector<uint8_t>(power.size()), std::vector<uint8_t>(power.size())};
   for (size_t i = 0; i < power.size(); ++i) {
     mask.above_noise[i] = power[i] > noise_floor;

@@ -63,8 +63,7 @@ constexpr Event kEventOfSymbol[] = {Event::kSpecular, Event::kDiffuse, Event::kE
 bool takes_event(const HitPattern& pattern, Event event) { return pattern.event == Event::kAny || pattern.event == event; }
 
 bool names_passes(const Nfa& nfa) {
-  return std::any_of(nfa.patterns.begin(), nfa.patterns.end(),
-                     [](const HitPattern* pattern) { return pattern->event == Event::kPass; });
+  return std::ranges::any_of(nfa.patterns, [](const HitPattern* pattern) { return pattern->event == Event::kPass; });
 }
 
 // Makes the automaton deterministic by subset construction (Rabin and Scott 1959).
@@ -121,7 +120,7 @@ class Determiniser {
       if (state == 0 || at.pattern >= 0) set.push_back(state);
       else pending.insert(pending.end(), at.next.begin(), at.next.end());
     }
-    std::sort(set.begin(), set.end());
+    std::ranges::sort(set);
     if (set.empty()) set.push_back(-1);
     return set;
   }

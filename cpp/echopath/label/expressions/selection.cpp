@@ -54,7 +54,7 @@ struct Selection::Term {
     };
     for (const Selection& operand : {a, b}) {
       if (operand.term_->kind != kind) take(operand);
-      else std::for_each(operand.term_->children.begin(), operand.term_->children.end(), take);
+      else std::ranges::for_each(operand.term_->children, take);
     }
     return term.children.size() == 1 ? term.children.front() : make(std::move(term));
   }

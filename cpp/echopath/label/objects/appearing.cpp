@@ -45,8 +45,8 @@ class Watch {
 
   bool may_appear(uint32_t object) const {
     const std::array<SeenPoints, 2> seen = {points_from(object, radar_.transmitters), points_from(object, radar_.receivers)};
-    if (!std::all_of(seen.begin(), seen.end(), [this](const SeenPoints& one) { return can_be_followed(one); })) return true;
-    return std::any_of(others_.begin(), others_.end(), [&](const PosedScene& other) {
+    if (!std::ranges::all_of(seen, [this](const SeenPoints& one) { return can_be_followed(one); })) return true;
+    return std::ranges::any_of(others_, [&](const PosedScene& other) {
       return share_in_sight(seen[0], radar_.transmitters, other) > settings_.hidden_share &&
              share_in_sight(seen[1], radar_.receivers, other) > settings_.hidden_share;
     });
@@ -59,8 +59,8 @@ class Watch {
 
   bool can_be_followed(const SeenPoints& seen) const {
     const auto is_rigid = [this](uint32_t mesh) { return scene_.node_of(mesh).deformation == nullptr; };
-    return !seen.points.empty() && std::all_of(seen.hiding.begin(), seen.hiding.end(), is_rigid) &&
-           std::all_of(seen.points.begin(), seen.points.end(), [&](const auto& point) { return is_rigid(point.mesh); });
+    return !seen.points.empty() && std::ranges::all_of(seen.hiding, is_rigid) &&
+           std::ranges::all_of(seen.points, [&](const auto& point) { return is_rigid(point.mesh); });
   }
 
   SeenPoints points_from(uint32_t object, const std::vector<Antenna>& antennas) const {
@@ -107,7 +107,7 @@ class Watch {
       const Vec3 place = place_of(other, point.mesh) * point.position;
       const auto is_hidden_by = [&](uint32_t mesh) { return hides(mesh, other, antenna, place); };
       if (point.hiding != ObjectView::kNothing && is_hidden_by(point.hiding)) continue;
-      if (std::none_of(seen.hiding.begin(), seen.hiding.end(), is_hidden_by)) ++num_in_sight;
+      if (std::ranges::none_of(seen.hiding, is_hidden_by)) ++num_in_sight;
     }
     return static_cast<double>(num_in_sight) / static_cast<double>(seen.points.size());
   }

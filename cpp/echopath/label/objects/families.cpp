@@ -30,7 +30,7 @@ void classify_hits(const Hit* hits, int num_hits, const SurfaceMap& surfaces, Ke
     const uint32_t at = surfaces.of_mesh[hits[k].mesh_id];
     const bool is_within = at == last && surfaces.is_object(at);
     if (!is_within) ++key.order;
-    const bool is_new = at != key.owner && std::find(key.via.begin(), key.via.end(), at) == key.via.end();
+    const bool is_new = at != key.owner && std::ranges::find(key.via, at) == key.via.end();
     if (is_new) key.via.push_back(at);
     last = at;
   }
@@ -130,8 +130,8 @@ Families find_families(const Paths& paths, const SurfaceMap& surfaces, Job* job)
     if (job) job->throw_if_cancelled();
     std::vector<uint32_t> global(block.index_of.size());
     for (const auto& [key, local] : block.index_of) global[local] = index_of.at(key);
-    std::transform(block.local.begin(), block.local.end(), std::back_inserter(made.family_of_path),
-                   [&](uint32_t local) { return global[local]; });
+    std::ranges::transform(block.local, std::back_inserter(made.family_of_path),
+                           [&](uint32_t local) { return global[local]; });
   }
   return made;
 }

@@ -74,7 +74,7 @@ double NearestPoints::longest_edge(uint32_t mesh_id) const {
 std::array<double, 2> NearestPoints::distances(const Points& points, std::span<const uint32_t> mesh_ids) const {
   std::vector<std::pair<double, uint32_t>> by_box;
   for (const uint32_t id : mesh_ids) by_box.emplace_back(geometry_.box(id).exteriorDistance(points[0]), id);
-  std::sort(by_box.begin(), by_box.end());
+  std::ranges::sort(by_box);
   std::array<double, 2> least;
   least.fill(std::numeric_limits<double>::infinity());
   const double apart = (points[1] - points[0]).norm();

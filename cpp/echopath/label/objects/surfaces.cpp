@@ -109,7 +109,7 @@ Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint3
 bool is_flat_or_holds(const std::vector<Vec3>& vertices, const Vec3& point) {
   const PrincipalBox own = principal_box(vertices);
   Vec3 sides = own.box.sizes();
-  std::sort(sides.begin(), sides.end());
+  std::ranges::sort(sides);
   return sides[0] <= kFlat * sides[1] || own.box.exteriorDistance(own.coordinates(point)) <= kBeside;
 }
 
@@ -149,7 +149,7 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
     require(names.insert(object.name).second, "objects", "must have names that differ", object.name + " twice");
     bool is_hidden = false;
     for (const std::string& glob : object.globs) is_hidden |= take_meshes(glob, map.num_objects, mesh_names, map);
-    const bool has_mesh = std::find(map.of_mesh.begin(), map.of_mesh.end(), map.num_objects) != map.of_mesh.end();
+    const bool has_mesh = std::ranges::find(map.of_mesh, map.num_objects) != map.of_mesh.end();
     if (is_hidden && !has_mesh) continue;
     require(has_mesh, "objects", "must each have a mesh that none before it takes", object.name);
     map.names.push_back(object.name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -33,8 +34,7 @@ struct End {
   std::vector<PosedAntenna> antennas;
 
   bool has_gain_toward(const Vec3& direction) const {
-    return std::any_of(antennas.begin(), antennas.end(),
-                       [&](const PosedAntenna& antenna) { return antenna.toward(direction).power > 0.0; });
+    return std::ranges::any_of(antennas, [&](const PosedAntenna& antenna) { return antenna.toward(direction).power > 0.0; });
   }
 };
 
@@ -88,7 +88,7 @@ class ObjectScanner {
     const std::optional<uint32_t> only = grid.only_met(kEnoughHidden);
     if (!only) return false;
     const std::span<const uint32_t> by_end = std::span(met_[*only]).first(ends_.size());
-    return std::find(by_end.begin(), by_end.end(), object_) == by_end.end();
+    return std::ranges::find(by_end, object_) == by_end.end();
   }
 
   void see(const LaneVectors& directions, int count, uint32_t* met) {
@@ -105,7 +105,7 @@ class ObjectScanner {
 
   // Returns the number under which the grid knows what is met.
   uint32_t number_of(const Met& met) {
-    const auto found = std::find(met_.begin(), met_.end(), met);
+    const auto found = std::ranges::find(met_, met);
     const auto number = static_cast<uint32_t>(found - met_.begin());
     if (found == met_.end()) met_.push_back(met);
     return number;
@@ -132,15 +132,14 @@ class ObjectScanner {
       if (surface == object_) seen.visible_share = share;
       else seen.occluders.emplace_back(surfaces_.names[surface], share);
     }
-    std::stable_sort(seen.occluders.begin(), seen.occluders.end(),
-                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::ranges::stable_sort(seen.occluders, std::greater(), [](const auto& occluder) { return occluder.second; });
     return seen;
   }
 
   bool has_gain_toward_a_vertex(const End& end) const {
     return std::any_of(views_.front().mesh_ids().begin(), views_.front().mesh_ids().end(), [&](uint32_t mesh) {
       const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
-      return std::any_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
+      return std::ranges::any_of(vertices, [&](const Vec3& vertex) {
         return vertex != end.position && end.has_gain_toward((vertex - end.position).normalized());
       });
     });

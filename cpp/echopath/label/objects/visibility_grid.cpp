@@ -72,7 +72,7 @@ double VisibilityGrid::start(const FindMet& find_met) {
       }
     }
   }
-  const auto num_found = std::ssize(first_met_) - std::count(first_met_.begin(), first_met_.end(), kNothing);
+  const auto num_found = std::ssize(first_met_) - std::ranges::count(first_met_, kNothing);
   return static_cast<double>(num_found) / static_cast<double>(first_met_.size());
 }
 

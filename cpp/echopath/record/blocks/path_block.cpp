@@ -112,7 +112,7 @@ void PathBlock::write_own(size_t begin, size_t end, int64_t first_hit, size_t ro
 void PathBlock::write(PathRows to, Paths& paths) const {
   const int64_t first_hit = to.first_hit;
   const int64_t* const first_row = paths.offsets.data();
-  std::copy(hits.begin(), hits.end(), to.hits);
+  std::ranges::copy(hits, to.hits);
   to.skip_hits(hits.size());
   std::vector<int64_t> places;
   const FanLeg* legs = fan_legs.data();

@@ -37,7 +37,7 @@ struct Places {
 
 template <class Column>
 bool has(const std::vector<const PathBlock*>& blocks, Column column) {
-  return std::any_of(blocks.begin(), blocks.end(), [&](const PathBlock* block) { return !(block->*column).empty(); });
+  return std::ranges::any_of(blocks, [&](const PathBlock* block) { return !(block->*column).empty(); });
 }
 
 bool has_matrices(const std::vector<const PathBlock*>& blocks) {

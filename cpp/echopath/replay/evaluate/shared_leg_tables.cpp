@@ -183,8 +183,8 @@ namespace {
 
 // Returns whether an antenna turns the phase of what it sends or receives, by direction.
 bool any_phase(const AntennaImages& images) {
-  return std::any_of(images.pattern.begin(), images.pattern.end(),
-                     [](const AntennaPattern* pattern) { return pattern->table && !pattern->table->phase().empty(); });
+  return std::ranges::any_of(
+      images.pattern, [](const AntennaPattern* pattern) { return pattern->table && !pattern->table->phase().empty(); });
 }
 
 // Finds the axes of the world as the antennas themselves see them and as each image sees them over its mirrors.

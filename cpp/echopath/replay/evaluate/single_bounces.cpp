@@ -34,8 +34,7 @@ void set_triangle(const Hit& hit, const Mesh& mesh, size_t slot, SingleBounceSlo
 
 bool can_evaluate_single_bounces(const Radar& radar) {
   const auto is_power = [](const Antenna& antenna) { return exponent_of(antenna.pattern) != LegToMeasure::kNoExponent; };
-  return std::all_of(radar.transmitters.begin(), radar.transmitters.end(), is_power) &&
-         std::all_of(radar.receivers.begin(), radar.receivers.end(), is_power);
+  return std::ranges::all_of(radar.transmitters, is_power) && std::ranges::all_of(radar.receivers, is_power);
 }
 
 void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,

@@ -91,10 +91,8 @@ FieldVector PathPassages::through(const LegOfAntenna& at, FieldVector field) con
 }
 
 std::pair<size_t, size_t> PathPassages::passes_on(int leg) const {
-  const auto is_before = [](const Pass& pass, int of) { return static_cast<int>(pass.leg) < of; };
-  const auto begin = std::lower_bound(passes_.begin(), passes_.end(), leg, is_before),
-             end = std::lower_bound(begin, passes_.end(), leg + 1, is_before);
-  return {begin - passes_.begin(), end - passes_.begin()};
+  const auto found = std::ranges::equal_range(passes_, leg, {}, [](const Pass& pass) { return static_cast<int>(pass.leg); });
+  return {found.begin() - passes_.begin(), found.end() - passes_.begin()};
 }
 
 // Returns whether a leg between an antenna and an edge is one on which `through` follows the field.

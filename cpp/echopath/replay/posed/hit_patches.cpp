@@ -12,7 +12,7 @@ std::vector<SurfacePatch> hit_patches(const Paths& paths) {
     if (node.deformation) is_hit[id].assign(node.mesh->triangles().size(), 0);
   }
   std::vector<SurfacePatch> patches(num_meshes);
-  if (std::all_of(is_hit.begin(), is_hit.end(), [](const auto& triangles) { return triangles.empty(); })) return patches;
+  if (std::ranges::all_of(is_hit, [](const auto& triangles) { return triangles.empty(); })) return patches;
   for (int64_t path = 0; path < paths.num_paths(); ++path) {
     const Hit* hits = paths.hits_of(path);
     for (int k = 0; k < paths.num_bounces[path]; ++k) {

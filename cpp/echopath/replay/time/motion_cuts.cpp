@@ -47,12 +47,12 @@ class CutsWithin {
  private:
   // `times` are ascending.
   void append(const std::vector<double>& times, std::vector<double>& all) const {
-    const auto begin = std::upper_bound(times.begin(), times.end(), frame_.begin);
+    const auto begin = std::ranges::upper_bound(times, frame_.begin);
     all.insert(all.end(), begin, std::lower_bound(begin, times.end(), frame_.end));
   }
 
   static void make_ascending(std::vector<double>& times) {
-    std::sort(times.begin(), times.end());
+    std::ranges::sort(times);
     times.erase(std::unique(times.begin(), times.end()), times.end());
   }
 

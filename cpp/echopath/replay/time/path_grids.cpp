@@ -62,7 +62,7 @@ PathGrids::PathGrids(const Paths& paths, const Radar& radar, TimeGrids& grids, P
 
 void PathGrids::join_cuts(TimeGrids& grids) const {
   const auto has_cuts_of_its_own = [](GridIndex grid) { return grid.cuts() != MotionCuts::kOfRadar; };
-  const auto first = std::find_if(of_mesh_.begin(), of_mesh_.end(), has_cuts_of_its_own);
+  const auto first = std::ranges::find_if(of_mesh_, has_cuts_of_its_own);
   const auto differs = [&](GridIndex grid) { return has_cuts_of_its_own(grid) && grid.cuts() != first->cuts(); };
   if (std::none_of(first, of_mesh_.end(), differs)) return;  // the cuts of all paths are those of a mesh
   for (int64_t path = 0; path < paths_.num_paths(); ++path) {

@@ -60,8 +60,7 @@ std::vector<PolynomialGrid> TimeGrids::polynomials_of(const Cuts& cuts) const {
     add(order, Pieces::kSmooth, cuts.breakpoints);
     if (has_knots(cuts)) add(order, Pieces::kAnalytic, cuts.knots);
   }
-  std::stable_sort(grids.begin(), grids.end(),
-                   [](const PolynomialGrid& a, const PolynomialGrid& b) { return a.num_nodes < b.num_nodes; });
+  std::ranges::stable_sort(grids, {}, &PolynomialGrid::num_nodes);
   return grids;
 }
 

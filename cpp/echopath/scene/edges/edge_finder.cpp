@@ -54,8 +54,7 @@ class SharpEdgeFinder {
     const auto key = [](const FoundEdge& found) {
       return std::tie(found.surface, found.edge.triangle, found.edge.side, found.edge.begin);
     };
-    std::sort(found_.edges.begin(), found_.edges.end(),
-              [&](const FoundEdge& a, const FoundEdge& b) { return key(a) < key(b); });
+    std::ranges::sort(found_.edges, {}, key);
     return std::move(found_);
   }
 
@@ -66,7 +65,7 @@ class SharpEdgeFinder {
         for (uint32_t side = 0; side < 3; ++side) add_side(surface, t, side);
       }
     }
-    std::sort(sides_.begin(), sides_.end(), [](const EdgeSide& a, const EdgeSide& b) {
+    std::ranges::sort(sides_, [](const EdgeSide& a, const EdgeSide& b) {
       return std::tie(a.key, a.surface, a.triangle, a.side) < std::tie(b.key, b.surface, b.triangle, b.side);
     });
     is_taken_.assign(sides_.size(), false);
@@ -100,7 +99,7 @@ class SharpEdgeFinder {
       is_taken_[i] = true;
       line.push_back(i);
     }
-    std::sort(line.begin(), line.end(), [&](size_t a, size_t b) { return sides_[a].low < sides_[b].low; });
+    std::ranges::sort(line, {}, [&](size_t side) { return sides_[side].low; });
     for (size_t begin = 0, end = 0; begin < line.size(); begin = end) {
       double reached = sides_[line[begin]].high;
       while (end < line.size() && sides_[line[end]].low < reached - tolerance_)
@@ -116,7 +115,7 @@ class SharpEdgeFinder {
       ends.push_back(sides_[side].low);
       ends.push_back(sides_[side].high);
     }
-    std::sort(ends.begin(), ends.end());
+    std::ranges::sort(ends);
     for (size_t i = 0; i + 1 < ends.size(); ++i) {
       if (ends[i + 1] - ends[i] <= 2.0 * tolerance_) continue;
       std::vector<size_t> here;
@@ -149,15 +148,15 @@ class SharpEdgeFinder {
       double angle = std::atan2(inward.dot(second), inward.dot(first));
       if (angle < -kSameDirection) angle += kTwoPi;
       const auto is_same = [&](const Face& face) { return std::abs(face.angle - angle) <= kSameDirection; };
-      if (std::none_of(faces.begin(), faces.end(), is_same)) faces.push_back({angle, inward});
+      if (std::ranges::none_of(faces, is_same)) faces.push_back({angle, inward});
     }
-    std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.angle < b.angle; });
+    std::ranges::sort(faces, {}, &Face::angle);
     return faces;
   }
 
   void take_stretch(const std::vector<size_t>& here, double low, double high) {
     const auto is_elsewhere = [&](size_t i) { return sides_[i].surface != sides_[here.front()].surface; };
-    const bool is_shared = std::any_of(here.begin(), here.end(), is_elsewhere);
+    const bool is_shared = std::ranges::any_of(here, is_elsewhere);
     if (surfaces_.size() > 1 && !is_shared) return;
     if (is_shared) add_seam(here, low, high);
     const std::vector<Face> faces = faces_about(here);
@@ -197,7 +196,7 @@ class SharpEdgeFinder {
 
   void add_edge(const std::vector<size_t>& here, double low, double high, const std::array<Vec3, 2>& inward,
                 const std::array<Vec3, 2>& normal) {
-    const EdgeSide& side = sides_[*std::min_element(here.begin(), here.end(), by_owner())];
+    const EdgeSide& side = sides_[*std::ranges::min_element(here, by_owner())];
     const auto [begin, end] = stretch_of(side, low, high);
     found_.edges.push_back(
         {side.surface, {side.triangle, side.side, begin, end, {inward[0], inward[1]}, {normal[0], normal[1]}}});

@@ -17,7 +17,7 @@ struct EdgeSurface {
   bool may_touch(const Vec3& from, const Vec3& to) const {
     Eigen::AlignedBox3d side(from.cwiseMin(to), from.cwiseMax(to));
     const auto meets = [&](const Eigen::AlignedBox3d& contact) { return contact.intersects(side); };
-    return contacts.empty() || std::any_of(contacts.begin(), contacts.end(), meets);
+    return contacts.empty() || std::ranges::any_of(contacts, meets);
   }
 };
 

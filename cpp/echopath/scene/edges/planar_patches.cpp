@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "echopath/base/plane.h"
@@ -35,7 +36,7 @@ class PatchFinder {
     for (uint32_t t = 0; t < triangles_.size(); ++t) areas.push_back(area_vector(t).squaredNorm());
     std::vector<uint32_t> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return areas[a] > areas[b]; });
+    std::ranges::stable_sort(order, std::greater(), [&](uint32_t triangle) { return areas[triangle]; });
     return order;
   }
 
@@ -54,18 +55,18 @@ class PatchFinder {
         }
       }
       const Plane fitted = fitted_to(patch);
-      const bool holds_all = std::all_of(patch.begin(), patch.end(), [&](uint32_t t) { return lies_in(fitted, t); });
+      const bool holds_all = std::ranges::all_of(patch, [&](uint32_t t) { return lies_in(fitted, t); });
       if (!holds_all) break;
       plane = fitted;
     }
-    std::sort(patch.begin(), patch.end());
+    std::ranges::sort(patch);
     return patch;
   }
 
   bool lies_in(const Plane& plane, uint32_t triangle) const {
     const Triangle& corners = triangles_[triangle];
-    return std::all_of(corners.begin(), corners.end(),
-                       [&](uint32_t corner) { return std::abs(plane.height(vertices_[corner])) <= tolerance_; });
+    return std::ranges::all_of(corners,
+                               [&](uint32_t corner) { return std::abs(plane.height(vertices_[corner])) <= tolerance_; });
   }
 
   // Returns the mean plane by area, whatever the windings.

@@ -35,8 +35,7 @@ const SharpEdge* sharp_edge_at(std::span<const SharpEdge> edges, uint32_t triang
   if (u != 0.0 && v != 0.0 && u + v != 1.0) return nullptr;
   const uint32_t side = v == 0.0 ? 0 : u == 0.0 ? 2 : 1;
   const double along = side == 0 ? u : side == 1 ? v : 1.0 - v;
-  const auto is_before = [](const SharpEdge& edge, uint32_t wanted) { return edge.triangle < wanted; };
-  auto edge = std::lower_bound(edges.begin(), edges.end(), triangle, is_before);
+  auto edge = std::ranges::lower_bound(edges, triangle, {}, &SharpEdge::triangle);
   for (; edge != edges.end() && edge->triangle == triangle; ++edge) {
     if (edge->side == side && edge->begin <= along && along <= edge->end) return &*edge;
   }

@@ -22,7 +22,7 @@ std::vector<uint32_t> places_of(const std::vector<Vec3>& vertices) {
   };
   std::vector<uint32_t> order(vertices.size()), place(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), before);
+  std::ranges::sort(order, before);
   for (size_t i = 0; i < order.size(); ++i) {
     const bool is_same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
     place[order[i]] = is_same ? place[order[i - 1]] : static_cast<uint32_t>(i);
@@ -40,7 +40,7 @@ std::vector<Edge> sorted_edges(const std::vector<Vec3>& vertices, const std::vec
       edges.push_back({low, high, t, side});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+  std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
   return edges;

@@ -22,8 +22,7 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
       sides.push_back({std::min(from, to) << 32 | std::max(from, to), 3 * t + k, from < to});
     }
   }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.id < b.id; });
+  std::ranges::sort(sides, [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.id < b.id; });
   return sides;
 }
 

@@ -87,7 +87,7 @@ bool has_boundary(const std::vector<Triangle>& triangles) {
   for (const Triangle& t : triangles) {
     for (size_t k = 0; k < 3; ++k) edges.push_back(std::minmax(t[k], t[(k + 1) % 3]));
   }
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   for (size_t i = 0; i < edges.size(); i += 2) {
     if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return true;
   }
@@ -95,7 +95,7 @@ bool has_boundary(const std::vector<Triangle>& triangles) {
 }
 
 void sort_and_check(std::vector<uint32_t>& triangles, size_t num_triangles) {
-  std::sort(triangles.begin(), triangles.end());
+  std::ranges::sort(triangles);
   triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
   require(!triangles.empty(), "triangles", "must name one at least", 0);
   require(triangles.back() < num_triangles, "triangles", "must be below their number in the whole mesh", triangles.back());
@@ -116,7 +116,7 @@ double surface_area(const std::vector<Vec3>& vertices, const std::vector<Triangl
 bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   constexpr double kRelative = 1e-6;
   const Vec3 normal = area_vector(vertices, triangles.front()).normalized(), &origin = vertices[triangles.front()[0]];
-  return std::all_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
+  return std::ranges::all_of(vertices, [&](const Vec3& vertex) {
     const Vec3 line = vertex - origin;
     return std::abs(normal.dot(line)) <= kRelative * line.norm();
   });

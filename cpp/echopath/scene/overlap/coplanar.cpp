@@ -144,7 +144,7 @@ int64_t count_triangles(const OverlapPair* begin, const OverlapPair* end) {
     places.push_back(pair->first);
     places.push_back(pair->second);
   }
-  std::sort(places.begin(), places.end());
+  std::ranges::sort(places);
   return std::unique(places.begin(), places.end()) - places.begin();
 }
 
@@ -160,7 +160,7 @@ CoplanarOverlap summed(const OverlapPair* begin, const OverlapPair* end) {
 // Sums the overlaps of all pairs of triangles, for each pair of meshes.
 std::vector<CoplanarOverlap> summed_by_meshes(std::vector<OverlapPair> pairs) {
   const auto is_before = [](const OverlapPair& a, const OverlapPair& b) { return a.meshes() < b.meshes(); };
-  std::stable_sort(pairs.begin(), pairs.end(), is_before);
+  std::ranges::stable_sort(pairs, is_before);
   std::vector<CoplanarOverlap> overlaps;
   for (const OverlapPair *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
     const auto is_other = [begin](const OverlapPair& pair) { return pair.meshes() != begin->meshes(); };
@@ -211,7 +211,7 @@ std::vector<CoplanarOverlap> coplanar_overlaps(const Scene& scene, double time, 
       summed_by_meshes(OverlapSearch(without_copies(posed, original), max_distance, job).run(job));
   const std::vector<CoplanarOverlap> copies = of_copies(posed, original, overlaps);
   overlaps.insert(overlaps.end(), copies.begin(), copies.end());
-  std::sort(overlaps.begin(), overlaps.end(), [](const CoplanarOverlap& a, const CoplanarOverlap& b) {
+  std::ranges::sort(overlaps, [](const CoplanarOverlap& a, const CoplanarOverlap& b) {
     return std::pair(a.first_mesh_id, a.second_mesh_id) < std::pair(b.first_mesh_id, b.second_mesh_id);
   });
   return overlaps;

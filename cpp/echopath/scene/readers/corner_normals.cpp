@@ -30,7 +30,7 @@ CornerNormals::CornerNormals(const Soup& soup) : soup_(soup) {
 }
 
 bool CornerNormals::are_given(const std::vector<uint32_t>& triangles) const {
-  return std::any_of(triangles.begin(), triangles.end(), [&](uint32_t t) { return smoothing(t) > 0 || has_own(t); });
+  return std::ranges::any_of(triangles, [&](uint32_t t) { return smoothing(t) > 0 || has_own(t); });
 }
 
 std::array<Vec3, 3> CornerNormals::of(uint32_t triangle) const {
@@ -51,7 +51,7 @@ std::array<Vec3, 3> CornerNormals::of(uint32_t triangle) const {
 bool CornerNormals::has_own(uint32_t triangle) const {
   if (triangle >= soup_.normal.size()) return false;
   const Triangle& normal = soup_.normal[triangle];
-  return std::none_of(normal.begin(), normal.end(), [](uint32_t index) { return index == kNoNormal; });
+  return std::ranges::none_of(normal, [](uint32_t index) { return index == kNoNormal; });
 }
 
 uint32_t CornerNormals::smoothing(uint32_t triangle) const {

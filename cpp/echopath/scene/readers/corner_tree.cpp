@@ -84,7 +84,7 @@ void CornerTree::remove(uint32_t corner) {
 bool CornerTree::has_corner_in(const Ear& ear, const BoxTree::Branch& leaf) const {
   for (uint32_t place = leaf.begin; place < leaf.end; ++place) {
     const uint32_t vertex = corners_[tree_.input_index(place)];
-    const bool is_own = std::find(ear.vertices.begin(), ear.vertices.end(), vertex) != ear.vertices.end();
+    const bool is_own = std::ranges::find(ear.vertices, vertex) != ear.vertices.end();
     if (is_left_[place] && !is_own && ear.holds(vertices_[vertex])) return true;
   }
   return false;

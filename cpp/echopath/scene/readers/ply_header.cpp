@@ -89,7 +89,7 @@ class HeaderParser {
   }
 
   PlyType type(const std::string& name) const {
-    const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) { return name == known.first; });
+    const auto found = std::ranges::find_if(kTypes, [&](const auto& known) { return name == known.first; });
     if (found == kTypes.end()) refuse("unknown type '" + name + "'");
     return found->second;
   }
@@ -106,7 +106,7 @@ class HeaderParser {
 
 int PlyElement::find(const std::vector<std::string>& names) const {
   for (size_t i = 0; i < properties.size(); ++i) {
-    if (std::find(names.begin(), names.end(), properties[i].name) != names.end()) return static_cast<int>(i);
+    if (std::ranges::find(names, properties[i].name) != names.end()) return static_cast<int>(i);
   }
   return -1;
 }

@@ -62,7 +62,7 @@ std::ifstream opened(const std::string& path, double unit) {
 std::vector<uint32_t> used_vertices(const Soup& soup, const std::vector<uint32_t>& members) {
   std::vector<uint32_t> used;
   for (const uint32_t t : members) used.insert(used.end(), soup.triangles[t].begin(), soup.triangles[t].end());
-  std::sort(used.begin(), used.end());
+  std::ranges::sort(used);
   used.erase(std::unique(used.begin(), used.end()), used.end());
   return used;
 }
@@ -98,8 +98,7 @@ std::vector<SurfaceFaces> faces_by_surface(const Soup& soup) {
     if (added) found.push_back({soup.group[t], material, {}});
     found[entry->second].triangles.push_back(t);
   }
-  const auto is_before = [](const SurfaceFaces& a, const SurfaceFaces& b) { return a.group < b.group; };
-  std::stable_sort(found.begin(), found.end(), is_before);
+  std::ranges::stable_sort(found, {}, &SurfaceFaces::group);
   return found;
 }
 

@@ -34,7 +34,7 @@ Mat3 cofactor_matrix(const Mat3& world_from_mesh) {
 }
 
 bool is_smooth_facet(const Vec3& facet_normal, const std::array<Vec3, 3>& normals) {
-  return std::all_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(facet_normal) >= kCreaseCosine; });
+  return std::ranges::all_of(normals, [&](const Vec3& n) { return n.dot(facet_normal) >= kCreaseCosine; });
 }
 
 SmoothPoint smooth_point(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals, double u, double v) {

@@ -27,7 +27,7 @@ struct HalfEdge {
 double weighted_median(const std::vector<double>& values, const std::vector<double>& weights, size_t& index) {
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return values[a] < values[b]; });
+  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return values[a] < values[b]; });
   const double half = 0.5 * std::accumulate(weights.begin(), weights.end(), 0.0);
   double sum = 0.0;
   for (const size_t i : order) {
@@ -78,7 +78,7 @@ class TessellationMeter {
     const auto key = [](const HalfEdge& edge) {
       return std::array<uint32_t, 4>{edge.low, edge.high, edge.side, edge.facet};
     };
-    std::sort(edges.begin(), edges.end(), [&](const HalfEdge& a, const HalfEdge& b) { return key(a) < key(b); });
+    std::ranges::sort(edges, [&](const HalfEdge& a, const HalfEdge& b) { return key(a) < key(b); });
     for (size_t i = 1; i < edges.size(); ++i) {
       if (edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high) add_turn(edges[i - 1], edges[i]);
     }

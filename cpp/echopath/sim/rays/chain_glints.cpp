@@ -85,13 +85,13 @@ class ChainGlintSearch {
     std::vector<PosedHit> posed(paths_.num_bounces[path]);
     for (size_t k = 0; k < posed.size(); ++k)
       pose_hit(preparer_.hit(paths_.hits_of(path)[k], normals), preparer_.at_trace(), true, posed[k]);
-    if (paths_.is_reversed(path)) std::reverse(posed.begin(), posed.end());
+    if (paths_.is_reversed(path)) std::ranges::reverse(posed);
     return posed;
   }
 
   static bool turns_too_much(const PosedHit& hit, const CellTangents& tangents) {
-    return hit.is_smooth && std::any_of(tangents.begin(), tangents.end(),
-                                        [&](const Vec3& tangent) { return (hit.curvature * tangent).norm() > kMostTurn; });
+    return hit.is_smooth &&
+           std::ranges::any_of(tangents, [&](const Vec3& tangent) { return (hit.curvature * tangent).norm() > kMostTurn; });
   }
 
   FootprintPhaseOf<double> phase_at(const std::vector<PosedHit>& hits, const LaunchCell& cell,
@@ -126,7 +126,7 @@ bool is_chain(const Paths& paths, int64_t path) {
 
 // Returns at most kMostOfStratum glints of each stratum, strongest first.
 std::vector<Glint> strongest_of_each(std::vector<Glint> glints) {
-  std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
+  std::ranges::stable_sort(glints, [](const Glint& a, const Glint& b) { return a.power > b.power; });
   std::map<int, size_t> count;
   std::erase_if(glints, [&](const Glint& glint) { return ++count[glint.stratum] > kMostOfStratum; });
   return glints;
@@ -144,7 +144,7 @@ bool agree(const Glint& a, const Glint& b) {
 std::vector<Glint> agreed(const std::vector<Glint>& glints) {
   std::vector<Glint> kept;
   for (const Glint& glint : glints) {
-    const auto count = std::count_if(glints.begin(), glints.end(), [&](const Glint& other) { return agree(glint, other); });
+    const auto count = std::ranges::count_if(glints, [&](const Glint& other) { return agree(glint, other); });
     if (count >= kWitnesses) kept.push_back(glint);
   }
   return kept;

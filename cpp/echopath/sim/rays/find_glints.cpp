@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -133,8 +134,7 @@ class GlintSearch {
   // Returns the path beside a glint, or null.
   static const SeenPath* nearest(const std::vector<SeenPath>& seen, const Glint& glint, double cell) {
     const auto away = [&](const SeenPath& one) { return (one.direction - glint.direction).squaredNorm(); };
-    const auto found =
-        std::min_element(seen.begin(), seen.end(), [&](const SeenPath& a, const SeenPath& b) { return away(a) < away(b); });
+    const auto found = std::ranges::min_element(seen, {}, away);
     return away(*found) <= kBeside * kBeside * cell * cell ? &*found : nullptr;
   }
 
@@ -155,12 +155,12 @@ bool is_same(const Glint& a, const Glint& b) {
 std::vector<Glint> find_glints(const Paths& paths, Job* job) {
   std::vector<Glint> glints = GlintSearch(paths, job).find(job), chains = find_chain_glints(paths, job), kept;
   std::move(chains.begin(), chains.end(), std::back_inserter(glints));
-  std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
+  std::ranges::stable_sort(glints, std::greater(), &Glint::power);
   std::vector<std::vector<Glint>> of_stratum(paths.frame.strata.size());
   for (const Glint& glint : glints) {
     std::vector<Glint>& others = of_stratum[glint.stratum];
     if (others.size() == kMaxGlints) continue;
-    if (std::any_of(others.begin(), others.end(), [&](const Glint& other) { return is_same(glint, other); })) continue;
+    if (std::ranges::any_of(others, [&](const Glint& other) { return is_same(glint, other); })) continue;
     others.push_back(glint);
     kept.push_back(glint);
   }

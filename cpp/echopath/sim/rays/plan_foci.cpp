@@ -90,9 +90,8 @@ void add_glint(const Glint& glint, StratumPlan& plan) {
   const auto fits = [&](const LaunchFocus& focus) { return kTwoPi * focus.versine <= kLargestPart * plan.solid_angle; };
   const LaunchFocus focus = focus_on(glint, power, plan);
   if (!fits(focus) || !(power >= kFaintest * plan.power())) return;
-  const auto shared = std::find_if(plan.foci.begin(), plan.foci.end(), [&](const LaunchFocus& other) {
-    return cuts(other, focus) && fits(around(other, focus));
-  });
+  const auto shared = std::ranges::find_if(
+      plan.foci, [&](const LaunchFocus& other) { return cuts(other, focus) && fits(around(other, focus)); });
   if (shared == plan.foci.end() && plan.foci.size() == kMaxFoci) return;
   plan.of_foci += power;
   if (shared == plan.foci.end()) plan.foci.push_back(focus);
@@ -111,8 +110,7 @@ void add_chain(const Glint& glint, StratumPlan& plan) {
 // if that is still small and has rays as close as before. Returns the rays that it takes.
 double serve_chain(const LaunchFocus& wanted, double left, StratumPlan& plan) {
   const auto fits = [&](const LaunchFocus& focus) { return size_of(focus) <= kLargestPart * plan.solid_angle; };
-  const auto shared =
-      std::find_if(plan.foci.begin(), plan.foci.end(), [&](const LaunchFocus& other) { return cuts(other, wanted); });
+  const auto shared = std::ranges::find_if(plan.foci, [&](const LaunchFocus& other) { return cuts(other, wanted); });
   const bool is_new = shared == plan.foci.end();
   LaunchFocus focus = is_new ? wanted : around(*shared, wanted);
   if (!fits(focus) || (is_new && plan.foci.size() == kMaxFoci)) return 0.0;
@@ -127,8 +125,8 @@ double serve_chain(const LaunchFocus& wanted, double left, StratumPlan& plan) {
 
 // Serves those first that make most of the field known for a ray.
 void serve_chains(StratumPlan& plan) {
-  std::stable_sort(plan.chains.begin(), plan.chains.end(),
-                   [](const ChainFocus& a, const ChainFocus& b) { return a.field_per_ray() > b.field_per_ray(); });
+  std::ranges::stable_sort(plan.chains,
+                           [](const ChainFocus& a, const ChainFocus& b) { return a.field_per_ray() > b.field_per_ray(); });
   double left = kChainShare * plan.rays;
   for (const ChainFocus& chain : plan.chains) {
     if (chain.power >= kFaintest * plan.power()) left -= serve_chain(chain.focus, left, plan);

@@ -36,7 +36,7 @@ double sum_of(const RayShares& shares) {
 std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
   const size_t num_strata = paths.frame.strata.size();
   std::vector<uint32_t> group(paths.stratum.size());
-  std::transform(paths.stratum.begin(), paths.stratum.end(), group.begin(), [&](uint16_t stratum) {
+  std::ranges::transform(paths.stratum, group.begin(), [&](uint16_t stratum) {
     if (stratum >= num_strata) return static_cast<uint32_t>(num_strata);
     const Stratum& of = paths.frame.strata[stratum];
     return static_cast<uint32_t>(of.is_focus() ? of.focus_of : stratum);
@@ -121,7 +121,7 @@ void share_out_among(const RayNeeds& needs, bool is_image, double num_rays, RayS
   for (const RayNeed& need : needs.strata) {
     if (need.is_image == is_image) all.push_back(&need);
   }
-  std::stable_sort(all.begin(), all.end(), [](const RayNeed* a, const RayNeed* b) {
+  std::ranges::stable_sort(all, [](const RayNeed* a, const RayNeed* b) {
     return std::pair(!a->is_bounded, a->rays) < std::pair(!b->is_bounded, b->rays);
   });
   const bool is_scarce = rays_of(needs, is_image) > num_rays;
@@ -144,10 +144,9 @@ void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const s
                          RayShares& shares) {
   const int field = static_cast<int>(frame.strata.size()) - 1;
   const std::string& name = frame.strata.back().name;
-  const bool has_glints =
-      std::any_of(glints.begin(), glints.end(), [&](const Glint& glint) { return glint.stratum == field; });
-  const bool is_resolved = std::all_of(needs.strata.begin(), needs.strata.end(),
-                                       [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
+  const bool has_glints = std::ranges::any_of(glints, [&](const Glint& glint) { return glint.stratum == field; });
+  const bool is_resolved =
+      std::ranges::all_of(needs.strata, [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
   if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
 }
 

@@ -158,7 +158,7 @@ BandMap::Band BandMap::band_of(const SummedGroups& of, int num_channels) const {
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += of_group[i];
   }
   const auto is_set = [](double value) { return value > 0.0; };
-  const auto begin = std::find_if(sum.begin(), sum.end(), is_set);
+  const auto begin = std::ranges::find_if(sum, is_set);
   const auto end = std::find_if(sum.rbegin(), std::make_reverse_iterator(begin), is_set).base();
   return {begin - sum.begin(), end - begin, {begin, end}};
 }

@@ -52,7 +52,7 @@ double BandMap::sum_of_transforms(const SummedGroups& of, int num_channels, cons
       run_simd<band_loops::add_squares>(reinterpret_cast<const double*>(buffer.data()), size, squares.data());
     }
   }
-  std::copy(squares.begin(), squares.end(), buffer.data());
+  std::ranges::copy(squares, buffer.data());
   fft.transform(buffer);  // conj(r_d) times its length at d, as all squares are real
   double sum = buffer[0].real() * overlap_[0].real();
   for (int64_t d = 1; d < band.count; ++d) {

@@ -101,7 +101,7 @@ std::vector<SummedGroups> PartPass::summed(const Sets& sets, const Sorted& sorte
   for (const std::vector<uint32_t>& set : sets) {
     SummedGroups& sum = sums.emplace_back(SummedGroups{&signals, {}});
     for (const uint32_t group : set) sum.groups.push_back(static_cast<int>(sorted.local[group]));
-    std::sort(sum.groups.begin(), sum.groups.end());
+    std::ranges::sort(sum.groups);
     sum.groups.erase(std::unique(sum.groups.begin(), sum.groups.end()), sum.groups.end());
     if (is_kept(set)) sum = kept_.at(set.front());
   }
@@ -142,8 +142,7 @@ void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBoun
 
 std::vector<double> PartPass::bounds(const Sets& sets, const MapWindows& window, int zero_pad, Job* job) {
   Sorted some = sorted(sets, false);
-  std::sort(some.paths.begin(),
-            some.paths.end());  // they go into one signal, for which neighbours among the rays are better
+  std::ranges::sort(some.paths);  // they go into one signal, for which neighbours among the rays are better
   CellBounds bounds(paths_.num_paths(), radar_, settings_.synthesis.per_sample);
   run(some, true, adds_up_ ? &whole_ : nullptr, &bounds, job);
   std::vector<uint32_t> local;
@@ -173,7 +172,7 @@ std::vector<SetPower> PartPass::powers(const Sets& sets, const MapWindows& windo
   }
   const Sorted some = sorted(sets, whole_.spread() != nullptr);
   const auto is_known = [&](const std::vector<uint32_t>& set) { return is_kept(set); };
-  if (some.num_signals > some.num_sets && std::none_of(sets.begin(), sets.end(), is_known)) forget();
+  if (some.num_signals > some.num_sets && std::ranges::none_of(sets, is_known)) forget();
   Synthesizer signals = synthesizer(std::max(kFewestSignals, some.num_signals));
   run(some, false, &signals, nullptr, job);
   if (adds_up_) whole_.absorb(signals, some.num_signals);
@@ -198,7 +197,7 @@ SetPower PartPass::power_of(const SummedGroups& of, const MapTransform& map, std
   std::vector<double> still(map.num_ranges());  // power of channels where nothing moves
   SetPower power{std::vector<double>(num_cells), 0.0};
   for (int channel = 0; channel < num_channels; ++channel) {
-    const auto any = [&](auto is_so) { return std::any_of(of.groups.begin(), of.groups.end(), is_so); };
+    const auto any = [&](auto is_so) { return std::ranges::any_of(of.groups, is_so); };
     if (!any([&](int group) { return of.signals->has_echoes(channel, group); })) continue;
     const bool moves = any([&](int group) { return !of.signals->is_still(channel, group); });
     samples.assign(num_samples * static_cast<size_t>(moves ? num_chirps : 1), 0.0);

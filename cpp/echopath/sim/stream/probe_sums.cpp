@@ -71,7 +71,7 @@ TonesOfRows::TonesOfRows(size_t num_rows) : first_(num_rows + 1), count_(num_row
 }
 
 void TonesOfRows::sort(const Carriers& carriers) {
-  std::fill(count_.begin(), count_.end(), 0);
+  std::ranges::fill(count_, 0);
   for (int p = 0; p < carriers.count; ++p) ++count_[carriers.group[p]];
   for (size_t row = 0; row < count_.size(); ++row) {
     first_[row + 1] = first_[row] + (count_[row] + kMaxLanes - 1) / kMaxLanes * kMaxLanes;

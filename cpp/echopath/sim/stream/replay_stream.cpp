@@ -263,7 +263,7 @@ ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size
   block.channels = replay(paths, joined, block.left);
   block.paths = without(block.left, paths);
   const auto is_negligible = [](const UnfollowedPath& path) { return path.is_negligible; };
-  block.num_paths = std::ssize(block.paths) + std::count_if(block.left.begin(), block.left.end(), is_negligible);
+  block.num_paths = std::ssize(block.paths) + std::ranges::count_if(block.left, is_negligible);
   if (!joins_at_once) {
     for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
       const int channel = extent.first_channel + i;

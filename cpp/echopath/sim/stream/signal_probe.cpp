@@ -56,8 +56,8 @@ DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
 // Keeps at most kEchoesOfChirp: the strongest half and an even choice of the others.
 void thin_out(std::vector<DrawnEcho>& echoes) {
   if (echoes.size() <= kEchoesOfChirp) return;
-  std::stable_sort(echoes.begin(), echoes.end(),
-                   [](const DrawnEcho& a, const DrawnEcho& b) { return std::norm(a.amplitude) > std::norm(b.amplitude); });
+  std::ranges::stable_sort(
+      echoes, [](const DrawnEcho& a, const DrawnEcho& b) { return std::norm(a.amplitude) > std::norm(b.amplitude); });
   const size_t half = kEchoesOfChirp / 2, others = echoes.size() - half;
   for (size_t i = 0; i < half; ++i) echoes[half + i] = echoes[half + i * others / half];
   echoes.resize(kEchoesOfChirp);
@@ -126,7 +126,7 @@ void PassProbe::draw_samples(uint64_t seed, int64_t index, int num_samples, Chir
 PassProbe::~PassProbe() = default;
 
 bool PassProbe::watches(int channel) const {
-  return std::any_of(targets_.begin(), targets_.end(), [&](const ChirpTarget& target) { return target.channel == channel; });
+  return std::ranges::any_of(targets_, [&](const ChirpTarget& target) { return target.channel == channel; });
 }
 
 void PassProbe::see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) {
@@ -222,7 +222,7 @@ void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std:
   for (size_t i = 0; i < kRandom && block.num_echoes > 0; ++i) {
     echoes.push_back(draw(seed_, paths.front(), -1 - static_cast<int>(i), static_cast<int>(block.num_echoes)));
   }
-  std::sort(echoes.begin(), echoes.end());
+  std::ranges::sort(echoes);
   echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
   for (const int64_t echo : echoes) {
     if (!has_no_amplitude(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[echo]));

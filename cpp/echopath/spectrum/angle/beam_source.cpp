@@ -23,9 +23,8 @@ std::vector<int> mirrored_elements(const VirtualArray& array) {
   std::vector<int> mirrored;
   for (const VirtualElement& element : array.elements) {
     const Vec3 opposite = 2.0 * centre - element.position;
-    const auto found = std::find_if(array.elements.begin(), array.elements.end(), [&](const VirtualElement& other) {
-      return (other.position - opposite).norm() <= tolerance;
-    });
+    const auto found = std::ranges::find_if(
+        array.elements, [&](const VirtualElement& other) { return (other.position - opposite).norm() <= tolerance; });
     require(found != array.elements.end(), "forward_backward", "needs an array that is symmetric about its centre",
             "one that is not");
     mirrored.push_back(static_cast<int>(found - array.elements.begin()));

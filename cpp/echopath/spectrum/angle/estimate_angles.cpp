@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
@@ -54,7 +55,7 @@ class PeakSearch {
     for (int64_t d = 0; d < power.size(); ++d) {
       if (is_top(power, d)) tops.push_back(d);
     }
-    std::stable_sort(tops.begin(), tops.end(), [&](int64_t a, int64_t b) { return power[a] > power[b]; });
+    std::ranges::stable_sort(tops, [&](int64_t a, int64_t b) { return power[a] > power[b]; });
     tops.resize(std::min<size_t>(tops.size(), options_.max_peaks));
     std::vector<Peak> found;
     for (const int64_t d : tops) found.push_back(refined(beam, d, power[d]));
@@ -115,7 +116,7 @@ class PeakSearch {
   }
 
   std::vector<Peak> strongest(std::vector<Peak> found) const {
-    std::stable_sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.power > b.power; });
+    std::ranges::stable_sort(found, std::greater(), &Peak::power);
     const double share = std::pow(10.0, -options_.peak_range_db / 10.0);
     while (!found.empty() && found.back().power < share * found.front().power) found.pop_back();
     return found;

@@ -18,7 +18,7 @@ double share_of_sum(const RangeDoppler& map, int num_chirps) {
 
 int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
   const auto is_nearer = [velocity](double a, double b) { return std::abs(a - velocity) < std::abs(b - velocity); };
-  const auto nearest = std::min_element(map.velocity.begin(), map.velocity.end(), is_nearer);
+  const auto nearest = std::ranges::min_element(map.velocity, is_nearer);
   const size_t count = map.velocity.size();
   const double step = count > 1 ? (map.velocity.back() - map.velocity.front()) / static_cast<double>(count - 1) : 0.0;
   require(count == 1 || std::abs(*nearest - velocity) <= 0.5 * step * (1.0 + 1e-9), "velocity",
@@ -35,8 +35,8 @@ struct VelocityRows {
 
 VelocityRows rows_in(const RangeDoppler& map, const std::array<double, 2>& gate) {
   const auto& axis = map.velocity;
-  const VelocityRows rows{std::lower_bound(axis.begin(), axis.end(), gate[0]) - axis.begin(),
-                          std::upper_bound(axis.begin(), axis.end(), gate[1]) - axis.begin()};
+  const VelocityRows rows{std::ranges::lower_bound(axis, gate[0]) - axis.begin(),
+                          std::ranges::upper_bound(axis, gate[1]) - axis.begin()};
   require(rows.begin < rows.end, "velocity_gate",
           "must hold a cell of the axis (" + std::to_string(axis.front()) + " to " + std::to_string(axis.back()) + " m/s)",
           std::to_string(gate[0]) + " to " + std::to_string(gate[1]));

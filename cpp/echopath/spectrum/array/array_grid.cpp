@@ -19,7 +19,7 @@ struct Steps {
 };
 
 std::vector<double> distinct(std::vector<double> values, double tolerance) {
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const auto is_same = [tolerance](double a, double b) { return b - a <= tolerance; };
   values.erase(std::unique(values.begin(), values.end(), is_same), values.end());
   return values;
@@ -49,7 +49,7 @@ Steps in_steps(const std::vector<double>& coordinate, double first, double spaci
     const double error = coordinate[i] - steps.offset - steps.index[i] * spacing;
     steps.deviation = std::max(steps.deviation, std::abs(error));
   }
-  steps.count = *std::max_element(steps.index.begin(), steps.index.end()) + 1;
+  steps.count = *std::ranges::max_element(steps.index) + 1;
   return steps;
 }
 
@@ -126,8 +126,7 @@ std::optional<GridFit> fit_line(const std::vector<Vec3>& points, const Vec3& axi
 }
 
 Vec3 farthest(const std::vector<Vec3>& offsets) {
-  return *std::max_element(offsets.begin(), offsets.end(),
-                           [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
+  return *std::ranges::max_element(offsets, {}, [](const Vec3& offset) { return offset.squaredNorm(); });
 }
 
 // Returns the parts of the offsets perpendicular to a unit vector.
@@ -141,7 +140,7 @@ std::vector<Vec3> perpendicular(const std::vector<Vec3>& offsets, const Vec3& ax
 std::optional<GridFit> fit_some_axis(const std::vector<Vec3>& points, std::vector<Vec3> offsets, const Vec3& normal,
                                      double tolerance, double min_spacing) {
   const auto is_shorter = [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); };
-  std::stable_sort(offsets.begin(), offsets.end(), is_shorter);  // the first is zero
+  std::ranges::stable_sort(offsets, is_shorter);  // the first is zero
   offsets.resize(std::min(offsets.size(), kMaxCandidates + 1));
   std::optional<GridFit> best;
   const auto num_points = [](const GridFit& fit) { return int64_t{fit.grid.num_rows} * fit.grid.num_columns; };

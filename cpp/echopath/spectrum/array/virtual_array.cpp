@@ -28,7 +28,7 @@ void take_mean_position(VirtualElement& element, const std::vector<Vec3>& positi
 std::vector<VirtualElement> merged(const std::vector<Vec3>& positions, double tolerance) {
   std::vector<VirtualElement> elements;
   for (size_t channel = 0; channel < positions.size(); ++channel) {
-    const auto near = std::find_if(elements.begin(), elements.end(), [&](const VirtualElement& element) {
+    const auto near = std::ranges::find_if(elements, [&](const VirtualElement& element) {
       return (positions[element.channels.front()] - positions[channel]).norm() <= tolerance;
     });
     VirtualElement& element = near != elements.end() ? *near : elements.emplace_back();
@@ -41,8 +41,7 @@ std::vector<VirtualElement> merged(const std::vector<Vec3>& positions, double to
 // Sorts elements by row and column and merges those at one point of the grid.
 void sort_by_grid(VirtualArray& array) {
   const auto cell = [](const VirtualElement& element) { return std::pair(element.row, element.column); };
-  std::stable_sort(array.elements.begin(), array.elements.end(),
-                   [&](const auto& a, const auto& b) { return cell(a) < cell(b); });
+  std::ranges::stable_sort(array.elements, [&](const auto& a, const auto& b) { return cell(a) < cell(b); });
   std::vector<VirtualElement> sorted;
   for (VirtualElement& element : array.elements) {
     if (sorted.empty() || cell(sorted.back()) != cell(element)) {
@@ -51,7 +50,7 @@ void sort_by_grid(VirtualArray& array) {
     }
     std::vector<int>& channels = sorted.back().channels;
     channels.insert(channels.end(), element.channels.begin(), element.channels.end());
-    std::sort(channels.begin(), channels.end());
+    std::ranges::sort(channels);
     take_mean_position(sorted.back(), array.positions);
   }
   array.elements = std::move(sorted);

@@ -89,7 +89,7 @@ ECHOPATH_INLINE void depolarize_lanes(const FirstHits* first, const LaneModes* m
 bool is_open(const FirstHits& first, int lane) { return first.receiver[lane] == ShadowState::kOpen; }
 
 bool any_open(const FirstHits& first) {
-  return std::find(first.receiver.begin(), first.receiver.end(), ShadowState::kOpen) != first.receiver.end();
+  return std::ranges::find(first.receiver, ShadowState::kOpen) != first.receiver.end();
 }
 
 bool any_scatters(const FirstHits& first) {

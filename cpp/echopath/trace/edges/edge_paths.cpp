@@ -68,8 +68,7 @@ class EdgeTracer {
     look(one.wedge, query_.settings.transmitter, scratch, scratch.to_transmitter);
     look(one.wedge, query_.settings.receiver, scratch, scratch.to_receiver);
     const auto is_open = [](ShadowState state) { return state == ShadowState::kOpen; };
-    if (std::all_of(scratch.to_transmitter.begin(), scratch.to_transmitter.end(), is_open) &&
-        std::all_of(scratch.to_receiver.begin(), scratch.to_receiver.end(), is_open))
+    if (std::ranges::all_of(scratch.to_transmitter, is_open) && std::ranges::all_of(scratch.to_receiver, is_open))
       set_pieces(one, longest, scratch);
     for (size_t piece = 0; piece < scratch.points.size(); ++piece) add_point(edge, piece, scratch, block);
   }

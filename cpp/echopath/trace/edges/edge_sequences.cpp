@@ -30,7 +30,7 @@ std::vector<EdgeSequences::OnPlane> EdgeSequences::sorted_faces(const Vec3& midd
                        edges_[i].from, edges_[i].line()});
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const OnPlane& a, const OnPlane& b) {
+  std::ranges::sort(faces, [](const OnPlane& a, const OnPlane& b) {
     return std::tie(a.key, a.edge, a.face) < std::tie(b.key, b.edge, b.face);
   });
   return faces;

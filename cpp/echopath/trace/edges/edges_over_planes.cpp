@@ -141,7 +141,7 @@ class LitEdgeTracer {
   }
 
   bool is_within(const std::vector<const LitPlane*>& lit, double at) const {
-    return std::any_of(lit.begin(), lit.end(), [&](const LitPlane* over) {
+    return std::ranges::any_of(lit, [&](const LitPlane* over) {
       const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
       return at >= begin && at <= end;
     });

@@ -30,7 +30,7 @@ void LitPlanes::add_chains(const PathBlock& block) {
   std::vector<Facet> facets;
   for (const PathBlock::LitChain& chain : block.lit_chains) {
     const std::span<const Hit> hits(block.chain_hits.data() + chain.first, chain.count);
-    if (!std::all_of(hits.begin(), hits.end(), [&](const Hit& hit) { return may_mirror(hit); })) continue;
+    if (!std::ranges::all_of(hits, [&](const Hit& hit) { return may_mirror(hit); })) continue;
     facets.clear();
     for (const Hit& hit : hits) facets.push_back({hit.mesh_id, hit.triangle_id});
     Boxes& boxes = chains_[facets];
@@ -55,20 +55,19 @@ void LitPlanes::find_planes() {
     index = static_cast<int>(planes_.size());
     planes_.push_back({corners[0], normal});
     const std::pair<double, int> key(slope_key(normal), index);
-    by_slope_.insert(std::upper_bound(by_slope_.begin(), by_slope_.end(), key), key);
+    by_slope_.insert(std::ranges::upper_bound(by_slope_, key), key);
   }
 }
 
 int LitPlanes::plane_through(std::span<const Vec3> points, const Vec3& normal) const {
   const double key = slope_key(normal);
   int found = -1;
-  auto one = std::lower_bound(by_slope_.begin(), by_slope_.end(), std::pair(key - kSlope, -1));
+  auto one = std::ranges::lower_bound(by_slope_, std::pair(key - kSlope, -1));
   for (; one != by_slope_.end() && one->first <= key + kSlope; ++one) {
     const Plane& plane = planes_[one->second];
     const auto lies_in = [&](const Vec3& point) { return std::abs(plane.height(point)) <= tolerance_; };
     const bool is_parallel = plane.normal.cross(normal).norm() < kSlope;
-    if (is_parallel && std::all_of(points.begin(), points.end(), lies_in) && (found < 0 || one->second < found))
-      found = one->second;
+    if (is_parallel && std::ranges::all_of(points, lies_in) && (found < 0 || one->second < found)) found = one->second;
   }
   return found;
 }

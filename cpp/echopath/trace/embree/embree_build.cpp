@@ -166,7 +166,7 @@ void EmbreeScene::Device::build(const EmbreeMeshes& meshes, Job* job) {
 
 // Has the next commit make the upper tree, though nothing else may be new.
 void EmbreeScene::Device::touch_any() {
-  const auto found = std::find_if(trees_.begin(), trees_.end(), [](const Tree& tree) { return tree.geometry != nullptr; });
+  const auto found = std::ranges::find_if(trees_, [](const Tree& tree) { return tree.geometry != nullptr; });
   if (to_fit_.empty() && found != trees_.end()) rtcCommitGeometry(found->geometry);
 }
 

@@ -131,7 +131,7 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   queries_->intersect(valid, queries);
   take(queries.hit, out.met);
   name_hits(out.met);
-  if (std::none_of(out.met.begin(), out.met.end(), is_met)) return out.verdicts.fill(Verdict::kMiss);
+  if (std::ranges::none_of(out.met, is_met)) return out.verdicts.fill(Verdict::kMiss);
   PacketFacets facets;
   LaneValues is_close;
   fetch(out, facets);
@@ -179,7 +179,7 @@ void EmbreeScene::name_hits(std::array<Hit, kPacketSize>& met) const {
 // Reads the triangles that were met, all at the same time. Lanes that met nothing read that of another lane.
 void EmbreeScene::fetch(const PacketHits& hits, PacketFacets& facets) const {
   std::array<const Hit*, kPacketSize> met;
-  const Hit* any = std::find_if(hits.met.begin(), hits.met.end(), is_met);
+  const Hit* any = std::ranges::find_if(hits.met, is_met);
   for (size_t k = 0; k < kPacketSize; ++k) {
     met[k] = is_met(hits.met[k]) ? &hits.met[k] : any;
     __builtin_prefetch(surfaces_[met[k]->mesh_id].triangles + met[k]->triangle_id);
@@ -211,10 +211,10 @@ void EmbreeScene::ask_segments(const RayLanes& rays, ValidLanes& blocked) const 
 
 void EmbreeScene::occluded(const LaneVectors& from, const Vec3& to, const LaneFlags& asked, LaneFlags& blocked) const {
   blocked.fill(false);
-  const auto num_asked = std::count(asked.begin(), asked.end(), true);
+  const auto num_asked = std::ranges::count(asked, true);
   if (num_asked == 0) return;
   if (num_asked == 1) {  // a packet of one would be slower
-    const auto lane = static_cast<int>(std::find(asked.begin(), asked.end(), true) - asked.begin());
+    const auto lane = static_cast<int>(std::ranges::find(asked, true) - asked.begin());
     blocked[lane] = occluded(from[lane], to);
     return;
   }

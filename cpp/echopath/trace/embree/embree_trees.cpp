@@ -80,7 +80,7 @@ std::vector<uint32_t> EmbreeScene::Trees::geometries_of(const std::vector<uint32
   for (uint32_t mesh_id = 0; mesh_id < owners_.size(); ++mesh_id) {
     if (owners_[mesh_id] != owners_before[mesh_id]) ids.insert(ids.end(), {owners_[mesh_id], owners_before[mesh_id]});
   }
-  std::sort(ids.begin(), ids.end());
+  std::ranges::sort(ids);
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
 }

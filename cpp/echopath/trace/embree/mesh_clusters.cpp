@@ -44,7 +44,7 @@ std::vector<PlacedMesh> placed(const std::vector<SmallMesh>& meshes) {
   std::vector<PlacedMesh> out;
   out.reserve(meshes.size());
   for (const SmallMesh& mesh : meshes) out.push_back({place_in_cube(mesh.box.center(), length), &mesh});
-  std::sort(out.begin(), out.end(), [](const PlacedMesh& a, const PlacedMesh& b) {
+  std::ranges::sort(out, [](const PlacedMesh& a, const PlacedMesh& b) {
     return a.place != b.place ? a.place < b.place : a.mesh->mesh_id < b.mesh->mesh_id;
   });
   return out;
@@ -78,7 +78,7 @@ class Divider {
       if (i->mesh->box.sizes().maxCoeff() <= most) cluster.push_back(i->mesh->mesh_id);
     }
     if (cluster.size() < kFewestInCluster) return;
-    std::sort(cluster.begin(), cluster.end());
+    std::ranges::sort(cluster);
     clusters.push_back(std::move(cluster));
   }
 };

@@ -57,7 +57,7 @@ void cut_out(std::vector<Vec3> polygon, const Vec3& apex, const std::vector<Vec3
 
 void clip(std::vector<Vec3>& polygon, const Vec3& normal, double offset, std::vector<Vec3>& spare) {
   const auto is_inside = [&](const Vec3& corner) { return normal.dot(corner) >= offset; };
-  const auto num_inside = std::count_if(polygon.begin(), polygon.end(), is_inside);
+  const auto num_inside = std::ranges::count_if(polygon, is_inside);
   if (num_inside == 0 || polygon.size() < 3) return polygon.clear();
   if (num_inside == std::ssize(polygon)) return;
   std::vector<Vec3>& inside = spare;

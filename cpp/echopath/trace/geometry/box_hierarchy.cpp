@@ -34,7 +34,7 @@ void BoxHierarchy::find(const std::vector<HalfSpace>& region, std::vector<int>& 
     }
     return true;
   });
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
 }
 
 }  // namespace echopath

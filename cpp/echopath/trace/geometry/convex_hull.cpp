@@ -13,7 +13,7 @@ bool turns_left(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen:
 
 PlanePoints convex_hull(PlanePoints points) {
   const auto before = [](const auto& a, const auto& b) { return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1]; };
-  std::sort(points.begin(), points.end(), before);
+  std::ranges::sort(points, before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   PlanePoints hull;
@@ -24,7 +24,7 @@ PlanePoints convex_hull(PlanePoints points) {
       hull.push_back(point);
     }
     hull.pop_back();  // begins the other half
-    if (!upper) std::reverse(points.begin(), points.end());
+    if (!upper) std::ranges::reverse(points);
   }
   return hull;
 }

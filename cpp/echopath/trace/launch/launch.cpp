@@ -202,7 +202,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
 }
 
 int LaunchPlan::stratum_of(int64_t ray) const {
-  return static_cast<int>(std::upper_bound(first_ray.begin(), first_ray.end(), ray) - first_ray.begin()) - 1;
+  return static_cast<int>(std::ranges::upper_bound(first_ray, ray) - first_ray.begin()) - 1;
 }
 
 int64_t LaunchPlan::number_of(int64_t ray) const {

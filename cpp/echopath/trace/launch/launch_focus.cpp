@@ -42,7 +42,7 @@ double focus_weight(const Stratum& focus, const Vec3& direction) {
 }
 
 LaunchFoci::LaunchFoci(const std::vector<Stratum>& strata) {
-  if (std::none_of(strata.begin(), strata.end(), [](const Stratum& stratum) { return stratum.is_focus(); })) return;
+  if (std::ranges::none_of(strata, [](const Stratum& stratum) { return stratum.is_focus(); })) return;
   foci_.resize(strata.size());
   for (size_t k = 0; k < strata.size(); ++k) {
     const Stratum& stratum = strata[k];

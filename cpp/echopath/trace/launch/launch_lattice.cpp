@@ -75,7 +75,7 @@ bool LaunchLattice::find_row(const Eigen::Vector2d& base, double& begin, double&
 }
 
 size_t LaunchLattice::row_of(int64_t index) const {
-  return static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), index) - first_.begin()) - 1;
+  return static_cast<size_t>(std::ranges::upper_bound(first_, index) - first_.begin()) - 1;
 }
 
 Eigen::Vector2d LaunchLattice::point(int64_t index) const {
@@ -99,7 +99,7 @@ void LaunchLattice::points(int64_t first, int64_t count, double* x, double* y) c
 }
 
 int LaunchLattice::batch_of(int64_t index) const {
-  return static_cast<int>(std::upper_bound(end_of_batch_.begin(), end_of_batch_.end(), index) - end_of_batch_.begin());
+  return static_cast<int>(std::ranges::upper_bound(end_of_batch_, index) - end_of_batch_.begin());
 }
 
 }  // namespace echopath

@@ -25,7 +25,7 @@ bool asks_the_same(const TraceSettings& a, const TraceSettings& b) {
 }
 
 bool has_foci(const std::vector<Stratum>& strata) {
-  return std::any_of(strata.begin(), strata.end(), [](const Stratum& one) { return one.is_focus(); });
+  return std::ranges::any_of(strata, [](const Stratum& one) { return one.is_focus(); });
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ bool QueriedSpace::meets(const FloatBox& box) const {
 }
 
 bool QueriedSpace::meets(std::span<const FloatBox> boxes) const {
-  return std::any_of(boxes.begin(), boxes.end(), [&](const FloatBox& box) { return meets(box); });
+  return std::ranges::any_of(boxes, [&](const FloatBox& box) { return meets(box); });
 }
 
 void QueriedSpace::clear() {

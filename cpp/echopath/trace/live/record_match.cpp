@@ -104,7 +104,7 @@ void RecordMatch::match_owners() {
     const uint32_t known = common_.meshes.id_before[id];
     const auto before = was.strata_of(known), after = is.strata_of(id);
     if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), is_same)) common_.meshes.mark(id);
-    has_other_density_[known] = !std::all_of(after.begin(), after.end(), is_alike);
+    has_other_density_[known] = !std::ranges::all_of(after, is_alike);
     any_other_density_ = any_other_density_ || has_other_density_[known];
   }
 }
@@ -123,8 +123,8 @@ void RecordMatch::add_boxes_of_other_density() {
 bool RecordMatch::has_hits_of_other_density(const PathBlock& paths) const {
   if (!any_other_density_) return false;
   const auto is_one = [&](const Hit& hit) { return has_other_density_[hit.mesh_id]; };
-  return std::any_of(paths.hits.begin(), paths.hits.end(), is_one) ||
-         std::any_of(paths.fans.begin(), paths.fans.end(), [&](const PathFan& fan) { return is_one(fan.hit); });
+  return std::ranges::any_of(paths.hits, is_one) ||
+         std::ranges::any_of(paths.fans, [&](const PathFan& fan) { return is_one(fan.hit); });
 }
 
 // Returns the index of the block before that has the rays of one after, as far as their strata tell.
@@ -134,7 +134,7 @@ int64_t RecordMatch::known_block(size_t index) const {
     const size_t known = was.back() + index - is.back();
     return known < before_->blocks.size() ? static_cast<int64_t>(known) : -1;
   }
-  const auto stratum = static_cast<size_t>(std::upper_bound(is.begin(), is.end(), index) - is.begin()) - 1;
+  const auto stratum = static_cast<size_t>(std::ranges::upper_bound(is, index) - is.begin()) - 1;
   const int before = common_.stratum_before[stratum];
   return before < 0 ? -1 : static_cast<int64_t>(was[before] + index - is[stratum]);
 }

@@ -35,7 +35,7 @@ using FrustumRange = std::pair<const MirrorFrustum*, const MirrorFrustum*>;
 
 FrustumRange with_mirrors(const std::vector<MirrorFrustum>& frusta, size_t count) {
   const auto is_shorter = [](const MirrorFrustum& frustum, size_t wanted) { return frustum.mirrors.size() < wanted; };
-  const auto begin = std::lower_bound(frusta.begin(), frusta.end(), count, is_shorter);
+  const auto begin = std::ranges::lower_bound(frusta, count, is_shorter);
   const auto end = std::lower_bound(begin, frusta.end(), count + 1, is_shorter);
   return {frusta.data() + (begin - frusta.begin()), frusta.data() + (end - frusta.begin())};
 }
@@ -59,7 +59,7 @@ class HalfwayMeeting {
       std::vector<int>& sequence = sequences.emplace_back(frustum.mirrors);
       sequence.insert(sequence.end(), other.mirrors.rbegin(), other.mirrors.rend());
     }
-    std::sort(sequences.begin(), sequences.end());
+    std::ranges::sort(sequences);
     for (std::vector<int>& sequence : sequences) body(std::move(sequence));
   }
 

@@ -9,7 +9,7 @@ namespace echopath {
 namespace {
 
 std::vector<int> sorted(std::vector<int> planes) {
-  std::sort(planes.begin(), planes.end());
+  std::ranges::sort(planes);
   return planes;
 }
 
@@ -21,7 +21,7 @@ struct PlaneDoubles::Sequence {
 
 bool OrdersAboutCorners::contain(const std::vector<int>& sequence) const {
   int64_t begin = 0;
-  return std::all_of(ends.begin(), ends.end(), [&](int64_t end) {
+  return std::ranges::all_of(ends, [&](int64_t end) {
     const int64_t first = std::exchange(begin, end);
     return std::is_permutation(sequence.begin() + first, sequence.begin() + end, planes.begin() + first);
   });
@@ -37,7 +37,7 @@ bool PlaneDoubles::is_same(const PlaneDoubles& other, std::span<const uint32_t> 
   if (!any()) return true;
   const auto has_planes = [](const std::vector<int>& planes) { return !planes.empty(); };
   const auto num_with_planes = [&](const PlaneDoubles& of) {
-    return std::count_if(of.plane_of_triangle.begin(), of.plane_of_triangle.end(), has_planes);
+    return std::ranges::count_if(of.plane_of_triangle, has_planes);
   };
   for (size_t id = 0; id < plane_of_triangle.size(); ++id) {
     if (!has_planes(plane_of_triangle[id])) continue;
@@ -58,11 +58,10 @@ bool PlaneDoubles::is_double(const Paths& paths, size_t path, Sequence& of_path)
     of_path.planes.push_back(plane);
   }
   of_path.ascending = of_path.planes;
-  std::sort(of_path.ascending.begin(), of_path.ascending.end());
+  std::ranges::sort(of_path.ascending);
   const auto orders = left_out_.find(of_path.ascending);
   return orders != left_out_.end() &&
-         std::any_of(orders->second.begin(), orders->second.end(),
-                     [&](const OrdersAboutCorners& one) { return one.contain(of_path.planes); });
+         std::ranges::any_of(orders->second, [&](const OrdersAboutCorners& one) { return one.contain(of_path.planes); });
 }
 
 void PlaneDoubles::leave_out(Paths& paths, Job* job) const {

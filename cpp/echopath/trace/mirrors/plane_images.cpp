@@ -85,8 +85,8 @@ void name_triangles(const std::vector<Triangle>& triangles, const std::vector<ui
 // path then. A path through the seam of a plane, or through its rim, has the field that the surface about the point leaves,
 // once.
 bool bounces_at_corner(const std::vector<Vec3>& points) {
-  return std::adjacent_find(points.begin(), points.end(),
-                            [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtEdge; }) != points.end();
+  return std::ranges::adjacent_find(points, [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtEdge; }) !=
+         points.end();
 }
 
 bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
@@ -112,7 +112,7 @@ void PlaneImages::sort_chains() {
     const Facets one = facets_of(a), other = facets_of(b);
     return std::lexicographical_compare_three_way(one.begin(), one.end(), other.begin(), other.end());
   };
-  std::sort(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) { return compare(a, b) < 0; });
+  std::ranges::sort(chains_, [&](const auto& a, const auto& b) { return compare(a, b) < 0; });
   const auto end =
       std::unique(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) { return compare(a, b) == 0; });
   chains_.erase(end, chains_.end());
@@ -177,8 +177,8 @@ std::optional<FlatMirrorField> PlaneImages::field_beside_edges(const ImagePath& 
 }
 
 bool PlaneImages::is_same_plane(const Mirror& plane, const Mirror& other) const {
-  return std::all_of(other.outline.begin(), other.outline.end(),
-                     [&](const Vec3& corner) { return std::abs(plane.height(corner)) <= tolerance_; });
+  return std::ranges::all_of(other.outline,
+                             [&](const Vec3& corner) { return std::abs(plane.height(corner)) <= tolerance_; });
 }
 
 // Returns the planes of the sequence among joined_, of which planes that differ by little are one.
@@ -186,8 +186,7 @@ std::vector<int> PlaneImages::joined(const std::vector<int>& sequence) {
   std::vector<int> out;
   for (const int index : sequence) {
     const Mirror& plane = planes_[index];
-    const auto same =
-        std::find_if(joined_.begin(), joined_.end(), [&](const Mirror& old) { return is_same_plane(old, plane); });
+    const auto same = std::ranges::find_if(joined_, [&](const Mirror& old) { return is_same_plane(old, plane); });
     out.push_back(static_cast<int>(same - joined_.begin()));
     if (same == joined_.end()) joined_.push_back(plane);
   }

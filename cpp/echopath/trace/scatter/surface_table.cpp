@@ -12,7 +12,7 @@ namespace {
 // sphere.
 double middle_extent(const std::vector<Vec3>& vertices) {
   Vec3 extents = principal_box(vertices).box.sizes();
-  std::sort(extents.begin(), extents.end());
+  std::ranges::sort(extents);
   return extents[1];
 }
 

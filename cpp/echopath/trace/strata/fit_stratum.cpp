@@ -46,8 +46,7 @@ Vec3 middle_of(const std::vector<Vec3>& directions) {
 }
 
 bool all_within(const std::vector<Vec3>& directions, const Vec3& axis) {
-  return std::all_of(directions.begin(), directions.end(),
-                     [&](const Vec3& direction) { return direction.dot(axis) >= kWidestCosine; });
+  return std::ranges::all_of(directions, [&](const Vec3& direction) { return direction.dot(axis) >= kWidestCosine; });
 }
 
 // Points toward the middle of the box of the vertices, which does not hang on any one of them, or where that is too far
@@ -102,8 +101,8 @@ PlanePoints points_outside_of_circle(const PlanePoints& points) {
   }
   const double limit = std::pow(kWithinCircle * radius, 2);
   PlanePoints outer;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(outer),
-               [&](const Eigen::Vector2d& point) { return !((point - centre).squaredNorm() < limit); });
+  std::ranges::copy_if(points, std::back_inserter(outer),
+                       [&](const Eigen::Vector2d& point) { return !((point - centre).squaredNorm() < limit); });
   return outer;
 }
 
@@ -121,8 +120,7 @@ PlanePoints outer_points(const PlanePoints& all) {
     return true;
   };
   PlanePoints outer;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(outer),
-               [&](const auto& point) { return !is_inside(point); });
+  std::ranges::copy_if(points, std::back_inserter(outer), [&](const auto& point) { return !is_inside(point); });
   return outer;
 }
 

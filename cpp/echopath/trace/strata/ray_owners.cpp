@@ -10,13 +10,12 @@ void RayOwners::assign(int object, MirrorSequence sequence, int stratum) {
     return;
   }
   const std::pair<MirrorSequence, int> entry{sequence, stratum};
-  over_mirrors_[object].insert(std::lower_bound(over_mirrors_[object].begin(), over_mirrors_[object].end(), entry), entry);
+  over_mirrors_[object].insert(std::ranges::lower_bound(over_mirrors_[object], entry), entry);
 }
 
 int RayOwners::owner_over_mirrors(size_t object, MirrorSequence sequence) const {
   const auto& owners = over_mirrors_[object];
-  const auto found = std::lower_bound(owners.begin(), owners.end(), sequence,
-                                      [](const auto& entry, MirrorSequence wanted) { return entry.first < wanted; });
+  const auto found = std::ranges::lower_bound(owners, sequence, {}, &std::pair<MirrorSequence, int>::first);
   return found != owners.end() && found->first == sequence ? found->second : field_of_view_;
 }
 

@@ -92,8 +92,8 @@ class RayTargetFinder {
       std::optional<RayTarget> made =
           target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum), num_mirrors, images_of_vertices);
       if (!made) continue;
-      const auto same = std::find_if(images.begin(), images.end(),
-                                     [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
+      const auto same =
+          std::ranges::find_if(images, [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
       RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
       image.sequences.push_back(frustum.sequence);
     }
@@ -152,12 +152,12 @@ bool has_fewer_mirrors(const RayTarget& a, const RayTarget& b) { return a.stratu
 // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
 void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
   const size_t all = objects.size() + images.size();
-  std::stable_sort(images.begin(), images.end(), has_fewer_mirrors);
+  std::ranges::stable_sort(images, has_fewer_mirrors);
   if (objects.size() > kMaxAims) {
     const auto wider = [](const RayTarget& a, const RayTarget& b) {
       return a.stratum.solid_angle() > b.stratum.solid_angle();
     };
-    std::stable_sort(objects.begin(), objects.end(), wider);
+    std::ranges::stable_sort(objects, wider);
     objects.resize(kMaxAims);
   }
   images.resize(std::min(images.size(), kMaxAims - objects.size()));
@@ -231,11 +231,10 @@ class TargetSearch {
     for (size_t i = 0; i < parts.size(); ++i) {
       for (const uint32_t id : parts[i].mesh_ids) boxes[i].extend(geometry_.box(id));
     }
-    const auto num_apart = std::count_if(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& box) {
+    const auto num_apart = std::ranges::count_if(boxes, [&](const Eigen::AlignedBox3d& box) {
       const double near = 0.5 * box.diagonal().norm();
-      return std::none_of(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& other) {
-        return &other != &box && other.exteriorDistance(box) <= near;
-      });
+      return std::ranges::none_of(
+          boxes, [&](const Eigen::AlignedBox3d& other) { return &other != &box && other.exteriorDistance(box) <= near; });
     });
     return 2 * num_apart >= std::ssize(parts);
   }
@@ -296,7 +295,7 @@ class TargetSearch {
   void take_strongest(std::vector<Thing>& things) {
     if (things.size() > kMostThings) {
       std::erase_if(things, [&](Thing& thing) { return !is_in_sight(thing.target); });
-      std::stable_sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.echo > b.echo; });
+      std::ranges::stable_sort(things, [](const Thing& a, const Thing& b) { return a.echo > b.echo; });
     }
     const size_t kept = std::min(things.size(), kMostThings);
     out_.num_left_out += std::ssize(things) - static_cast<int64_t>(kept);
@@ -314,7 +313,7 @@ class TargetSearch {
       objects_.push_back(std::move(thing.direct));
       append(finder_.at_images(thing.target), images);
     }
-    std::stable_sort(images.begin(), images.end(), has_fewer_mirrors);
+    std::ranges::stable_sort(images, has_fewer_mirrors);
     if (images.size() > kMostThings) images.resize(kMostThings);
     for (RayTarget& image : images) image.weight *= std::min(share, 1.0 / static_cast<double>(images.size()));
     append(std::move(images), images_);

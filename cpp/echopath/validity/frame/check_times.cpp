@@ -18,7 +18,7 @@ constexpr double kChecksPerBreakpoint = 2.0;
 int64_t breakpoints_within(const Scene& scene, const Radar& radar, uint32_t mesh_id, const TimeSpan& frame) {
   int64_t count = 0;
   const auto add = [&](const std::vector<double>& times) {
-    count += std::count_if(times.begin(), times.end(), [&](double time) { return time > frame.begin && time < frame.end; });
+    count += std::ranges::count_if(times, [&](double time) { return time > frame.begin && time < frame.end; });
   };
   if (radar.motion) add(radar.motion->breakpoints(frame));
   if (const auto& deformation = scene.node_of(mesh_id).deformation) add(deformation->breakpoints(frame));

@@ -68,9 +68,8 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
       preparer_(paths, whole_patches(*paths.scene)), walk_(*paths.scene, preparer_.smooth_normals()),
       radio_(radio_constants(paths, radar)), sheets_(preparer_, radio_.wavelength), specular_(specular),
       mesh_moves_(moving_meshes(*paths.scene)) {
-  sheets_move_ = std::any_of(paths.passes.begin(), paths.passes.end(),
-                             [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
-  is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
+  sheets_move_ = std::ranges::any_of(paths.passes, [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
+  is_geometry_still_ = std::ranges::count(mesh_moves_, 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
   const PosedScene pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);

@@ -27,9 +27,8 @@ struct Crossing {
 };
 
 bool share_corner(const Triangle& a, const Triangle& b, const std::vector<Vec3>& vertices) {
-  return std::any_of(a.begin(), a.end(), [&](uint32_t i) {
-    return std::any_of(b.begin(), b.end(), [&](uint32_t j) { return vertices[i] == vertices[j]; });
-  });
+  return std::ranges::any_of(
+      a, [&](uint32_t i) { return std::ranges::any_of(b, [&](uint32_t j) { return vertices[i] == vertices[j]; }); });
 }
 
 }  // namespace
@@ -59,7 +58,7 @@ struct SurfaceWalk::Surface {
 Crossing SurfaceWalk::Surface::cross_toward(uint32_t at, const Vec3& weights, const std::vector<Vec3>& vertices) const {
   const auto behind = [&](int side) { return weights[(side + 2) % 3]; };  // edge i faces corner i + 2
   std::array<int, 3> sides = {0, 1, 2};
-  std::sort(sides.begin(), sides.end(), [&](int a, int b) { return behind(a) < behind(b); });
+  std::ranges::sort(sides, [&](int a, int b) { return behind(a) < behind(b); });
   for (const int side : sides) {
     const uint32_t next = neighbours[at][side];
     if (behind(side) >= kInside || next == kNoTriangle) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "echopath/base/bit_sum.h"
@@ -154,10 +155,7 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
   const size_t all = objects.size() + images.size();
   std::ranges::stable_sort(images, has_fewer_mirrors);
   if (objects.size() > kMaxAims) {
-    const auto wider = [](const RayTarget& a, const RayTarget& b) {
-      return a.stratum.solid_angle() > b.stratum.solid_angle();
-    };
-    std::ranges::stable_sort(objects, wider);
+    std::ranges::stable_sort(objects, std::greater(), [](const RayTarget& one) { return one.stratum.solid_angle(); });
     objects.resize(kMaxAims);
   }
   images.resize(std::min(images.size(), kMaxAims - objects.size()));
@@ -177,7 +175,8 @@ class TargetSearch {
     Target target = new_target(object);
     std::optional<RayTarget> direct = finder_.at_object(target);
     std::vector<Thing> things;
-    if (!direct || has_parts_apart(object)) find_things(object, things);
+    const std::vector<SceneObject> parts = parts_below(object);
+    if (!direct || are_apart(parts)) find_things(parts, things);
     if (direct && (things.empty() || solid_angle_of(things) > kMostlyFilled * direct->stratum.solid_angle())) {
       own(object, target.object);
       objects_.push_back(std::move(*direct));
@@ -222,10 +221,9 @@ class TargetSearch {
 
   double distance_of(const Sphere& sphere) const { return (sphere.centre - settings_.transmitter).norm(); }
 
-  // Returns whether most parts of an object are farther from all others, by their boxes, than half their own length. Posts
-  // of a guard rail are not: they carry it.
-  bool has_parts_apart(const SceneObject& object) const {
-    const std::vector<SceneObject> parts = parts_below(object);
+  // Returns whether most parts are farther from all others, by their boxes, than half their own length. Posts of a guard
+  // rail are not: they carry it.
+  bool are_apart(const std::vector<SceneObject>& parts) const {
     if (parts.size() < 2 || parts.size() > kMostThings) return false;
     std::vector<Eigen::AlignedBox3d> boxes(parts.size());
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -249,9 +247,8 @@ class TargetSearch {
     return parts;
   }
 
-  // Finds the largest parts of an object that a stratum holds.
-  void find_things(const SceneObject& object, std::vector<Thing>& things) {
-    const std::vector<SceneObject> parts = parts_below(object);
+  // Finds among the parts of an object, and theirs in turn, the largest that a stratum holds.
+  void find_things(const std::vector<SceneObject>& parts, std::vector<Thing>& things) {
     if (parts.size() == 1 || out_.num_objects + std::ssize(parts) > settings_.most_objects) return;
     for (const SceneObject& part : parts) {
       Target target = new_target(part);
@@ -262,7 +259,7 @@ class TargetSearch {
         things.push_back({std::move(target), std::move(*direct), echo});
       } else {
         out_.any_unaimed = true;
-        find_things(part, things);
+        find_things(parts_below(part), things);
       }
     }
   }
@@ -295,7 +292,7 @@ class TargetSearch {
   void take_strongest(std::vector<Thing>& things) {
     if (things.size() > kMostThings) {
       std::erase_if(things, [&](Thing& thing) { return !is_in_sight(thing.target); });
-      std::ranges::stable_sort(things, [](const Thing& a, const Thing& b) { return a.echo > b.echo; });
+      std::ranges::stable_sort(things, std::greater(), &Thing::echo);
     }
     const size_t kept = std::min(things.size(), kMostThings);
     out_.num_left_out += std::ssize(things) - static_cast<int64_t>(kept);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "echopath/base/disjoint_sets.h"
 #include "echopath/scene/edges/edge_finder.h"
 #include "echopath/scene/scene_edges.h"
 
@@ -45,7 +46,7 @@ void find_contacts(std::vector<Placed>& all) {
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto left = [&](size_t i) { return std::tuple(all[i].group, all[i].box.min().x(), i); };
-  std::ranges::sort(order, [&](size_t a, size_t b) { return left(a) < left(b); });
+  std::ranges::sort(order, {}, left);
   for (size_t i = 0; i < order.size(); ++i) {
     Placed& one = all[order[i]];
     const Vec3 margin = Vec3::Constant(kTouch * extent[one.group].diagonal().norm());
@@ -117,17 +118,6 @@ class PartIndex {
   std::map<uint32_t, std::pair<uint32_t, uint32_t>> place_;
 };
 
-uint32_t root_of(std::vector<uint32_t>& parent, uint32_t id) {
-  while (parent[id] != id) id = parent[id] = parent[parent[id]];
-  return id;
-}
-
-void join(std::vector<uint32_t>& parent, uint32_t a, uint32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[std::max(a, b)] = std::min(a, b);
-}
-
 // Joins the surfaces of a group that touch each other.
 class Seams {
  public:
@@ -140,7 +130,7 @@ class Seams {
     found_ = find_edges(surfaces);
   }
 
-  void apply(std::vector<std::vector<SharpEdge>>& edges, std::vector<uint32_t>& body) const {
+  void apply(std::vector<std::vector<SharpEdge>>& edges, DisjointSets& bodies) const {
     std::map<uint32_t, std::vector<SideStretch>> covered;  // by mesh ID, in its triangles
     for (const Seam& seam : found_.seams) {
       uint32_t first = UINT32_MAX;
@@ -149,7 +139,7 @@ class Seams {
         if (id == UINT32_MAX) continue;
         stretch.triangle = triangle;
         covered[id].push_back(stretch);
-        if (first != UINT32_MAX) join(body, first, id);
+        if (first != UINT32_MAX) bodies.join(first, id);
         first = id;
       }
     }
@@ -208,23 +198,21 @@ std::pair<int, Transform> place_in_group(const Scene& scene, uint32_t mesh_id) {
   return {node, place};
 }
 
-SeamedEdges::SeamedEdges(const Scene& scene) : edges(scene.meshes().size()), is_changed(edges.size()), body(edges.size()) {
-  std::iota(body.begin(), body.end(), 0u);
+SeamedEdges::SeamedEdges(const Scene& scene) : edges(scene.meshes().size()), is_changed(edges.size()) {
+  DisjointSets bodies(edges.size());
   for (std::vector<Placed>& group : touching_groups(scene)) {
     for (const Placed& one : group) {
       for (const uint32_t id : one.meshes) {
         edges[id] = scene.node_of(id).mesh->sharp_edges();
         is_changed[id] = true;
-        join(body, one.meshes.front(), id);
+        bodies.join(one.meshes.front(), id);
       }
     }
-    Seams(scene, std::move(group)).apply(edges, body);
+    Seams(scene, std::move(group)).apply(edges, bodies);
   }
   const auto key = [](const SharpEdge& edge) { return std::tie(edge.triangle, edge.side, edge.begin); };
-  for (uint32_t id = 0; id < edges.size(); ++id) {
-    std::ranges::sort(edges[id], [&](const SharpEdge& a, const SharpEdge& b) { return key(a) < key(b); });
-    body[id] = root_of(body, id);
-  }
+  for (std::vector<SharpEdge>& own : edges) std::ranges::sort(own, {}, key);
+  body = bodies.names();
 }
 
 }  // namespace echopath

@@ -1,7 +1,8 @@
 #include "echopath/scene/mesh/manifold.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "echopath/base/disjoint_sets.h"
 
 namespace echopath {
 namespace {
@@ -37,30 +38,11 @@ void for_each_edge(const std::vector<Side>& sides, Visit visit) {
   }
 }
 
-class UnionFind {
- public:
-  explicit UnionFind(size_t count) {
-    parent_.resize(count);
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  uint32_t find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);  // the root is the first corner: numbering follows the triangles
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
 uint32_t next_corner(uint32_t side) { return side % 3 == 2 ? side - 2 : side + 1; }
 
 // Joins the corners of one vertex that are connected through manifold edges.
-UnionFind fans(const std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
-  UnionFind corners(3 * triangles.size());
+DisjointSets fans(const std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
+  DisjointSets corners(3 * triangles.size());
   for_each_edge(sides, [&](auto first, auto last) {
     if (last - first != 2 || first[0].ascending == first[1].ascending) return;
     corners.join(first[0].id, next_corner(first[1].id));
@@ -70,7 +52,7 @@ UnionFind fans(const std::vector<Triangle>& triangles, const std::vector<Side>& 
 }
 
 // The first fan of a vertex keeps its number, each other one gets a copy.
-void split_fans(std::vector<Triangle>& triangles, UnionFind& corners, std::vector<uint32_t>& original_vertex) {
+void split_fans(std::vector<Triangle>& triangles, DisjointSets& corners, std::vector<uint32_t>& original_vertex) {
   constexpr uint32_t kNone = 0xffffffffu;
   std::vector<uint32_t> vertex_of_fan(3 * triangles.size(), kNone);
   std::vector<bool> taken(original_vertex.size(), false);
@@ -97,7 +79,7 @@ void split_fans(std::vector<Triangle>& triangles, UnionFind& corners, std::vecto
 // and all its other sides are glued in pairs, so no two faces run through an edge of the new numbers in the same
 // direction.
 void cut_to_manifold(std::vector<Triangle>& triangles, std::vector<uint32_t>& original_vertex) {
-  UnionFind corners = fans(triangles, sorted_sides(triangles));
+  DisjointSets corners = fans(triangles, sorted_sides(triangles));
   split_fans(triangles, corners, original_vertex);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "echopath/base/disjoint_sets.h"
+
 namespace echopath {
 namespace {
 
@@ -27,7 +29,7 @@ struct HalfEdge {
 double weighted_median(const std::vector<double>& values, const std::vector<double>& weights, size_t& index) {
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return values[a] < values[b]; });
+  std::ranges::stable_sort(order, {}, [&](size_t i) { return values[i]; });
   const double half = 0.5 * std::accumulate(weights.begin(), weights.end(), 0.0);
   double sum = 0.0;
   for (const size_t i : order) {
@@ -78,7 +80,7 @@ class TessellationMeter {
     const auto key = [](const HalfEdge& edge) {
       return std::array<uint32_t, 4>{edge.low, edge.high, edge.side, edge.facet};
     };
-    std::ranges::sort(edges, [&](const HalfEdge& a, const HalfEdge& b) { return key(a) < key(b); });
+    std::ranges::sort(edges, {}, key);
     for (size_t i = 1; i < edges.size(); ++i) {
       if (edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high) add_turn(edges[i - 1], edges[i]);
     }
@@ -132,15 +134,9 @@ class TessellationMeter {
 
   // Returns the piece of each facet, named by one of its facets.
   std::vector<uint32_t> find_pieces() const {
-    std::vector<uint32_t> parent(areas_.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root_of = [&](uint32_t facet) {
-      while (parent[facet] != facet) facet = parent[facet] = parent[parent[facet]];
-      return facet;
-    };
-    for (const Turn& turn : turns_) parent[root_of(turn.first)] = root_of(turn.second);
-    for (uint32_t f = 0; f < parent.size(); ++f) parent[f] = root_of(f);
-    return parent;
+    DisjointSets pieces(areas_.size());
+    for (const Turn& turn : turns_) pieces.join(turn.first, turn.second);
+    return pieces.names();
   }
 
   void summarise(const std::vector<bool>& is_curved, Tessellation& out) const {

@@ -2,6 +2,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/scene/smooth/kept_normals.h"
 #include "echopath/scene/smooth/smooth.h"
 
@@ -87,9 +88,8 @@ void PosedScene::place_meshes() {
 void PosedScene::place(uint32_t mesh_id, const Transform& world_from_mesh) {
   const std::string& name = scene_->node_of(mesh_id).name;
   if (!world_from_mesh.linear().allFinite()) {
-    std::ostringstream value;
-    value << "one that is not finite at " << time_ << " s";
-    require(false, "scene", "the motions of mesh '" + name + "' must turn it by finite angles", value.str());
+    require(false, "scene", "the motions of mesh '" + name + "' must turn it by finite angles",
+            streamed("one that is not finite at ", time_, " s"));
   }
   if (!is_in_range(world_from_mesh.translation())) {
     require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");

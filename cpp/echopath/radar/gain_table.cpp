@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
@@ -32,10 +32,7 @@ void require_samples(const std::vector<double>& values, size_t count, const std:
 
 // "a mean of 1.2 (0.79 dB)"
 std::string in_words(double mean) {
-  std::ostringstream text;
-  text.precision(4);
-  text << "a mean of " << mean << " (" << 10.0 * std::log10(mean) << " dB)";
-  return text.str();
+  return "a mean of " + with_digits(4, mean) + " (" + with_digits(4, 10.0 * std::log10(mean)) + " dB)";
 }
 
 // Computes cubic Hermite weights at x between at[1] and at[2]. Slopes come from parabolas through three samples; at an end

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/geometry.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
@@ -148,9 +148,8 @@ AntennaPattern AntennaPattern::cosine_power(double exponent, double peak_gain) {
   require(std::isfinite(exponent) && exponent >= 0.0, "exponent", "must be finite and not negative", exponent);
   require(std::isfinite(peak_gain), "peak_gain", "must be finite", peak_gain);
   const double lossless = 2.0 * (exponent + 1.0);
-  std::ostringstream rule;
-  rule << "must be at most that of an antenna without losses, 2 (exponent + 1) = " << lossless;
-  require(peak_gain <= kLargestEfficiency * lossless, "peak_gain", rule.str(), peak_gain);
+  require(peak_gain <= kLargestEfficiency * lossless, "peak_gain",
+          streamed("must be at most that of an antenna without losses, 2 (exponent + 1) = ", lossless), peak_gain);
   return {Kind::kCosinePower, peak_gain > 0.0 ? peak_gain : lossless, exponent, nullptr};
 }
 

@@ -6,6 +6,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/text/quoted.h"
+#include "echopath/base/text/streamed.h"
 
 namespace echopath {
 namespace {
@@ -50,11 +51,9 @@ void require_span(const TimeSpan& span, double begin, double end, const std::str
   // Ends are sums of intervals, so their rounding is forgiven as the motions do.
   const double slack = 1e-12 * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
   if (begin >= span.begin - slack && end <= span.end + slack) return;
-  std::ostringstream rule, value;
-  rule << "must cover the frame, " << begin << " to " << end << " s (that of an actor is as long as its duration=); node "
-       << name;
-  value << span.begin << " to " << span.end << " s";
-  require(false, "motion", rule.str(), value.str());
+  const std::string rule = streamed("must cover the frame, ", begin, " to ", end,
+                                    " s (that of an actor is as long as its duration=); node ", name);
+  require(false, "motion", rule, streamed(span.begin, " to ", span.end, " s"));
 }
 
 }  // namespace

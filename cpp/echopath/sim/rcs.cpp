@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/power/received_power.h"
 #include "echopath/record/hit_points.h"
@@ -47,10 +48,10 @@ double far_distance(const Target& target, double wavenumber) {
   const double distance = std::max({flat, target.radius / kAmplitudeError, kTwoPi / wavenumber});
   if (distance <= kFarthest) return distance;
   const double largest = std::min(std::sqrt(kFarthest * kPhaseError / wavenumber), kFarthest * kAmplitudeError);
-  std::ostringstream rule;
-  rule << "must fit into a sphere of radius " << largest
-       << " m at this frequency (are its vertices in metres?), radius in m";
-  require(false, "scene", rule.str(), target.radius);
+  require(false, "scene",
+          streamed("must fit into a sphere of radius ", largest,
+                   " m at this frequency (are its vertices in metres?), radius in m"),
+          target.radius);
   return distance;
 }
 

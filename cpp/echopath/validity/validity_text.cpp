@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/validity/validity.h"
 
 namespace echopath {
@@ -11,19 +12,9 @@ namespace {
 constexpr size_t kMaxObjects = 3;    // in the text
 constexpr size_t kValueColumn = 37;  // of the text
 
-std::string percent(double share) {
-  std::ostringstream text;
-  text.precision(share < 0.1 ? 2 : 3);
-  text << 100.0 * share << " %";
-  return text.str();
-}
+std::string percent(double share) { return with_digits(share < 0.1 ? 2 : 3, 100.0 * share) + " %"; }
 
-std::string radians(double phase) {
-  std::ostringstream text;
-  text.precision(2);
-  text << phase << " rad";
-  return text.str();
-}
+std::string radians(double phase) { return with_digits(2, phase) + " rad"; }
 
 std::string dbm(double power) {
   std::ostringstream text;
@@ -68,18 +59,13 @@ std::string advice(const Validity& report) {
 }
 
 std::string missing_warning(const ObjectValidity& object, const Validity& report) {
-  std::ostringstream margin;
-  margin.precision(2);
-  margin << 10.0 * std::log10(object.seen_power / report.cell_noise);
+  const std::string margin = with_digits(2, 10.0 * std::log10(object.seen_power / report.cell_noise));
   return "'" + object.name + "' has no path, but is seen within the frame with up to " + dbm(object.seen_power) + ", " +
-         margin.str() + " dB above the noise of a range-Doppler cell: its echoes are missing. " + advice(report);
+         margin + " dB above the noise of a range-Doppler cell: its echoes are missing. " + advice(report);
 }
 
 std::string fast_warning(const ObjectValidity& object, const Validity& report) {
-  std::ostringstream turns;
-  turns.precision(3);
-  turns << object.turn / kTwoPi;
-  return "'" + object.name + "' turns up to " + turns.str() +
+  return "'" + object.name + "' turns up to " + with_digits(3, object.turn / kTwoPi) +
          " times within the frame: " + std::to_string(report.times.size()) +
          " times of the check may miss what becomes of it. Trace shorter frames.";
 }

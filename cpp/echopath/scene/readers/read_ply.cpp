@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <sstream>
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/scene/readers/ply_header.h"
 #include "echopath/scene/readers/soup.h"
 
@@ -128,9 +128,7 @@ std::vector<uint32_t> polygon_corners(const PlyValues& values, const std::vector
   for (const double item : items) {
     const bool exists = item >= 0.0 && item < static_cast<double>(soup.vertices.size()) && item == std::floor(item);
     if (!exists) {
-      std::ostringstream text;
-      text << face << ": vertex " << item << " does not exist, there are " << soup.vertices.size();
-      values.refuse(text.str());
+      values.refuse(streamed(face, ": vertex ", item, " does not exist, there are ", soup.vertices.size()));
     }
     corners.push_back(static_cast<uint32_t>(item));
   }

@@ -29,9 +29,8 @@ int64_t replay_only(const Paths& paths, const Radar& radar, const ReplaySettings
     const int num_chirps = blocks.front().sampling.is_static() ? 1 : radar.waveform.num_chirps;
     path_chirps += of.count * num_chirps;
     for (const Echoes& echoes : blocks) {
-      parallel_for((echoes.num_echoes + kEchoes - 1) / kEchoes, [&](int64_t i) {
-        evaluate_chirps(echoes, i * kEchoes, std::min(echoes.num_echoes, (i + 1) * kEchoes), num_chirps);
-      });
+      parallel_for_chunks(echoes.num_echoes, kEchoes,
+                          [&](int64_t begin, int64_t end) { evaluate_chirps(echoes, begin, end, num_chirps); });
     }
   });
   return path_chirps;

@@ -1,7 +1,5 @@
 #include "echopath/bench/single_rays.h"
 
-#include <algorithm>
-
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/embree/embree_scene.h"
@@ -24,10 +22,8 @@ struct PosedGeometry {
 
 template <class Query>
 void for_each_ray(size_t count, Job* job, const Query& query) {
-  const auto num_rays = static_cast<int64_t>(count);
-  parallel_for((num_rays + kRaysPerBlock - 1) / kRaysPerBlock, [&](int64_t block) {
-    const int64_t end = std::min((block + 1) * kRaysPerBlock, num_rays);
-    for (int64_t i = block * kRaysPerBlock; i < end; ++i) query(static_cast<size_t>(i));
+  parallel_for_chunks(static_cast<int64_t>(count), kRaysPerBlock, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) query(i);
   }, job);
 }
 

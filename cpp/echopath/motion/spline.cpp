@@ -6,6 +6,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
 
 namespace echopath {
@@ -29,10 +30,8 @@ void check_times(const std::vector<double>& times) {
 double time_inside(double time, const TimeSpan& span) {
   const double slack = kTimeRounding * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
   if (!(time >= span.begin - slack && time <= span.end + slack)) {
-    std::ostringstream rule;
-    rule.precision(17);
-    rule << "must lie in the motion's [" << span.begin << ", " << span.end << "] s";
-    require(false, "time", rule.str(), time);
+    const std::string limits = with_digits(17, span.begin) + ", " + with_digits(17, span.end);
+    require(false, "time", "must lie in the motion's [" + limits + "] s", time);
   }
   return std::clamp(time, span.begin, span.end);
 }
@@ -105,12 +104,8 @@ void SplineKnots::factor() {
 
 void SplineKnots::second_derivatives(const std::vector<const double*>& rows, int64_t width,
                                      const std::vector<double*>& out) const {
-  const int64_t num_tasks = (width + kColumnsPerTask - 1) / kColumnsPerTask;
-  const auto task = [&](int64_t i) {
-    solve_columns(rows, out, i * kColumnsPerTask, std::min(width, (i + 1) * kColumnsPerTask));
-  };
-  if (num_tasks == 1) return task(0);
-  parallel_for(num_tasks, task);
+  if (width <= kColumnsPerTask) return solve_columns(rows, out, 0, width);
+  parallel_for_chunks(width, kColumnsPerTask, [&](int64_t begin, int64_t end) { solve_columns(rows, out, begin, end); });
 }
 
 void SplineKnots::solve_columns(const std::vector<const double*>& rows, const std::vector<double*>& out, int64_t begin,

@@ -15,7 +15,7 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kPathsDrawnTogether = 1 << 14;
+constexpr int64_t kPathsDrawnTogether = 1 << 14;
 // A path is kept at least once in 4^kMostLevels times: its amplitude, which may grow from what it is at the time of the
 // trace, is multiplied by 8 at most.
 constexpr int kMostLevels = 3;
@@ -82,11 +82,8 @@ class Lot {
   }
   // Multiplies the weights of paths that count for others, and returns which paths are kept, [P].
   std::vector<uint8_t> draw() {
-    const size_t num_blocks = (places_.size() + kPathsDrawnTogether - 1) / kPathsDrawnTogether;
-    parallel_for(static_cast<int64_t>(num_blocks), [&](int64_t block) {
-      const size_t begin = static_cast<size_t>(block) * kPathsDrawnTogether;
-      draw_runs_from(begin, std::min(places_.size(), begin + kPathsDrawnTogether));
-    });
+    parallel_for_chunks(std::ssize(places_), kPathsDrawnTogether,
+                        [&](int64_t begin, int64_t end) { draw_runs_from(begin, end); });
     return std::move(keep_);
   }
 
@@ -120,7 +117,7 @@ class Lot {
       const auto path = static_cast<size_t>(places_[i]);
       entries.push_back({key_of(path), power_[i], path});
     }
-    std::ranges::sort(entries, [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    std::ranges::sort(entries, {}, &Entry::key);
     for (size_t i = 0, next = 0; i < entries.size(); i = next) {
       while (next < entries.size() && entries[next].key == entries[i].key) ++next;
       draw_together(std::span(entries).subspan(i, next - i));

@@ -210,7 +210,6 @@ class Sums {
     const double by_lot = is_drawn ? power : std::norm(open.lot_field);
     if (!is_drawn) add_even(group, path, certain);
     sums.drawn_squares += by_lot * by_lot + 2.0 * certain * by_lot;
-    sums.strongest_hit = std::max(sums.strongest_hit, power);
     ++sums.num_diffuse_hits;
     open.path = kNoPath;
   }
@@ -285,10 +284,9 @@ class Block {
 
   // Turns amplitudes [copy, path] by the phases of the lengths.
   void arrive(size_t num_paths, size_t num_copies, std::vector<std::complex<double>>& fields) const {
-    constexpr size_t kTogether = 8192;
-    parallel_for(static_cast<int64_t>((num_paths + kTogether - 1) / kTogether), [&](int64_t task) {
-      const size_t first = static_cast<size_t>(task) * kTogether, end = std::min(first + kTogether, num_paths);
-      for (size_t i = first; i < end; ++i) {
+    constexpr int64_t kTogether = 8192;
+    parallel_for_chunks(static_cast<int64_t>(num_paths), kTogether, [&](int64_t begin, int64_t end) {
+      for (int64_t i = begin; i < end; ++i) {
         const Phasor phase = phasor_of_product(turns_per_metre_, lengths_[i]);
         const std::complex<double> turn(phase.re, -phase.im);
         for (size_t copy = 0; copy < num_copies; ++copy) fields[copy * num_paths + i] *= turn;

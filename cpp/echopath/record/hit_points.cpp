@@ -1,7 +1,5 @@
 #include "echopath/record/hit_points.h"
 
-#include <algorithm>
-
 #include "echopath/base/threads/parallel.h"
 
 namespace echopath {
@@ -14,11 +12,8 @@ constexpr int64_t kHitsPerTask = 1 << 19;
 std::vector<double> hit_points(const Paths& paths, double time, Job* job) {
   const PosedScene pose(*paths.scene, time);
   std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
-  parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
-    const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
-    for (int64_t i = block * kHitsPerTask; i < end; ++i) {
-      Eigen::Map<Vec3>(out.data() + 3 * i) = hit_point(pose, (*paths.hits)[i]);
-    }
+  parallel_for_chunks(paths.num_hits(), kHitsPerTask, [&](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) Eigen::Map<Vec3>(out.data() + 3 * i) = hit_point(pose, (*paths.hits)[i]);
   }, job);
   return out;
 }

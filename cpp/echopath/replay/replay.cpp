@@ -16,7 +16,7 @@ namespace {
 
 // With this many paths, the legs and what these are made of stay in the second-level cache.
 constexpr size_t kPlannedTogether = 2000;
-constexpr size_t kBlock = 8192;  // paths of a task
+constexpr int64_t kBlock = 8192;  // paths of a task
 
 const Radar& checked(const Radar& radar, const Paths& paths, const ReplaySettings& settings) {
   radar.validate();
@@ -231,8 +231,8 @@ void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment
   const PosedNodes posed = posed_.pose(times);
   Wanted wanted;
   wanted.with_amplitudes = std::ranges::any_of(moments, [](const Moment& one) { return one.amplitudes; });
-  parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
-    const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
+  parallel_for_chunks(std::ssize(indices), kBlock, [&](size_t begin, size_t end) {
+    const size_t size = end - begin;
     std::vector<Echoes> echoes = take_echoes(size, 1, times.size());
     Target target{posed, 0, rows_of(echoes), wanted};
     target.nodes[0].scale = 1.0;  // lengths in place of delays
@@ -254,8 +254,8 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::span
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
   amplitudes.resize(cells.size() * lengths.size());
-  parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
-    const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
+  parallel_for_chunks(std::ssize(indices), kBlock, [&](size_t begin, size_t end) {
+    const size_t size = end - begin;
     std::vector<Target> targets;
     for (size_t view = 0; view < cells.size(); ++view) {
       targets.push_back({single, 0, {}});

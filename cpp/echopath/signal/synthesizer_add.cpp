@@ -22,11 +22,8 @@ int chirps_per_task(int num_chirps) {
 }
 
 void run_tasks(int num_chirps, const std::function<void(int first, int count)>& work) {
-  const int size = chirps_per_task(num_chirps);
-  parallel_for((num_chirps + size - 1) / size, [&](int64_t task) {
-    const int first = static_cast<int>(task) * size;
-    work(first, std::min(size, num_chirps - first));
-  });
+  parallel_for_chunks(num_chirps, chirps_per_task(num_chirps),
+                      [&](int64_t begin, int64_t end) { work(static_cast<int>(begin), static_cast<int>(end - begin)); });
 }
 
 // Returns [num_groups], 1 for groups that have echoes.

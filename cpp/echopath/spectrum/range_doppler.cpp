@@ -73,7 +73,7 @@ std::vector<std::complex<double>> doppler_transform(const std::vector<std::compl
                                                     const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
   const int64_t num_chirps = std::ssize(taper);
-  const int64_t num_strips = (num_ranges + kColumnsPerTask - 1) / kColumnsPerTask;
+  const int64_t num_strips = num_chunks(num_ranges, kColumnsPerTask);
   std::vector<std::complex<double>> values(num_maps * fft_size * num_ranges);
   parallel_for(num_maps * num_strips, [&](int64_t task) {
     if (job) job->throw_if_cancelled();

@@ -1,10 +1,10 @@
 #include "echopath/trace/tracer.h"
 
 #include <iterator>
-#include <sstream>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/memory/machine_memory.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
@@ -118,11 +118,11 @@ void Tracer::pose_edges() {
   least_edge_power_ = least_edge_power(strongest_of(edges_, *empty_.scene, edge_estimate_), empty_.radar);
 }
 
-int64_t Tracer::num_lattice_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }
+int64_t Tracer::num_lattice_blocks() const { return num_chunks(num_rays(), kRaysPerBlock); }
 
 int64_t Tracer::num_blocks() const {
   if (!pieces_.empty()) return std::ssize(pieces_);
-  return num_lattice_blocks() + (std::ssize(plan_.surface_scatterers) + kRaysPerBlock - 1) / kRaysPerBlock;
+  return num_lattice_blocks() + num_chunks(std::ssize(plan_.surface_scatterers), kRaysPerBlock);
 }
 
 void Tracer::shoot_block(int64_t index, PathBlock& block) const {
@@ -152,7 +152,7 @@ std::vector<PathBlock> Tracer::find_edges(LitPlanes& lit, Job* job) const {
 
 // Shoots every `step`-th block.
 std::vector<PathBlock> Tracer::shoot_ahead(int64_t step, Job* job) const {
-  std::vector<PathBlock> ahead((num_blocks() + step - 1) / step);
+  std::vector<PathBlock> ahead(num_chunks(num_blocks(), step));
   Job own(job);  // its progress is that of the waves
   parallel_for(std::ssize(ahead), [&](int64_t i) { shoot_block(i * step, ahead[i]); }, &own);
   return ahead;
@@ -179,13 +179,13 @@ std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vecto
 // Raises invalid_argument where the machine has no memory for the record, or for that of the trace which this one prepares.
 void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
   const int64_t most_rays = std::max(num_rays(), num_rays_to_come_);
-  const double needed = RecordWriter::num_bytes(ahead, (most_rays + kRaysPerBlock - 1) / kRaysPerBlock);
+  const double needed = RecordWriter::num_bytes(ahead, num_chunks(most_rays, kRaysPerBlock));
   const auto there = static_cast<double>(machine_memory());
   if (needed <= there) return;
-  std::ostringstream rule;
-  rule << "must be so few that their paths, about " << std::llround(needed / 1e9)
-       << " GB, fit into the memory of this machine, " << std::llround(there / 1e9) << " GB";
-  require(false, "num_rays", rule.str(), most_rays);
+  require(false, "num_rays",
+          streamed("must be so few that their paths, about ", std::llround(needed / 1e9),
+                   " GB, fit into the memory of this machine, ", std::llround(there / 1e9), " GB"),
+          most_rays);
 }
 
 // Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their

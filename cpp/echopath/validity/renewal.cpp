@@ -163,14 +163,12 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
 
 std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
-  const int64_t num_paths = paths.num_paths(), num_blocks = (num_paths + kPathsRenewedTogether - 1) / kPathsRenewedTogether;
-  std::vector<BlockOutcome> blocks(num_blocks);
-  if (job) job->start(num_blocks);
-  parallel_for(num_blocks, [&](int64_t i) {
-    const int64_t begin = i * kPathsRenewedTogether;
-    std::vector<int64_t> indices(std::min(kPathsRenewedTogether, num_paths - begin));
+  std::vector<BlockOutcome> blocks(num_chunks(paths.num_paths(), kPathsRenewedTogether));
+  if (job) job->start(std::ssize(blocks));
+  parallel_for_chunks(paths.num_paths(), kPathsRenewedTogether, [&](int64_t begin, int64_t end) {
+    std::vector<int64_t> indices(end - begin);
     std::iota(indices.begin(), indices.end(), begin);
-    blocks[i] = renewer.renew_block(indices);
+    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices);
   }, job);
   return blocks;
 }

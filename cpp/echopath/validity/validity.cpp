@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <span>
@@ -68,7 +69,7 @@ class ValidityCheck {
     const std::vector<size_t> members = members_from(first);
     if (first > 0 && members.empty()) return;
     check_.pose(first, kTimesAtOnce, job_);
-    const int64_t size = std::ssize(members), num_blocks = (size + kPathsPerBlock - 1) / kPathsPerBlock;
+    const int64_t size = std::ssize(members), num_blocks = num_chunks(size, kPathsPerBlock);
     if (job_) job_->start(num_blocks);
     for (int64_t begin = 0; begin < num_blocks; begin += kBlocksInFlight) {
       std::vector<ObjectsAtTimes> parts(std::min(kBlocksInFlight, num_blocks - begin));
@@ -139,7 +140,6 @@ class ValidityCheck {
       raise(report_.largest_phase_error, slid);
       raise(report_.motion_phase_error, phase(check_.error_of(found.state).motion));
       raise(report_.stepped_phase_error, phase(found.state.stepped.largest));
-      raise(report_.largest_cosine_change, found.state.cosine_change);
     }
     const PowerSums sum = whole.combined(whole.field_scale());
     report_.shares = sum.shares();
@@ -153,7 +153,7 @@ class ValidityCheck {
     const auto size = static_cast<size_t>(paths_.num_paths());
     const auto resize = [size](auto&... columns) { (columns.resize(size), ...); };
     resize(arrays.power, arrays.phase_error, arrays.stepped_phase_error, arrays.left, arrays.blocked,
-           arrays.receiver_blocked, arrays.turned, arrays.cosine_change);
+           arrays.receiver_blocked, arrays.turned);
   }
 
   void keep(size_t path, const PathFinding& found) {
@@ -165,7 +165,6 @@ class ValidityCheck {
     arrays.blocked[path] = found.state.blocked;
     arrays.receiver_blocked[path] = found.state.is_receiver_blocked;
     arrays.turned[path] = found.state.is_turned;
-    arrays.cosine_change[path] = static_cast<float>(found.state.cosine_change);
   }
 
   void make_objects() {
@@ -185,7 +184,7 @@ class ValidityCheck {
     }
     const double floor = std::max(strongest * std::pow(10.0, -0.1 * kDynamicRangeDb), report_.cell_noise);
     for (ObjectValidity& object : report_.objects) object.is_in_range = std::max(object.power, object.seen_power) >= floor;
-    std::ranges::stable_sort(report_.objects, [](const auto& a, const auto& b) { return a.power > b.power; });
+    std::ranges::stable_sort(report_.objects, std::greater(), &ObjectValidity::power);
   }
 
   size_t object_of(size_t mesh_id) const { return static_cast<size_t>(paths_.scene->meshes()[mesh_id].object); }

@@ -114,6 +114,11 @@ void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* 
   else run_steps(count, step);
 }
 
+void parallel_for_chunks(int64_t count, int64_t size, const std::function<void(int64_t begin, int64_t end)>& body,
+                         Job* job) {
+  parallel_for(num_chunks(count, size), [&](int64_t i) { body(i * size, std::min(count, (i + 1) * size)); }, job);
+}
+
 void run_both(const std::function<void()>& first, const std::function<void()>& second) {
   const auto flushed = [](const std::function<void()>& work) {
     return [&work] {

@@ -16,6 +16,12 @@ int num_threads();
 // a body is rethrown here after all tasks ended. With a job: each i advances it by one, and cancelling raises Cancelled.
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body, Job* job = nullptr);
 
+// Returns how many chunks of `size` each [0, count) has; the last one may be smaller.
+constexpr int64_t num_chunks(int64_t count, int64_t size) { return (count + size - 1) / size; }
+// Calls body(begin, end) for each of these chunks, as parallel_for does for each i.
+void parallel_for_chunks(int64_t count, int64_t size, const std::function<void(int64_t begin, int64_t end)>& body,
+                         Job* job = nullptr);
+
 // Calls both, side by side where there are threads; their own parallel loops share these. An exception of either is rethrown
 // here after what has begun has ended; the other may not have begun then. Neither may wait for the other, nor hold a lock
 // across a parallel loop that the other takes: who waits for tasks helps with any.

@@ -146,10 +146,8 @@ ShareErrors share_errors(const std::vector<BatchPowers>& parts, int num_batches,
     }
     errors.certain[i] = dominant[i] >= 0 && !cell.is_dark() && cell.leads(static_cast<size_t>(dominant[i]));
   };
-  const auto count = static_cast<int64_t>(num_cells);
-  parallel_for((count + kCellsPerErrorTask - 1) / kCellsPerErrorTask, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kCellsPerErrorTask, count);
-    for (int64_t i = task * kCellsPerErrorTask; i < end; ++i) label(static_cast<size_t>(i));
+  parallel_for_chunks(std::ssize(dominant), kCellsPerErrorTask, [&](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) label(i);
   }, job);
   return errors;
 }

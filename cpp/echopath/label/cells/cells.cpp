@@ -13,13 +13,6 @@ namespace {
 constexpr int64_t kCellsPerTask = 1 << 13;
 constexpr int64_t kMaxParts = std::numeric_limits<int16_t>::max();
 
-// Calls body(begin, end) for ranges of cells, in parallel.
-template <class Body>
-void for_cells(int64_t num_cells, const Body& body) {
-  parallel_for((num_cells + kCellsPerTask - 1) / kCellsPerTask,
-               [&](int64_t task) { body(task * kCellsPerTask, std::min((task + 1) * kCellsPerTask, num_cells)); });
-}
-
 // Returns the number of cells that `size` values of `count` parts or channels have.
 int64_t cells_of(size_t size, int64_t count, const char* argument) {
   require(count >= 1 && count <= kMaxParts, argument, "must be in [1, 32767]", count);
@@ -33,7 +26,7 @@ int64_t cells_of(size_t size, int64_t count, const char* argument) {
 std::vector<double> power_shares(std::span<const double> power, int64_t num_parts) {
   const int64_t num_cells = cells_of(power.size(), num_parts, "num_parts");
   std::vector<double> share(power.size());
-  for_cells(num_cells, [&](int64_t begin, int64_t end) {
+  parallel_for_chunks(num_cells, kCellsPerTask, [&](int64_t begin, int64_t end) {
     for (int64_t i = begin; i < end; ++i) {
       double sum = 0.0;
       for (int64_t k = 0; k < num_parts; ++k) sum += power[k * num_cells + i];
@@ -61,7 +54,7 @@ std::vector<int16_t> strongest_part(std::span<const double> power, int64_t num_p
   require(std::ssize(labelled) == num_cells, "labelled",
           "must have one value for each of " + std::to_string(num_cells) + " cells", labelled.size());
   std::vector<int16_t> strongest(num_cells, kNoLabel);
-  for_cells(num_cells, [&](int64_t begin, int64_t end) {
+  parallel_for_chunks(num_cells, kCellsPerTask, [&](int64_t begin, int64_t end) {
     for (int64_t i = begin; i < end; ++i) {
       double largest = 0.0;
       for (int64_t k = 0; labelled[i] && k < num_parts; ++k) {

@@ -1,6 +1,5 @@
 // Runs automata over the paths of a record.
 #include <cstring>
-#include <functional>
 
 #include "echopath/base/lanes/simd.h"
 #include "echopath/base/threads/parallel.h"
@@ -11,14 +10,6 @@ namespace {
 
 constexpr int64_t kPathsMatchedTogether = 1 << 14;  // 0.2 ms of work at most
 constexpr size_t kWord = sizeof(uint64_t);
-
-// Calls body(begin, end) for ranges of all paths, on all threads.
-void for_paths(const Paths& paths, Job* job, const std::function<void(size_t begin, size_t end)>& body) {
-  parallel_for((paths.num_paths() + kPathsMatchedTogether - 1) / kPathsMatchedTogether, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kPathsMatchedTogether, paths.num_paths());
-    body(static_cast<size_t>(task * kPathsMatchedTogether), static_cast<size_t>(end));
-  }, job);
-}
 
 ECHOPATH_INLINE void keep_touching(const uint64_t* bits, uint64_t needed, size_t count, uint8_t* candidates) {
   for (size_t i = 0; i < count; ++i) candidates[i] &= static_cast<uint8_t>((bits[i] & needed) != 0);
@@ -38,13 +29,13 @@ size_t next_candidate(const std::vector<uint8_t>& candidates, size_t path, size_
 
 std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
   std::vector<uint64_t> bits(paths.num_paths());
-  for_paths(paths, job, [&](size_t begin, size_t end) {
-    for (size_t path = begin; path < end; ++path) {
-      const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
+  parallel_for_chunks(paths.num_paths(), kPathsMatchedTogether, [&](int64_t begin, int64_t end) {
+    for (int64_t path = begin; path < end; ++path) {
+      const Hit* hits = paths.hits_of(path);
       for (int k = 0; k < paths.num_bounces[path]; ++k) bits[path] |= mesh_bit(hits[k].mesh_id);
       for (const Pass& pass : paths.passes_of(path)) bits[path] |= mesh_bit(pass.hit.mesh_id);
     }
-  });
+  }, job);
   return bits;
 }
 
@@ -57,7 +48,7 @@ std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job
 void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job,
             const std::vector<uint64_t>& bits) {
   const Hit* hits = paths.hits ? paths.hits->data() : nullptr;
-  for_paths(paths, job, [&](size_t begin, size_t end) {
+  parallel_for_chunks(paths.num_paths(), kPathsMatchedTogether, [&](size_t begin, size_t end) {
     for (const uint64_t needed : automaton.needed_bits()) {
       if (!bits.empty()) run_simd<keep_touching>(bits.data() + begin, needed, end - begin, candidates.data() + begin);
     }
@@ -80,7 +71,7 @@ void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>
                              ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
                              : automaton.takes(hits + first, num_hits, paths.diffuse[path]);
     }
-  });
+  }, job);
 }
 
 }  // namespace echopath

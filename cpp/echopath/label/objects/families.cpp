@@ -115,11 +115,9 @@ Partition Families::partition() const {
 Families find_families(const Paths& paths, const SurfaceMap& surfaces, Job* job) {
   require(paths.scene != nullptr && surfaces.of_mesh.size() == paths.scene->meshes().size(), "surfaces",
           "must be of the scene of the paths, meshes", surfaces.of_mesh.size());
-  const int64_t num_tasks = (paths.num_paths() + kPathsSortedTogether - 1) / kPathsSortedTogether;
-  std::vector<Block> blocks(num_tasks);
-  parallel_for(num_tasks, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kPathsSortedTogether, paths.num_paths());
-    blocks[task] = classify_block(paths, surfaces, task * kPathsSortedTogether, end);
+  std::vector<Block> blocks(num_chunks(paths.num_paths(), kPathsSortedTogether));
+  parallel_for_chunks(paths.num_paths(), kPathsSortedTogether, [&](int64_t begin, int64_t end) {
+    blocks[begin / kPathsSortedTogether] = classify_block(paths, surfaces, begin, end);
   }, job);
 
   const std::map<Key, uint32_t> index_of = number_keys(blocks, surfaces);

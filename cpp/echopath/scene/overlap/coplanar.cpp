@@ -95,13 +95,11 @@ class OverlapSearch {
   // Returns all pairs, in an order that does not depend on the threads.
   std::vector<OverlapPair> run(Job* job) const {
     const auto count = std::ssize(tree_);
-    std::vector<std::vector<OverlapPair>> found((count + kTrianglesPerBlock - 1) / kTrianglesPerBlock);
+    std::vector<std::vector<OverlapPair>> found(num_chunks(count, kTrianglesPerBlock));
     if (job) job->start(std::ssize(found));
-    parallel_for(std::ssize(found), [&](int64_t block) {
-      const int64_t end = std::min((block + 1) * kTrianglesPerBlock, count);
-      for (int64_t place = block * kTrianglesPerBlock; place < end; ++place) {
-        search_behind(static_cast<uint32_t>(place), found[block]);
-      }
+    parallel_for_chunks(count, kTrianglesPerBlock, [&](int64_t begin, int64_t end) {
+      std::vector<OverlapPair>& of_block = found[begin / kTrianglesPerBlock];
+      for (int64_t place = begin; place < end; ++place) search_behind(static_cast<uint32_t>(place), of_block);
     }, job);
     std::vector<OverlapPair> all;
     for (const std::vector<OverlapPair>& of_block : found) all.insert(all.end(), of_block.begin(), of_block.end());
@@ -159,8 +157,7 @@ CoplanarOverlap summed(const OverlapPair* begin, const OverlapPair* end) {
 
 // Sums the overlaps of all pairs of triangles, for each pair of meshes.
 std::vector<CoplanarOverlap> summed_by_meshes(std::vector<OverlapPair> pairs) {
-  const auto is_before = [](const OverlapPair& a, const OverlapPair& b) { return a.meshes() < b.meshes(); };
-  std::ranges::stable_sort(pairs, is_before);
+  std::ranges::stable_sort(pairs, {}, &OverlapPair::meshes);
   std::vector<CoplanarOverlap> overlaps;
   for (const OverlapPair *begin = pairs.data(), *end = begin + pairs.size(); begin != end;) {
     const auto is_other = [begin](const OverlapPair& pair) { return pair.meshes() != begin->meshes(); };

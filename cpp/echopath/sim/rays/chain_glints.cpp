@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -126,7 +127,7 @@ bool is_chain(const Paths& paths, int64_t path) {
 
 // Returns at most kMostOfStratum glints of each stratum, strongest first.
 std::vector<Glint> strongest_of_each(std::vector<Glint> glints) {
-  std::ranges::stable_sort(glints, [](const Glint& a, const Glint& b) { return a.power > b.power; });
+  std::ranges::stable_sort(glints, std::greater(), &Glint::power);
   std::map<int, size_t> count;
   std::erase_if(glints, [&](const Glint& glint) { return ++count[glint.stratum] > kMostOfStratum; });
   return glints;
@@ -163,10 +164,8 @@ std::vector<Glint> find_chain_glints(const Paths& paths, Job* job) {
   std::vector<std::optional<Glint>> found(chains.size());
   constexpr int64_t kTogether = 1024;
   Job unseen(job);
-  parallel_for((std::ssize(chains) + kTogether - 1) / kTogether, [&](int64_t task) {
-    const auto begin = static_cast<size_t>(task * kTogether);
-    for (size_t i = begin; i < std::min(begin + kTogether, chains.size()); ++i)
-      found[i] = search.glint_of(chains[i], amplitudes[i]);
+  parallel_for_chunks(std::ssize(chains), kTogether, [&](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) found[i] = search.glint_of(chains[i], amplitudes[i]);
   }, &unseen);
   std::vector<Glint> glints;
   for (const std::optional<Glint>& glint : found) {

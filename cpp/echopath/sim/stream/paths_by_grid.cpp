@@ -18,7 +18,7 @@ class SortByGrid {
   SortByGrid(const PathGrids& grids, int64_t num_paths, Job* job)
       : lists_(no_paths_by_grid(grids.grids())), paths_of_task_(std::max(kPathsOfTask, kPathsPerGrid * std::ssize(lists_))),
         grid_(static_cast<size_t>(num_paths)) {
-    const int64_t num_tasks = (num_paths + paths_of_task_ - 1) / paths_of_task_;
+    const int64_t num_tasks = num_chunks(num_paths, paths_of_task_);
     place_.assign(num_tasks, std::vector<size_t>(lists_.size()));
     parallel_for(num_tasks, [&](int64_t task) {
       if (job) job->throw_if_cancelled();

@@ -231,15 +231,13 @@ std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>&
 // Replays a window of blocks. Returns the paths that are left.
 std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
                                                         const Extent& extent, const Replay& replay, Window& window) const {
-  const int64_t count = std::ssize(paths), num_blocks = (count + block_size - 1) / block_size;
   window.first_channel = extent.first_channel;
   window.num_channels = static_cast<size_t>(extent.num_channels);
-  window.blocks.resize(num_blocks);
-  parallel_for(num_blocks, [&](int64_t i) {
+  window.blocks.resize(num_chunks(std::ssize(paths), block_size));
+  parallel_for_chunks(std::ssize(paths), block_size, [&](int64_t begin, int64_t end) {
     if (job_) job_->throw_if_cancelled();
-    const int64_t first = i * block_size;
-    const auto part = paths.subspan(static_cast<size_t>(first), static_cast<size_t>(std::min(block_size, count - first)));
-    window.blocks[i] = run_block(part, static_cast<size_t>(i), extent, replay);
+    const int64_t block = begin / block_size;
+    window.blocks[block] = run_block(paths.subspan(begin, end - begin), block, extent, replay);
   });
   if (watcher_) watcher_->end_blocks();
   std::vector<UnfollowedPath> all_left;

@@ -100,7 +100,7 @@ AngleSpectrum angle_fft(const RangeDoppler& map, const Radar& radar, const Angle
   AngleSpectrum result{transform.columns().cosine, transform.rows().cosine, map.velocity, map.range,
                        std::vector<Complex>(num_directions * num_cells)};
 
-  const int64_t num_strips = (num_ranges + kRangesPerTask - 1) / kRangesPerTask;
+  const int64_t num_strips = num_chunks(num_ranges, kRangesPerTask);
   const int64_t num_tasks = reader.num_velocities() * num_strips;
   if (job) job->start(num_tasks);
   parallel_for(num_tasks, [&](int64_t task) {

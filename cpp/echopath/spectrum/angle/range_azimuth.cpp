@@ -99,10 +99,9 @@ RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const An
   const int64_t num_azimuths = std::ssize(angles.azimuth);
   result.power.assign(num_azimuths * num_ranges, 0.0);
 
-  const int64_t num_tasks = (num_ranges + BeamKernel::kColumns - 1) / BeamKernel::kColumns;
-  if (job) job->start(num_tasks);
-  parallel_for(num_tasks, [&](int64_t task) {
-    const int64_t first = task * BeamKernel::kColumns, count = std::min(BeamKernel::kColumns, num_ranges - first);
+  if (job) job->start(num_chunks(num_ranges, BeamKernel::kColumns));
+  parallel_for_chunks(num_ranges, BeamKernel::kColumns, [&](int64_t first, int64_t end) {
+    const int64_t count = end - first;
     const bool is_bartlett = options.method == BeamMethod::kBartlett;
     const BeamKernel::Powers power = is_bartlett ? picture.bartlett(first, count) : picture.capon(first, count);
     for (int64_t d = 0; d < beams.num_directions(); ++d) {

@@ -25,10 +25,9 @@ TrainingDraws::TrainingDraws(const CfarDesign& design, const TrainingNoise& nois
 
 std::vector<TrainingDraw> TrainingDraws::draw(int count, Job* job) const {
   std::vector<TrainingDraw> draws(count);
-  parallel_for((count + kDrawsPerTask - 1) / kDrawsPerTask, [&](int64_t task) {
+  parallel_for_chunks(count, kDrawsPerTask, [&](int64_t begin, int64_t end) {
     if (job) job->throw_if_cancelled();
-    const int64_t end = std::min<int64_t>(count, (task + 1) * kDrawsPerTask);
-    for (int64_t i = task * kDrawsPerTask; i < end; ++i) draws[i] = one(i);
+    for (int64_t i = begin; i < end; ++i) draws[i] = one(i);
   });
   return draws;
 }

@@ -12,7 +12,7 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kEdgesPerBlock = 64;
+constexpr int64_t kEdgesPerBlock = 64;
 constexpr double kFrontPhase = 0.8;        // rad, quadratic phase over half a piece: as much as edge_filter follows
 constexpr double kOfBody = 1.0 / 16;       // of the extent of a body, a piece at most where a part of the edge is hidden
 constexpr double kLeastDiffracted = 0.03;  // of what the edge of a half plane sends
@@ -218,14 +218,13 @@ class EdgeTracer {
 template <class Coefficients>
 std::vector<PathBlock> edge_paths(const EdgeQuery& query, Job* job) {
   const EdgeTracer<Coefficients> tracer(query);
-  const size_t num_edges = query.edges.size();
-  std::vector<PathBlock> blocks((num_edges + kEdgesPerBlock - 1) / kEdgesPerBlock);
+  const int64_t num_edges = std::ssize(query.edges);
+  std::vector<PathBlock> blocks(num_chunks(num_edges, kEdgesPerBlock));
   Job own(job);
-  parallel_for(std::ssize(blocks), [&](int64_t i) {
-    PathBlock& block = blocks[i];
+  parallel_for_chunks(num_edges, kEdgesPerBlock, [&](int64_t begin, int64_t end) {
+    PathBlock& block = blocks[begin / kEdgesPerBlock];
     typename EdgeTracer<Coefficients>::Scratch scratch;
-    const size_t begin = static_cast<size_t>(i) * kEdgesPerBlock, end = std::min(num_edges, begin + kEdgesPerBlock);
-    for (size_t edge = begin; edge < end; ++edge) tracer.add(edge, scratch, block);
+    for (int64_t edge = begin; edge < end; ++edge) tracer.add(edge, scratch, block);
     block.statistics.num_queries += scratch.search.num_queries;
   }, &own);
   return blocks;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "echopath/base/threads/parallel.h"
 #include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/sheets/passes.h"
 
@@ -55,7 +56,7 @@ LiveRecord::LiveRecord(const Tracer& tracer, const TraceSettings& settings)
       boxes(boxes_of(tracer.geometry(), static_cast<uint32_t>(empty.scene->meshes().size()))), first_block{0} {
   for (const Stratum& stratum : shared.strata) {
     const auto num_rays = static_cast<size_t>(stratum.num_rays), together = static_cast<size_t>(kRaysPerLiveBlock);
-    first_block.push_back(first_block.back() + (num_rays + together - 1) / together);
+    first_block.push_back(first_block.back() + num_chunks(num_rays, together));
   }
 }
 

@@ -51,9 +51,8 @@ class PathSums {
   std::vector<uint64_t> all(Job* job) const {
     std::vector<uint64_t> sums(paths_.num_paths());
     Job own(job);
-    parallel_for((paths_.num_paths() + kSumsTogether - 1) / kSumsTogether, [&](int64_t task) {
-      const size_t end = std::min(sums.size(), static_cast<size_t>((task + 1) * kSumsTogether));
-      for (auto path = static_cast<size_t>(task * kSumsTogether); path < end; ++path) sums[path] = sum_of(path);
+    parallel_for_chunks(paths_.num_paths(), kSumsTogether, [&](int64_t begin, int64_t end) {
+      for (int64_t path = begin; path < end; ++path) sums[path] = sum_of(path);
     }, &own);
     return sums;
   }

@@ -1,6 +1,7 @@
 #include "echopath/trace/mirrors/mirror_paths.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "echopath/base/threads/parallel.h"
@@ -10,7 +11,7 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kFrustaPerBlock = 64;
+constexpr int64_t kFrustaPerBlock = 64;
 
 // Tries sequences one by one.
 class SequenceTrier {
@@ -34,10 +35,9 @@ class SequenceTrier {
 using FrustumRange = std::pair<const MirrorFrustum*, const MirrorFrustum*>;
 
 FrustumRange with_mirrors(const std::vector<MirrorFrustum>& frusta, size_t count) {
-  const auto is_shorter = [](const MirrorFrustum& frustum, size_t wanted) { return frustum.mirrors.size() < wanted; };
-  const auto begin = std::ranges::lower_bound(frusta, count, is_shorter);
-  const auto end = std::lower_bound(begin, frusta.end(), count + 1, is_shorter);
-  return {frusta.data() + (begin - frusta.begin()), frusta.data() + (end - frusta.begin())};
+  const auto num_mirrors = [](const MirrorFrustum& frustum) { return frustum.mirrors.size(); };
+  const auto found = std::ranges::equal_range(frusta, count, {}, num_mirrors);
+  return {std::to_address(found.begin()), std::to_address(found.end())};
 }
 
 // Finds pairs of frusta of transmitter and receiver, each of which shows the other's antenna, or its image.
@@ -114,12 +114,12 @@ class MirrorPathSearch {
     const HalfwayMeeting meeting(with_mirrors(frusta_.transmitter.frusta, of_transmitter),
                                  with_mirrors(frusta_.receiver.frusta, count - of_transmitter));
     const size_t first = blocks.size();
-    blocks.resize(first + (meeting.size() + kFrustaPerBlock - 1) / kFrustaPerBlock);
+    const auto num_frusta = std::ssize(meeting);
+    blocks.resize(first + num_chunks(num_frusta, kFrustaPerBlock));
     Job own(job_);
-    parallel_for(std::ssize(blocks) - static_cast<int64_t>(first), [&](int64_t k) {
-      const size_t begin = static_cast<size_t>(k) * kFrustaPerBlock, end = std::min(meeting.size(), begin + kFrustaPerBlock);
-      SequenceTrier images(geometry_, mirrors_, settings_, blocks[first + static_cast<size_t>(k)]);
-      for (size_t i = begin; i < end; ++i) {
+    parallel_for_chunks(num_frusta, kFrustaPerBlock, [&](int64_t begin, int64_t end) {
+      SequenceTrier images(geometry_, mirrors_, settings_, blocks[first + begin / kFrustaPerBlock]);
+      for (int64_t i = begin; i < end; ++i) {
         meeting.sequences(meeting[i], [&](std::vector<int> sequence) { images.try_sequence(sequence); });
       }
     }, &own);

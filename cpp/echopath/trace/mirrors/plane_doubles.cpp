@@ -69,11 +69,9 @@ void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
   constexpr int64_t kTogether = 1 << 14;
   std::vector<uint8_t> keep(paths.num_paths());
   Job own(job);
-  parallel_for((paths.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
-    const size_t end = std::min(keep.size(), static_cast<size_t>((task + 1) * kTogether));
+  parallel_for_chunks(paths.num_paths(), kTogether, [&](int64_t begin, int64_t end) {
     Sequence of_path;
-    for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path)
-      keep[path] = !is_double(paths, path, of_path);
+    for (int64_t path = begin; path < end; ++path) keep[path] = !is_double(paths, path, of_path);
   }, &own);
   paths = paths.select(keep, &own);
   paths.frame.statistics.num_paths = paths.num_paths();  // what is left is the whole record

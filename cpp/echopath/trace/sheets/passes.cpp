@@ -173,12 +173,10 @@ void add_passes(Paths& paths, Job* job) {
   const SheetScene sheets(*paths.scene, paths.frame.trace_time, paths.frame.transmitter, job);
   if (sheets.is_empty() || paths.num_paths() == 0) return;
   const PassFinder finder(paths, sheets);
-  std::vector<PassBlock> blocks((paths.num_paths() + kPathsTogether - 1) / kPathsTogether);
+  std::vector<PassBlock> blocks(num_chunks(paths.num_paths(), kPathsTogether));
   Job own(job);
-  parallel_for(std::ssize(blocks), [&](int64_t i) {
-    const int64_t begin = i * kPathsTogether;
-    blocks[i] = finder.find(begin, std::min(begin + kPathsTogether, paths.num_paths()));
-  }, &own);
+  parallel_for_chunks(paths.num_paths(), kPathsTogether,
+                      [&](int64_t begin, int64_t end) { blocks[begin / kPathsTogether] = finder.find(begin, end); }, &own);
   join(blocks, paths);
 }
 

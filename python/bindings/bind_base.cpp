@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
-#include <thread>
 
 #include "call/plausible.h"
 #include "call/run_job.h"

@@ -1,6 +1,5 @@
 #include "echopath/power/facet_phase.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #pragma once
 // Computes the 95 % interval of a received power from what the launch cells take away and what chance adds.
-#include <cmath>
 #include <complex>
 #include <optional>
 #include <vector>

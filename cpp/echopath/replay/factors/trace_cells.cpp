@@ -1,7 +1,5 @@
 #include "echopath/replay/factors/trace_cells.h"
 
-#include <cmath>
-
 #include "echopath/replay/evaluate/inner_part.h"
 #include "echopath/scene/smooth/smooth.h"
 

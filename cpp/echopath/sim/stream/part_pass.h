@@ -1,7 +1,6 @@
 #pragma once
 // Computes the signals of many groups of paths, a few groups at a time, so that memory does not grow with their number.
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>

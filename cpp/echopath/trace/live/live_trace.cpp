@@ -1,6 +1,5 @@
 #include "echopath/trace/live/live_trace.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "echopath/base/threads/parallel.h"

@@ -1,7 +1,5 @@
 #include "echopath/trace/scatter/scatter_points.h"
 
-#include <cstddef>
-
 #include "echopath/base/random.h"
 
 namespace echopath {

@@ -45,6 +45,13 @@ class Parameters {
   bool keyword_only_ = false;
 };
 
+// The names of the arguments of a class's constructor, in their order; filled by define_init.
+template <class Class>
+std::vector<std::string>& argument_names() {
+  static std::vector<std::string> names;
+  return names;
+}
+
 template <class T>
 struct IsArg : std::is_base_of<py::object, T> {};
 template <Literal kName, class Kind>
@@ -110,7 +117,10 @@ Class& define_init(Class& type, Make make, const Extra&... extra) {
   using Signature = py::detail::function_signature_t<Make>;
   static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
   type.def(py::init(make), py::call_guard<InCall>(), extra...);
-  detail::define_refusal({type, "__init__", detail::Bound::kMethod}, detail::Parameters(extra...));
+  const detail::Parameters parameters(extra...);
+  detail::define_refusal({type, "__init__", detail::Bound::kMethod}, parameters);
+  for (const detail::Parameter& each : parameters.list())
+    detail::argument_names<typename Class::type>().push_back(each.name);
   return type;
 }
 

@@ -1,11 +1,11 @@
 #include "call/plausible.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "call/warn.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 
 namespace echopath::bindings {
 namespace {
@@ -18,9 +18,7 @@ constexpr double kTurn = 2.0 * kPi + 1e-9;  // rad
 
 template <class... Words>
 void warn(const Words&... words) {
-  std::ostringstream text;
-  (text << ... << words);
-  warn_caller(text.str());
+  warn_caller(streamed(words...));
 }
 
 void require_below_infrared(const ChirpSequence& waveform, double step, const char* argument, double value) {

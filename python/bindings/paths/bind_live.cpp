@@ -35,13 +35,13 @@ py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, const Rec
 }
 
 template <class... Keywords>
-void bind_update(py::class_<LiveTrace>& bound, ListOfKeywords<Keywords...> of_record) {
+void bind_update(py::class_<LiveTrace>& bound, ListOfKeywords<RecordSettings, Keywords...> of_record) {
   bound.def(
       "update",
       [](LiveTrace& live, Scene scene, const Radar& radar, int64_t num_rays, double start_time, const py::object& progress,
          const typename Keywords::Argument&... settings) {
-        return update_live(live, std::move(scene), radar, decltype(of_record)::settings_of(settings...), num_rays,
-                           start_time, progress);
+        return update_live(live, std::move(scene), radar, decltype(of_record)::made_of(settings...), num_rays, start_time,
+                           progress);
       },
       py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"), py::arg("start_time"),
       py::arg("progress") = py::none(), Keywords::argument()...,

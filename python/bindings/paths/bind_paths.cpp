@@ -16,6 +16,7 @@
 #include "paths/path_series.h"
 #include "values/array.h"
 #include "values/in_package.h"
+#include "values/shared.h"
 
 namespace echopath::bindings {
 namespace {
@@ -30,11 +31,6 @@ auto hit_column(T Hit::* field) {
     array.attr("setflags")(py::arg("write") = false);
     return array;
   };
-}
-
-template <class T>
-auto path_column(std::vector<T> Paths::* field) {
-  return [field](const py::object& self) { return numpy_view(self.cast<const Paths&>().*field, self); };
 }
 
 py::array hits_of(const py::object& self) {
@@ -213,14 +209,14 @@ share hits; selections share all hits of their trace.)");
       .def_property_readonly("triangle_id", hit_column(&Hit::triangle_id), "[H] triangle within the mesh")
       .def_property_readonly("u", hit_column(&Hit::u), "[H] barycentric: p = (1 - u - v) v0 + u v1 + v v2")
       .def_property_readonly("v", hit_column(&Hit::v), "[H] barycentric")
-      .def_property_readonly("offsets", path_column(&Paths::offsets), "[P] first hit")
-      .def_property_readonly("num_bounces", path_column(&Paths::num_bounces), "[P]")
-      .def_property_readonly("diffuse", path_column(&Paths::diffuse), "[P] bit k: hit k is diffuse; 0: coherent")
-      .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
-      .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 65535: image method")
-      .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
+      .def_property_readonly("offsets", view_of(&Paths::offsets), "[P] first hit")
+      .def_property_readonly("num_bounces", view_of(&Paths::num_bounces), "[P]")
+      .def_property_readonly("diffuse", view_of(&Paths::diffuse), "[P] bit k: hit k is diffuse; 0: coherent")
+      .def_property_readonly("weight", view_of(&Paths::weight), "[P] complex, what neither motion nor antennas change")
+      .def_property_readonly("stratum", view_of(&Paths::stratum), "[P] index into frame.strata, 65535: image method")
+      .def_property_readonly("batch", view_of(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
       .def_property_readonly(
-          "flags", path_column(&Paths::flags),
+          "flags", view_of(&Paths::flags),
           "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on "
           "1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, "
           "around an edge to a mirror; 64, diffuse, and counts for others that were left out. Without 4, flags >> 8 & 63 is "
@@ -234,10 +230,9 @@ share hits; selections share all hits of their trace.)");
       .def_property_readonly("passes", &passes_of,
                              "[N] structured: mesh_id, triangle_id, u, v and leg of each pass through a sheet, in order of "
                              "travel, path by path; leg k ends at hit k, the last one at the receiver")
-      .def_property_readonly("pass_offsets", path_column(&Paths::pass_offsets),
+      .def_property_readonly("pass_offsets", view_of(&Paths::pass_offsets),
                              "[P + 1] or [0]: path i has the passes pass_offsets[i] to pass_offsets[i + 1]")
-      .def_property_readonly(
-          "scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); }, "snapshot of the scene")
+      .def_property_readonly("scene", shared_of(&Paths::scene), "snapshot of the scene")
       .def_readonly("radar", &Paths::radar, "snapshot of the radar")
       .def_readonly("frame", &Paths::frame, "times, antenna positions, strata and settings of the trace")
       .def_property_readonly("amplitude", &amplitude_of,

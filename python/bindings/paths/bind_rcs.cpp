@@ -5,7 +5,6 @@
 #include <array>
 #include <complex>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "call/run_job.h"
 #include "call/warn.h"
 #include "echopath/base/constants.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/em/mie.h"
 #include "echopath/sim/rcs.h"
 #include "paths/error_target.h"
@@ -202,11 +202,9 @@ void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_
     most = std::max(most, entries[i].high);
   }
   if (unknown == 0) return;
-  std::ostringstream text;
-  text << "rcs: " << unknown << " of " << entries.size() << " cross sections are not known to 3 dB from " << num_rays
-       << " rays, whose footprints on the target are too wide for its phases: up to " << most
-       << " m^2 (95 %). More num_rays, or target_error_db, find more";
-  warn_caller(text.str());
+  warn_caller(streamed("rcs: ", unknown, " of ", entries.size(), " cross sections are not known to 3 dB from ", num_rays,
+                       " rays, whose footprints on the target are too wide for its phases: up to ", most,
+                       " m^2 (95 %). More num_rays, or target_error_db, find more"));
 }
 
 py::object rcs_of(Scene scene, double frequency, const py::object& incidence, const py::object& observation,

@@ -3,11 +3,11 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "call/run_job.h"
 #include "call/warn.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/replay_cost.h"
 #include "echopath/sim/stream/keyframes.h"
@@ -53,10 +53,8 @@ const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar
 // New surface is looked for in some of many stretches.
 void warn_of_few_searches(const CubeSettings& settings) {
   if (settings.keyframes.retrace != Retrace::kInvalid || settings.keyframes.keyframes <= kMaxSurfaceSearches) return;
-  std::ostringstream told;
-  told << "keyframes: new surface is looked for in " << kMaxSurfaceSearches << " of " << settings.keyframes.keyframes
-       << " stretches; what shows in none of these is left out, which retrace 'always' finds";
-  warn_caller(told.str());
+  warn_caller(streamed("keyframes: new surface is looked for in ", kMaxSurfaceSearches, " of ", settings.keyframes.keyframes,
+                       " stretches; what shows in none of these is left out, which retrace 'always' finds"));
 }
 
 // Long work is said beforehand. What interpolates in time is quick, and says nothing.
@@ -64,21 +62,16 @@ void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSetting
   constexpr double kLong = 10.0;  // s
   const double of_stretches = keyframe_seconds(paths, settings.keyframes);
   if (of_stretches >= kLong) {
-    std::ostringstream told;
-    told << "keyframes: " << settings.keyframes.keyframes << " stretches with retrace '"
-         << kRetrace.name_of(settings.keyframes.retrace) << "' take about " << std::llround(of_stretches)
-         << " s on this machine; fewer keyframes, or 0, which `validity` "
-         << "settles, are quicker";
-    warn_caller(told.str());
+    warn_caller(streamed("keyframes: ", settings.keyframes.keyframes, " stretches with retrace '",
+                         kRetrace.name_of(settings.keyframes.retrace), "' take about ", std::llround(of_stretches),
+                         " s on this machine; fewer keyframes, or 0, which `validity` settles, are quicker"));
   }
   const double seconds = exact_seconds(paths, radar, settings);
   if (seconds < kLong) return;
-  std::ostringstream text;
-  text << "evaluate: '" << (settings.synthesis.per_sample ? "samples" : "chirps") << "' takes about "
-       << std::llround(seconds) << " s on this machine"
-       << (settings.keyframes.retrace == Retrace::kNever ? "" : ", more with keyframes") << " for " << paths.num_paths()
-       << " paths; 'interpolated' is quick, with phases to phase_tolerance";
-  warn_caller(text.str());
+  warn_caller(streamed("evaluate: '", settings.synthesis.per_sample ? "samples" : "chirps", "' takes about ",
+                       std::llround(seconds), " s on this machine",
+                       settings.keyframes.retrace == Retrace::kNever ? "" : ", more with keyframes", " for ",
+                       paths.num_paths(), " paths; 'interpolated' is quick, with phases to phase_tolerance"));
 }
 
 py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,

@@ -59,14 +59,14 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, const RecordSettings& of_r
 }
 
 template <class... Keywords>
-void bind_trace_paths(py::module_& m, ListOfKeywords<Keywords...> of_record) {
+void bind_trace_paths(py::module_& m, ListOfKeywords<RecordSettings, Keywords...> of_record) {
   m.def(
       "trace",
       [](Scene scene, const Radar& radar, std::optional<int64_t> num_rays, double start_time,
          std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
          const std::shared_ptr<KeptGeometry>& kept, std::optional<double> objects_time,
          const typename Keywords::Argument&... settings) {
-        return trace_paths(std::move(scene), radar, decltype(of_record)::settings_of(settings...), num_rays, start_time,
+        return trace_paths(std::move(scene), radar, decltype(of_record)::made_of(settings...), num_rays, start_time,
                            target_error_db, max_rays, progress, kept, objects_time);
       },
       py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(), py::arg("start_time") = 0.0,

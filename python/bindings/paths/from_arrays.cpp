@@ -21,17 +21,11 @@ namespace {
 
 // [H] structured, as Paths.hits has them.
 struct HitRows {
-  using Value = py::array_t<Hit, py::array::c_style | py::array::forcecast>;
+  using Value = StructuredArray<Hit>;
   static constexpr auto type_name = py::detail::const_name("ArrayLike");
   static Value from(py::handle value, const char* argument) {
-    constexpr const char* kRule = "must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it";
-    if (!py::isinstance<py::array>(value)) refuse_type(argument, kRule, value);
-    const auto given = py::reinterpret_borrow<py::array>(value);
-    if (given.ndim() != 1 || !given.dtype().equal(py::dtype::of<Hit>())) {
-      throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
-                           std::to_string(given.ndim()) + " dimensions");
-    }
-    return Value(given);
+    return structured_array<Hit>(value, argument,
+                                 "must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it");
   }
 };
 

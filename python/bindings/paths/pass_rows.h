@@ -1,15 +1,29 @@
 #pragma once
-// Passes through sheets as rows of NumPy: Pass has a Hit within, which a structured array cannot name.
+// Structs as rows of NumPy. A Pass is flat there: it has a Hit within, which a structured array cannot name.
 #include <pybind11/numpy.h>
 
 #include <string>
 #include <vector>
 
 #include "call/argument.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/record/paths.h"
 #include "values/array.h"
 
 namespace echopath::bindings {
+
+template <class Row>
+using StructuredArray = py::array_t<Row, py::array::c_style | py::array::forcecast>;
+
+// The value as a structured array [N] of those rows; otherwise raises TypeError by the rule.
+template <class Row>
+StructuredArray<Row> structured_array(py::handle value, const char* argument, const char* rule) {
+  if (!py::isinstance<py::array>(value)) refuse_type(argument, rule, value);
+  const auto given = py::reinterpret_borrow<py::array>(value);
+  if (given.ndim() == 1 && given.dtype().equal(py::dtype::of<Row>())) return given;
+  throw py::type_error(
+      streamed(argument, ": ", rule, ", got ", std::string(py::str(given.dtype())), " of ", given.ndim(), " dimensions"));
+}
 
 // As Paths.passes has them.
 struct PassRow {
@@ -31,13 +45,7 @@ struct PassRows {
   static constexpr auto type_name = py::detail::const_name("ArrayLike");
   static Value from(py::handle value, const char* argument) {
     constexpr const char* kRule = "must be an array [N] of (mesh_id, triangle_id, u, v, leg) as Paths.passes has it";
-    if (!py::isinstance<py::array>(value)) refuse_type(argument, kRule, value);
-    const auto given = py::reinterpret_borrow<py::array>(value);
-    if (given.ndim() != 1 || !given.dtype().equal(py::dtype::of<PassRow>())) {
-      throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
-                           std::to_string(given.ndim()) + " dimensions");
-    }
-    const py::array_t<PassRow, py::array::c_style | py::array::forcecast> rows(given);
+    const StructuredArray<PassRow> rows = structured_array<PassRow>(value, argument, kRule);
     Value passes;
     for (py::ssize_t i = 0; i < rows.size(); ++i) {
       const PassRow& row = rows.data()[i];

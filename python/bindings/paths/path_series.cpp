@@ -39,6 +39,12 @@ Antenna antenna_of(const AntennaOrPosition::Value& value, const char* argument, 
   return made;
 }
 
+std::vector<int64_t> indices_of(const Paths& paths) {
+  std::vector<int64_t> indices(paths.num_paths());
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
 using Moments = std::vector<Replayer::Moment>;
 
 // Evaluates all paths at the moments, so many of them together. Runs beside Python, so that Ctrl-C is answered.
@@ -52,8 +58,7 @@ void evaluate_one_channel(const Paths& paths, const Moments& moments, size_t tog
     ReplaySettings settings;
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
-    std::vector<int64_t> indices(paths.num_paths());
-    std::iota(indices.begin(), indices.end(), 0);
+    const std::vector<int64_t> indices = indices_of(paths);
     for (size_t first = 0; first < moments.size(); first += together) {
       replayer.evaluate(indices, std::span(moments).subspan(first, std::min(together, moments.size() - first)), &job);
     }
@@ -124,9 +129,7 @@ py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> ti
     ReplaySettings settings;
     settings.specular = *replay;
     const Replayer replayer(paths, paths.radar, settings);
-    std::vector<int64_t> indices(paths.num_paths());
-    std::iota(indices.begin(), indices.end(), 0);
-    std::vector<Echoes> channels = replayer.placed(indices, *times, *radars);
+    std::vector<Echoes> channels = replayer.placed(indices_of(paths), *times, *radars);
     for (const Echoes& channel : channels) {
       delays.insert(delays.end(), channel.delay.begin(), channel.delay.end());
       amplitudes.insert(amplitudes.end(), channel.amplitude.begin(), channel.amplitude.end());
@@ -149,11 +152,8 @@ py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"t
   require(!radar.receivers.empty(), "receivers", "must be at least one", radar.receivers.size());
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  run_job("replay", py::none(), [&](Job& job) {
-    std::vector<int64_t> indices(paths.num_paths());
-    std::iota(indices.begin(), indices.end(), 0);
-    Replayer(paths, radar).evaluate(indices, *time, lengths, amplitudes, &job);
-  });
+  run_job("replay", py::none(),
+          [&](Job& job) { Replayer(paths, radar).evaluate(indices_of(paths), *time, lengths, amplitudes, &job); });
   const Shape shape{std::ssize(radar.receivers), static_cast<py::ssize_t>(paths.num_paths())};
   return py::make_tuple(numpy_take(std::move(lengths), shape), numpy_take(std::move(amplitudes), shape));
 }

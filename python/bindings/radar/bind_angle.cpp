@@ -14,19 +14,14 @@
 #include "echopath/spectrum/array/tdm.h"
 #include "radar/window_name.h"
 #include "values/array.h"
+#include "values/choice.h"
 
 namespace echopath::bindings {
 namespace {
 
-Overlaps as_overlaps(const std::string& name) {
-  require(name == "average" || name == "first", "overlaps", "must be 'average' or 'first'", "'" + name + "'");
-  return name == "average" ? Overlaps::kAverage : Overlaps::kFirst;
-}
-
-BeamMethod as_beam_method(const std::string& name) {
-  require(name == "bartlett" || name == "capon", "method", "must be 'bartlett' or 'capon'", "'" + name + "'");
-  return name == "bartlett" ? BeamMethod::kBartlett : BeamMethod::kCapon;
-}
+constexpr auto kOverlaps = choice<Overlaps>("overlaps", "average", "first");
+constexpr auto kBeamMethod = choice<BeamMethod>("method", "bartlett", "capon");
+constexpr auto kCombine = choice<Combine>("combine", "sum", "peak");
 
 // A number or [N].
 std::vector<double> as_angles(const py::object& value, const char* argument) {
@@ -44,8 +39,14 @@ std::vector<Cell> as_cells(const py::object& value) {
 
 BeamformOptions beams_of(const std::string& method, const py::object& window, const std::string& overlaps, bool compensate,
                          double diagonal_loading, int velocity_neighbours, int range_neighbours, bool forward_backward) {
-  return {as_beam_method(method), as_window(window),   as_overlaps(overlaps), compensate,
-          diagonal_loading,       velocity_neighbours, range_neighbours,      forward_backward};
+  return {kBeamMethod.value_of(method),
+          as_window(window),
+          kOverlaps.value_of(overlaps),
+          compensate,
+          diagonal_loading,
+          velocity_neighbours,
+          range_neighbours,
+          forward_backward};
 }
 
 // Binds call(map, radar, angles, beams, progress, extra...) with the arguments of all beams around its own.
@@ -94,9 +95,8 @@ void warn_of_blindness(const Radar& radar) {
 RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
                                const BeamformOptions& beams, const py::object& progress, std::optional<double> velocity,
                                std::string combine, std::optional<std::array<double, 2>> gate) {
-  require(combine == "sum" || combine == "peak", "combine", "must be 'sum' or 'peak'", "'" + combine + "'");
+  const VelocityChoice choice{velocity, kCombine.value_of(combine), gate};
   warn_of_blindness(radar);
-  const VelocityChoice choice{velocity, combine == "sum" ? Combine::kSum : Combine::kPeak, gate};
   return run_job("range_azimuth", progress,
                  [&](Job& job) { return range_azimuth(map, radar, angles, choice, beams, &job); });
 }
@@ -113,7 +113,7 @@ AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const Angl
 
 AngleSpectrum angle_spectrum(const RangeDoppler& map, const Radar& radar, const py::object& window, int zero_pad,
                              const std::string& overlaps, bool compensate, const py::object& progress) {
-  const AngleFftOptions options{as_window(window), zero_pad, as_overlaps(overlaps), compensate};
+  const AngleFftOptions options{as_window(window), zero_pad, kOverlaps.value_of(overlaps), compensate};
   return run_job("angle_fft", progress, [&](Job& job) { return angle_fft(map, radar, options, &job); });
 }
 

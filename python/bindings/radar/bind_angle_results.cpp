@@ -9,6 +9,7 @@
 
 #include "call/argument.h"
 #include "call/define.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/spectrum/angle/angle_fft.h"
 #include "echopath/spectrum/angle/beamform.h"
 #include "echopath/spectrum/angle/estimate_angles.h"
@@ -20,14 +21,6 @@
 namespace echopath::bindings {
 namespace {
 
-py::ssize_t size_of(const std::vector<double>& values) { return std::ssize(values); }
-
-// Getters of arrays that live in the object itself.
-template <class Type>
-auto view_of(std::vector<double> Type::* member) {
-  return [member](const py::object& self) { return numpy_view(self.cast<const Type&>().*member, self); };
-}
-
 // "[2, 3, 4]"
 std::string text_of(const Shape& shape) {
   std::ostringstream text;
@@ -36,21 +29,19 @@ std::string text_of(const Shape& shape) {
 }
 
 Shape shape_of(const AngleSpectrum& spectrum) {
-  return {size_of(spectrum.sin_elevation), size_of(spectrum.sin_azimuth), size_of(spectrum.velocity),
-          size_of(spectrum.range)};
+  return {std::ssize(spectrum.sin_elevation), std::ssize(spectrum.sin_azimuth), std::ssize(spectrum.velocity),
+          std::ssize(spectrum.range)};
 }
 
 Shape shape_of(const BeamPower& beams) {
-  Shape shape{size_of(beams.elevation), size_of(beams.azimuth), size_of(beams.velocity)};
-  if (!beams.is_of_cells) shape.push_back(size_of(beams.range));
+  Shape shape{std::ssize(beams.elevation), std::ssize(beams.azimuth), std::ssize(beams.velocity)};
+  if (!beams.is_of_cells) shape.push_back(std::ssize(beams.range));
   return shape;
 }
 
 std::string text_of(const RangeAzimuth& map) {
-  std::ostringstream text;
-  text << "RangeAzimuth([" << map.azimuth.size() << ", " << map.range.size() << "], " << map.azimuth.front() << " to "
-       << map.azimuth.back() << " rad, 0 to " << map.range.back() << " m)";
-  return text.str();
+  return streamed("RangeAzimuth([", map.azimuth.size(), ", ", map.range.size(), "], ", map.azimuth.front(), " to ",
+                  map.azimuth.back(), " rad, 0 to ", map.range.back(), " m)");
 }
 
 void bind_angle_spectrum(py::module_& m) {
@@ -67,16 +58,12 @@ sin(azimuth) cos(elevation) and sin(elevation).)");
             return numpy_view(spectrum.values.data(), shape_of(spectrum), self);
           },
           "[elevation, azimuth, velocity, range] complex in sqrt(W), read-only; phase as at the array's centre")
-      .def_property_readonly("sin_azimuth", view_of(&AngleSpectrum::sin_azimuth), "[azimuth] ascending, left positive")
-      .def_property_readonly("sin_elevation", view_of(&AngleSpectrum::sin_elevation), "[elevation] ascending, up positive")
       .def_property_readonly(
           "azimuth", [](const AngleSpectrum& self) { return to_numpy(angles_of(self.sin_azimuth)); },
           "[azimuth] rad at elevation 0, arcsin of sin_azimuth; NaN beyond +-1")
       .def_property_readonly(
           "elevation", [](const AngleSpectrum& self) { return to_numpy(angles_of(self.sin_elevation)); },
           "[elevation] rad, arcsin of sin_elevation; NaN beyond +-1")
-      .def_property_readonly("velocity", view_of(&AngleSpectrum::velocity), "[velocity] m/s, receding positive")
-      .def_property_readonly("range", view_of(&AngleSpectrum::range), "[range] m")
       .def("__repr__", [](const AngleSpectrum& self) { return "AngleSpectrum(" + text_of(shape_of(self)) + ")"; });
   define(bound, "to_xarray", from_package("presentation.xarray_maps", "angle_spectrum_array"),
          R"(The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
@@ -101,9 +88,10 @@ Returns the axes: azimuth in degrees across (left positive); up power in dBm, or
 naming the argument, and for a map of several cells without range and velocity.)");
   def_travel_checked(
       bound, [](const AngleSpectrum& made) { require_shape(made.values, shape_of(made), "values"); },
-      field("sin_azimuth", &AngleSpectrum::sin_azimuth), field("sin_elevation", &AngleSpectrum::sin_elevation),
-      field("velocity", &AngleSpectrum::velocity), field("range", &AngleSpectrum::range),
-      field("values", &AngleSpectrum::values));
+      array_attribute("sin_azimuth", &AngleSpectrum::sin_azimuth, "[azimuth] ascending, left positive"),
+      array_attribute("sin_elevation", &AngleSpectrum::sin_elevation, "[elevation] ascending, up positive"),
+      array_attribute("velocity", &AngleSpectrum::velocity, "[velocity] m/s, receding positive"),
+      array_attribute("range", &AngleSpectrum::range, "[range] m"), field("values", &AngleSpectrum::values));
 }
 
 void bind_beam_power(py::module_& m) {
@@ -117,16 +105,14 @@ void bind_beam_power(py::module_& m) {
             return numpy_view(beams.power.data(), shape_of(beams), self);
           },
           "[elevation, azimuth, velocity, range] in W, read-only; of cells [elevation, azimuth, cell]")
-      .def_property_readonly("azimuth", view_of(&BeamPower::azimuth), "[azimuth] rad, left positive")
-      .def_property_readonly("elevation", view_of(&BeamPower::elevation), "[elevation] rad, up positive")
-      .def_property_readonly("velocity", view_of(&BeamPower::velocity), "[velocity] m/s, or [cell]")
-      .def_property_readonly("range", view_of(&BeamPower::range), "[range] m, or [cell]")
       .def("__repr__", [](const BeamPower& self) { return "BeamPower(" + text_of(shape_of(self)) + ")"; });
   def_travel_checked(
       bound, [](const BeamPower& made) { require_shape(made.power, shape_of(made), "power"); },
-      field("azimuth", &BeamPower::azimuth), field("elevation", &BeamPower::elevation),
-      field("velocity", &BeamPower::velocity), field("range", &BeamPower::range),
-      field("is_of_cells", &BeamPower::is_of_cells), field("power", &BeamPower::power));
+      array_attribute("azimuth", &BeamPower::azimuth, "[azimuth] rad, left positive"),
+      array_attribute("elevation", &BeamPower::elevation, "[elevation] rad, up positive"),
+      array_attribute("velocity", &BeamPower::velocity, "[velocity] m/s, or [cell]"),
+      array_attribute("range", &BeamPower::range, "[range] m, or [cell]"), field("is_of_cells", &BeamPower::is_of_cells),
+      field("power", &BeamPower::power));
 }
 
 void bind_range_azimuth_map(py::module_& m) {
@@ -137,13 +123,9 @@ void bind_range_azimuth_map(py::module_& m) {
           "power",
           [](const py::object& self) {
             const auto& map = self.cast<const RangeAzimuth&>();
-            return numpy_view(map.power.data(), {size_of(map.azimuth), size_of(map.range)}, self);
+            return numpy_view(map.power.data(), {std::ssize(map.azimuth), std::ssize(map.range)}, self);
           },
           "[azimuth, range] in W, read-only: the largest over elevation")
-      .def_property_readonly("azimuth", view_of(&RangeAzimuth::azimuth), "[azimuth] rad, ascending, left positive")
-      .def_property_readonly("range", view_of(&RangeAzimuth::range), "[range] m")
-      .def_property_readonly("elevation", view_of(&RangeAzimuth::elevation), "[elevation] rad, of the beams")
-      .def_readonly("velocity", &RangeAzimuth::velocity, "m/s, of the cells taken; None: all velocities together")
       .def("__repr__", [](const RangeAzimuth& self) { return text_of(self); });
   define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_azimuth_array"),
          R"(The map as an xarray.DataArray, without a copy: power in W.
@@ -169,9 +151,13 @@ Returns the axes: metres to the left across (right negative), metres ahead up, i
 TypeError or ValueError naming the argument.)");
   def_travel_checked(
       bound,
-      [](const RangeAzimuth& made) { require_shape(made.power, {size_of(made.azimuth), size_of(made.range)}, "power"); },
-      field("azimuth", &RangeAzimuth::azimuth), field("range", &RangeAzimuth::range),
-      field("elevation", &RangeAzimuth::elevation), field("velocity", &RangeAzimuth::velocity),
+      [](const RangeAzimuth& made) {
+        require_shape(made.power, {std::ssize(made.azimuth), std::ssize(made.range)}, "power");
+      },
+      array_attribute("azimuth", &RangeAzimuth::azimuth, "[azimuth] rad, ascending, left positive"),
+      array_attribute("range", &RangeAzimuth::range, "[range] m"),
+      array_attribute("elevation", &RangeAzimuth::elevation, "[elevation] rad, of the beams"),
+      attribute("velocity", &RangeAzimuth::velocity, "m/s, of the cells taken; None: all velocities together"),
       field("power", &RangeAzimuth::power));
 }
 
@@ -179,19 +165,7 @@ void bind_estimates(py::module_& m) {
   py::class_<AngleEstimates> bound(m, "AngleEstimates",
                                    "Directions of echoes, arrays over all peaks; made by estimate_angles.");
   define_no_init(bound, "ep.estimate_angles");
-  bound
-      .def_property_readonly(
-          "cell", [](const py::object& self) { return numpy_view(self.cast<const AngleEstimates&>().cell, self); },
-          "[M] index into the cells given, ascending; the strongest peak of a cell first")
-      .def_property_readonly("range", view_of(&AngleEstimates::range), "[M] m, of the cell")
-      .def_property_readonly("velocity", view_of(&AngleEstimates::velocity), "[M] m/s, of the cell and its fold")
-      .def_property_readonly("azimuth", view_of(&AngleEstimates::azimuth), "[M] rad, left positive")
-      .def_property_readonly("elevation", view_of(&AngleEstimates::elevation), "[M] rad, up positive")
-      .def_property_readonly("power", view_of(&AngleEstimates::power), "[M] W")
-      .def_property_readonly(
-          "points", [](const py::object& self) { return numpy_view(self.cast<const AngleEstimates&>().points, self); },
-          "[M, 3] m, in the radar's frame")
-      .def("__len__", [](const AngleEstimates& self) { return self.cell.size(); })
+  bound.def("__len__", [](const AngleEstimates& self) { return self.cell.size(); })
       .def("__repr__",
            [](const AngleEstimates& self) { return "AngleEstimates(" + std::to_string(self.cell.size()) + " peaks)"; });
   def_travel_checked(
@@ -202,10 +176,14 @@ void bind_estimates(py::module_& m) {
           require_shape(*column, {count}, "range, velocity, azimuth, elevation and power");
         require_shape(made.points, {count}, "points");
       },
-      field("cell", &AngleEstimates::cell), field("range", &AngleEstimates::range),
-      field("velocity", &AngleEstimates::velocity), field("azimuth", &AngleEstimates::azimuth),
-      field("elevation", &AngleEstimates::elevation), field("power", &AngleEstimates::power),
-      field("points", &AngleEstimates::points));
+      array_attribute("cell", &AngleEstimates::cell,
+                      "[M] index into the cells given, ascending; the strongest peak of a cell first"),
+      array_attribute("range", &AngleEstimates::range, "[M] m, of the cell"),
+      array_attribute("velocity", &AngleEstimates::velocity, "[M] m/s, of the cell and its fold"),
+      array_attribute("azimuth", &AngleEstimates::azimuth, "[M] rad, left positive"),
+      array_attribute("elevation", &AngleEstimates::elevation, "[M] rad, up positive"),
+      array_attribute("power", &AngleEstimates::power, "[M] W"),
+      array_attribute("points", &AngleEstimates::points, "[M, 3] m, in the radar's frame"));
 }
 
 }  // namespace

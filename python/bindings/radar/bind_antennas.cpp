@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "call/argument.h"
@@ -13,6 +12,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/geometry.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/radar/radar.h"
 #include "radar/place_text.h"
 #include "values/array.h"
@@ -69,18 +69,19 @@ Antenna antenna(const Arg<"position", Vector3>& position, const Arg<"yaw", Real>
   return made;
 }
 
-py::dict keywords_of(const Antenna& self) {
+py::dict keywords_of_antenna(const py::object& object) {
+  const auto& self = object.cast<const Antenna&>();
   const Quaternion& q = self.orientation;
   return py::dict(py::arg("position") = tuple_of(self.position),
                   py::arg("orientation") = py::make_tuple(q.w(), q.x(), q.y(), q.z()), py::arg("pattern") = self.pattern,
                   py::arg("polarization") = tuple_of(self.polarization));
 }
 
-py::object replace_in_antenna(const Antenna& self, const py::kwargs& changes) {
-  const py::dict keywords = keywords_of(self);
+py::object replace_in_antenna(const py::object& self, const py::kwargs& changes) {
+  const py::dict keywords = keywords_of_antenna(self);
   if (!changes.contains("yaw") && !changes.contains("pitch"))
     return detail::remade(py::type::of<Antenna>(), keywords, changes);
-  const auto [yaw, pitch, roll] = attitude_of(self.orientation);
+  const auto [yaw, pitch, roll] = attitude_of(self.cast<const Antenna&>().orientation);
   require(std::abs(roll) < kLevel, changes.contains("yaw") ? "yaw" : "pitch",
           "must be replaced by an orientation where the antenna is rolled about its boresight, by rad", roll);
   keywords.attr("pop")("orientation");
@@ -90,10 +91,8 @@ py::object replace_in_antenna(const Antenna& self, const py::kwargs& changes) {
 
 std::string text_of(const Antenna& a) {
   const auto [yaw, pitch, roll] = attitude_of(a.orientation);
-  std::ostringstream text;
-  text << "Antenna(" << place_text(a.position, yaw, pitch) << (std::abs(roll) < kLevel ? "" : ", rolled")
-       << ", pattern=" << part_text(a.pattern) << ")";
-  return text.str();
+  return streamed("Antenna(", place_text(a.position, yaw, pitch), std::abs(roll) < kLevel ? "" : ", rolled",
+                  ", pattern=", part_text(a.pattern), ")");
 }
 
 }  // namespace
@@ -112,23 +111,18 @@ Raises ValueError or TypeError naming the argument. Warns (RuntimeWarning) of a 
   define_init(type, &antenna, py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(), py::arg("yaw") = 0.0,
               py::arg("pitch") = 0.0, py::arg("orientation") = py::none(), py::arg("pattern") = py::none(),
               py::arg("polarization") = py::make_tuple(0.0, 0.0, 1.0));
-  type.def_property_readonly(
-          "position", [](const Antenna& self) { return to_numpy(self.position); }, "[3] m, in the radar's frame")
+  type.def_property_readonly("position", array_of(&Antenna::position), "[3] m, in the radar's frame")
       .def_property_readonly(
           "yaw", [](const Antenna& self) { return attitude_of(self.orientation).yaw; },
           "rad, of the boresight in the radar's frame, left positive")
       .def_property_readonly(
           "pitch", [](const Antenna& self) { return attitude_of(self.orientation).pitch; },
           "rad, of the boresight in the radar's frame, up positive")
-      .def_property_readonly(
-          "orientation", [](const Antenna& self) { return to_numpy(self.orientation); },
-          "[4] (w, x, y, z), radar from antenna")
+      .def_property_readonly("orientation", array_of(&Antenna::orientation), "[4] (w, x, y, z), radar from antenna")
       .def_readonly("pattern", &Antenna::pattern, "AntennaPattern")
-      .def_property_readonly(
-          "polarization", [](const Antenna& self) { return to_numpy(self.polarization); },
-          "[3], unit, in the antenna's frame")
+      .def_property_readonly("polarization", array_of(&Antenna::polarization), "[3], unit, in the antenna's frame")
       .def("__repr__", [](const Antenna& self) { return text_of(self); });
-  define_value<Antenna>(type, &keywords_of);
+  define_value(type, &keywords_of_antenna);
   define_no_change(type);
   define(type, "replace", &replace_in_antenna, R"(A copy with some arguments of the constructor changed.
 

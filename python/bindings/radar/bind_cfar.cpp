@@ -4,11 +4,11 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <sstream>
 #include <string>
 
 #include "call/define.h"
 #include "call/run_job.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/spectrum/cfar/peaks.h"
 #include "values/array.h"
 #include "values/choice.h"
@@ -65,12 +65,10 @@ py::dict peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult&
 
 std::string text_of(const CfarResult& result) {
   const CfarWindow& cells = result.design.cells;
-  std::ostringstream text;
-  text << "CfarResult(" << result.cells.size() << " of " << result.num_velocities << " x " << result.num_ranges
-       << " cells, method '" << kCfarMethod.name_of(result.design.method) << "', false_alarm_rate "
-       << result.design.false_alarm_rate << ", guard " << cells.guard_velocity << " x " << cells.guard_range << ", training "
-       << cells.training_velocity << " x " << cells.training_range << ")";
-  return text.str();
+  return streamed("CfarResult(", result.cells.size(), " of ", result.num_velocities, " x ", result.num_ranges,
+                  " cells, method '", kCfarMethod.name_of(result.design.method), "', false_alarm_rate ",
+                  result.design.false_alarm_rate, ", guard ", cells.guard_velocity, " x ", cells.guard_range, ", training ",
+                  cells.training_velocity, " x ", cells.training_range, ")");
 }
 
 void check_result(const CfarResult& made) {
@@ -95,20 +93,22 @@ auto in_noise(const char* name, auto MapNoise::* member) {
 }
 
 void def_cfar_travel(py::class_<CfarResult>& bound) {
-  def_travel_checked(
-      bound, &check_result,
-      field(
-          "method", [](auto& self) -> auto& { return self.design.method; }, kCfarMethod),
-      in_design("false_alarm_rate", &CfarDesign::false_alarm_rate), in_design("rank", &CfarDesign::rank),
-      in_window("guard_velocity", &CfarWindow::guard_velocity), in_window("guard_range", &CfarWindow::guard_range),
-      in_window("training_velocity", &CfarWindow::training_velocity),
-      in_window("training_range", &CfarWindow::training_range), in_noise("window", &MapNoise::window),
-      in_noise("num_chirps", &MapNoise::num_chirps), in_noise("num_samples", &MapNoise::num_samples),
-      in_noise("zero_pad", &MapNoise::zero_pad), in_noise("num_channels", &MapNoise::num_channels),
-      field("factors", [](auto& self) -> auto& { return self.factors.factor; }),
-      field("statistic", [](auto& self) -> auto& { return self.factors.statistic; }),
-      field("num_velocities", &CfarResult::num_velocities), field("num_ranges", &CfarResult::num_ranges),
-      field("power", &CfarResult::power), field("cells", &CfarResult::cells), field("noise", &CfarResult::noise));
+  def_travel_checked(bound, &check_result,
+                     field(
+                         "method", [](auto& self) -> auto& { return self.design.method; }, kCfarMethod),
+                     in_design("false_alarm_rate", &CfarDesign::false_alarm_rate), in_design("rank", &CfarDesign::rank),
+                     in_window("guard_velocity", &CfarWindow::guard_velocity),
+                     in_window("guard_range", &CfarWindow::guard_range),
+                     in_window("training_velocity", &CfarWindow::training_velocity),
+                     in_window("training_range", &CfarWindow::training_range), in_noise("window", &MapNoise::window),
+                     in_noise("num_chirps", &MapNoise::num_chirps), in_noise("num_samples", &MapNoise::num_samples),
+                     in_noise("zero_pad", &MapNoise::zero_pad), in_noise("num_channels", &MapNoise::num_channels),
+                     field("factors", [](auto& self) -> auto& { return self.factors.factor; }),
+                     field("statistic", [](auto& self) -> auto& { return self.factors.statistic; }),
+                     field("num_velocities", &CfarResult::num_velocities), field("num_ranges", &CfarResult::num_ranges),
+                     field("power", &CfarResult::power), field("cells", &CfarResult::cells),
+                     array_attribute("noise", &CfarResult::noise,
+                                     "[D] W, mean power of the noise about each cell found, as its training cells tell it"));
 }
 
 }  // namespace
@@ -128,9 +128,6 @@ void bind_cfar(py::module_& m) {
       .def_property_readonly(
           "cells", [](const CfarResult& self) { return cells_array(self.cells); },
           "[D, 2] (velocity, range) indices of the cells found, ascending")
-      .def_property_readonly(
-          "noise", [](const py::object& self) { return numpy_view(self.cast<const CfarResult&>().noise, self); },
-          "[D] W, mean power of the noise about each cell found, as its training cells tell it")
       .def_property_readonly(
           "factor", [](const CfarResult& self) { return self.factors.factor.back() * self.factors.statistic; },
           "power over noise, linear, from which a cell away from the ends of the range axis is found")

@@ -4,13 +4,13 @@
 
 #include <cmath>
 #include <complex>
-#include <sstream>
 #include <string>
 
 #include "call/argument.h"
 #include "call/define.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/geometry.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/radar/radar.h"
 #include "values/value.h"
 
@@ -70,7 +70,8 @@ py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, Arg<"d
   return numpy_take(std::move(field));
 }
 
-py::dict keywords_of(const AntennaPattern& pattern) {
+py::dict keywords_of_pattern(const py::object& self) {
+  const auto& pattern = self.cast<const AntennaPattern&>();
   if (pattern.kind == AntennaPattern::Kind::kIsotropic) return py::dict(py::arg("gain") = pattern.peak_gain);
   if (!pattern.table) {
     return py::dict(py::arg("exponent") = pattern.exponent, py::arg("peak_gain") = pattern.peak_gain);
@@ -90,16 +91,10 @@ py::object maker_of_pattern(const py::dict& keywords) {
 }
 
 std::string text_of(const AntennaPattern& pattern) {
-  std::ostringstream text;
-  if (pattern.kind == AntennaPattern::Kind::kIsotropic) {
-    text << "Isotropic(gain=" << pattern.peak_gain << ")";
-  } else if (pattern.table) {
-    text << "GainTable(" << pattern.table->azimuth().size() << " azimuths x " << pattern.table->elevation().size()
-         << " elevations, peak gain " << pattern.peak_gain << (pattern.table->phase().empty() ? "" : ", with phase") << ")";
-  } else {
-    text << "CosinePower(exponent=" << pattern.exponent << ", peak_gain=" << pattern.peak_gain << ")";
-  }
-  return text.str();
+  if (pattern.kind == AntennaPattern::Kind::kIsotropic) return streamed("Isotropic(gain=", pattern.peak_gain, ")");
+  if (!pattern.table) return streamed("CosinePower(exponent=", pattern.exponent, ", peak_gain=", pattern.peak_gain, ")");
+  return streamed("GainTable(", pattern.table->azimuth().size(), " azimuths x ", pattern.table->elevation().size(),
+                  " elevations, peak gain ", pattern.peak_gain, pattern.table->phase().empty() ? ")" : ", with phase)");
 }
 
 }  // namespace
@@ -113,8 +108,8 @@ void bind_patterns(py::module_& m) {
   define(type, "field", &field_of, py::arg("directions"),
          "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame. Raises TypeError or "
          "ValueError naming the argument.");
-  define_value<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
-  define_replace<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
+  define_value(type, &keywords_of_pattern, &maker_of_pattern);
+  define_replace(type, &keywords_of_pattern, &maker_of_pattern);
   type.def_property_readonly("kind", &kind_of, "\"isotropic\", \"cosine_power\" or \"table\"")
       .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear; of a table its largest sample")
       .def_readonly("exponent", &AntennaPattern::exponent, "of the cosine; 0 when isotropic")

@@ -4,19 +4,20 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "call/argument.h"
 #include "call/define.h"
 #include "call/plausible.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/radar/radar.h"
 #include "radar/place_text.h"
 #include "values/array.h"
 #include "values/choice.h"
 #include "values/held_object.h"
 #include "values/in_package.h"
+#include "values/shared.h"
 #include "values/value.h"
 
 namespace echopath::bindings {
@@ -80,7 +81,7 @@ Radar radar(const Arg<"waveform", Instance<ChirpSequence>>& waveform,
   return made;
 }
 
-py::object motion_object(const Radar& self) { return py::cast(std::const_pointer_cast<Motion>(self.motion)); }
+py::object motion_object(const Radar& self) { return py::cast(shared(self.motion)); }
 
 // Phases [tx, slots] in a new array, None where there is no code.
 py::object code_phases_of(const Radar& self) {
@@ -92,7 +93,8 @@ py::object code_phases_of(const Radar& self) {
   return numpy_take(std::move(values), {num_rows, length});
 }
 
-py::dict keywords_of(const Radar& self) {
+py::dict keywords_of_radar(const py::object& object) {
+  const auto& self = object.cast<const Radar&>();
   return py::dict(py::arg("waveform") = self.waveform, py::arg("transmitters") = self.transmitters,
                   py::arg("receivers") = self.receivers, py::arg("position") = tuple_of(self.position),
                   py::arg("yaw") = self.yaw, py::arg("pitch") = self.pitch, py::arg("motion") = motion_object(self),
@@ -102,8 +104,8 @@ py::dict keywords_of(const Radar& self) {
                   py::arg("receiver") = held(self.receiver));
 }
 
-py::object replace_in_radar(const Radar& self, const py::kwargs& changes) {
-  py::dict keywords = keywords_of(self);
+py::object replace_in_radar(const py::object& self, const py::kwargs& changes) {
+  py::dict keywords = keywords_of_radar(self);
   if (changes.contains("speed")) keywords["motion"] = py::none();
   return detail::remade(py::type::of<Radar>(), keywords, changes);
 }
@@ -121,12 +123,11 @@ double middle_of_frame(const Radar& self, const Arg<"start_time", Real>& start_t
 }
 
 std::string text_of(const Radar& r) {
-  std::ostringstream text;
-  text << "Radar(" << part_text(r.waveform) << ", " << r.transmitters.size() << " transmitters, " << r.receivers.size()
-       << " receivers, at " << place_text(r.position, r.yaw, r.pitch) << ", " << r.transmit_power << " W, noise figure "
-       << r.noise_figure_db << " dB" << (r.takes_turns() ? "" : std::string(", ") + kMultiplexing.name_of(r.multiplexing))
-       << (r.receiver ? ", receiver with faults" : "") << (r.motion ? ", moving" : "") << ")";
-  return text.str();
+  return streamed("Radar(", part_text(r.waveform), ", ", r.transmitters.size(), " transmitters, ", r.receivers.size(),
+                  " receivers, at ", place_text(r.position, r.yaw, r.pitch), ", ", r.transmit_power, " W, noise figure ",
+                  r.noise_figure_db, " dB",
+                  (r.takes_turns() ? "" : std::string(", ") + kMultiplexing.name_of(r.multiplexing)),
+                  (r.receiver ? ", receiver with faults" : ""), (r.motion ? ", moving" : ""), ")");
 }
 
 }  // namespace
@@ -166,16 +167,14 @@ a turn, which looks like degrees.)");
   type.def_readonly("waveform", &Radar::waveform, "ChirpSequence")
       .def_readonly("transmitters", &Radar::transmitters, "list of Antenna, a copy")
       .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
-      .def_property_readonly(
-          "position", [](const Radar& self) { return to_numpy(self.position); }, "[3] m, in the world, without `motion`")
+      .def_property_readonly("position", array_of(&Radar::position), "[3] m, in the world, without `motion`")
       .def_readonly("yaw", &Radar::yaw, "rad, left positive, without `motion`")
       .def_readonly("pitch", &Radar::pitch, "rad, up positive, without `motion`")
       .def_property_readonly("motion", &motion_object, "Motion of the placed radar in world axes, or None")
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
       .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB, single sideband")
-      .def_property_readonly(
-          "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); },
-          "\"tdm\", \"bpm\", \"ddm\" or \"cdm\"")
+      .def_property_readonly("multiplexing", name_of(kMultiplexing, &Radar::multiplexing),
+                             "\"tdm\", \"bpm\", \"ddm\" or \"cdm\"")
       .def_readonly("empty_slots", &Radar::empty_slots, "of \"ddm\": shares of the Doppler axis without a transmitter")
       .def_property_readonly("code_phases", &code_phases_of, "[tx, slots] rad of \"cdm\", or None")
       .def_property_readonly(
@@ -197,7 +196,7 @@ start_time: s, of the frame. Returns its middle in s. Raises TypeError or ValueE
 
 time: s
 Returns [4, 4], translation in m. Raises ValueError where `motion` is not defined.)");
-  define_value<Radar>(type, &keywords_of);
+  define_value(type, &keywords_of_radar);
   define_no_change(type);
   define(type, "replace", &replace_in_radar, R"(A copy with some arguments of the constructor changed.
 

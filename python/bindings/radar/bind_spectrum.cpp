@@ -1,12 +1,12 @@
 #include <pybind11/complex.h>
 #include <pybind11/pybind11.h>
 
-#include <sstream>
 #include <string>
 
 #include "call/argument.h"
 #include "call/define.h"
 #include "call/run_job.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "radar/cube_array.h"
 #include "radar/window_name.h"
@@ -32,15 +32,14 @@ py::array values_of(const py::object& self) {
 void check_map(const RangeDoppler& map) {
   require(map.num_transmitters >= 1, "num_transmitters", "must be at least 1", map.num_transmitters);
   require(map.num_receivers >= 1, "num_receivers", "must be at least 1", map.num_receivers);
-  require_shape(map.values, {map.num_transmitters, map.num_receivers, num_of(map.velocity), num_of(map.range)}, "values");
+  require_shape(map.values, {map.num_transmitters, map.num_receivers, std::ssize(map.velocity), std::ssize(map.range)},
+                "values");
 }
 
 std::string text_of(const RangeDoppler& map) {
-  std::ostringstream text;
-  text << "RangeDoppler([" << map.num_transmitters << ", " << map.num_receivers << ", " << map.velocity.size() << ", "
-       << map.range.size() << "], " << map.velocity.front() << " to " << map.velocity.back() << " m/s, 0 to "
-       << map.range.back() << " m)";
-  return text.str();
+  return streamed("RangeDoppler([", map.num_transmitters, ", ", map.num_receivers, ", ", map.velocity.size(), ", ",
+                  map.range.size(), "], ", map.velocity.front(), " to ", map.velocity.back(), " m/s, 0 to ",
+                  map.range.back(), " m)");
 }
 
 }  // namespace
@@ -50,18 +49,9 @@ void bind_spectrum(py::module_& m) {
   define_no_init(bound, "ep.range_doppler");
   bound.def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
       .def_property_readonly(
-          "velocity", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().velocity, self); },
-          "[velocity] in m/s, ascending, receding positive")
-      .def_property_readonly(
-          "range", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().range, self); },
-          "[range] in m, ascending from 0")
-      .def_readonly("zero_pad", &RangeDoppler::zero_pad, "of both axes")
-      .def_property_readonly(
           "window", [](const RangeDoppler& self) { return map_windows_value(self.window); },
           "as range_doppler takes it: a name or (\"chebyshev\", sidelobe level in dB) of both axes, or those of (range, "
           "velocity)")
-      .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
-                    "whether compensate_tdm took out the phase between transmit slots")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
   define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_doppler_array"),
          R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
@@ -86,10 +76,13 @@ Returns the axes: range in m across, radial velocity in m/s up (receding positiv
 ValueError naming the argument.)");
   define(bound, "_repr_html_", from_package("presentation.notebook", "range_doppler_html"), "A table for notebooks.");
   def_travel_checked(bound, &check_map, field("num_transmitters", &RangeDoppler::num_transmitters),
-                     field("num_receivers", &RangeDoppler::num_receivers), field("velocity", &RangeDoppler::velocity),
-                     field("range", &RangeDoppler::range), field("values", &RangeDoppler::values),
-                     field("window", &RangeDoppler::window), field("zero_pad", &RangeDoppler::zero_pad),
-                     field("is_tdm_compensated", &RangeDoppler::is_tdm_compensated));
+                     field("num_receivers", &RangeDoppler::num_receivers),
+                     array_attribute("velocity", &RangeDoppler::velocity, "[velocity] in m/s, ascending, receding positive"),
+                     array_attribute("range", &RangeDoppler::range, "[range] in m, ascending from 0"),
+                     field("values", &RangeDoppler::values), field("window", &RangeDoppler::window),
+                     attribute("zero_pad", &RangeDoppler::zero_pad, "of both axes"),
+                     attribute("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
+                               "whether compensate_tdm took out the phase between transmit slots"));
 
   m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
         py::arg("zero_pad") = 1, "What ep.range_doppler calls.");

@@ -104,10 +104,7 @@ void bind_virtual_array(py::module_& m) {
 Elements are ordered by row and column of their grid. A grid's rows count up and its columns count up to the left, as far
 as the array's plane allows.)");
   define_no_init(type, "ep.virtual_array");
-  type.def_readonly("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar")
-      .def_readonly("num_receivers", &VirtualArray::num_receivers, "receivers of the radar")
-      .def_readonly("wavelength", &VirtualArray::wavelength, "m, at the centre frequency")
-      .def_property_readonly("positions", &positions_of, "[tx, rx, 3] m, sums of the antennas' positions")
+  type.def_property_readonly("positions", &positions_of, "[tx, rx, 3] m, sums of the antennas' positions")
       .def_property_readonly("elements", &elements_of, "[N, 3] m, the positions that differ by 0.01 wavelengths or more")
       .def_property_readonly("element_of_channel", &element_of_channel, "[tx, rx] index into elements")
       .def_property_readonly("num_overlaps", &VirtualArray::num_overlaps, "channels beyond the first of each element")
@@ -126,11 +123,12 @@ as the array's plane allows.)");
           "whether `default_angles` has azimuths: no more than 200,000 differ")
       .def_property_readonly("tells_elevations", &tells_elevations, "whether it has a vertical extent")
       .def_property_readonly("gaps", &gaps_of, "[G, 2] rows and columns of the grid without an element")
-      .def_property_readonly(
-          "centre", [](const VirtualArray& self) { return to_numpy(self.centre()); }, "[3] m, mean of the elements")
+      .def_property_readonly("centre", array_of(&VirtualArray::centre), "[3] m, mean of the elements")
       .def("__repr__", [](const VirtualArray& self) { return text_of(self); });
-  def_travel_checked(type, &check_and_arrange, field("num_transmitters", &VirtualArray::num_transmitters),
-                     field("num_receivers", &VirtualArray::num_receivers), field("wavelength", &VirtualArray::wavelength),
+  def_travel_checked(type, &check_and_arrange,
+                     attribute("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar"),
+                     attribute("num_receivers", &VirtualArray::num_receivers, "receivers of the radar"),
+                     attribute("wavelength", &VirtualArray::wavelength, "m, at the centre frequency"),
                      field("positions", &VirtualArray::positions));
   define(type, "default_angles", &default_axes, py::arg("largest_step") = kPictureStep,
          R"((azimuth [A], elevation [E]) in rad: the directions that the array tells apart.

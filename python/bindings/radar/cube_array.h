@@ -1,10 +1,10 @@
 #pragma once
 // Cubes [tx, rx, chirp, sample] from NumPy, checked against the radar they belong to.
 #include <complex>
-#include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "echopath/base/text/streamed.h"
 #include "echopath/radar/radar.h"
 #include "values/array.h"
 
@@ -21,11 +21,9 @@ inline std::vector<std::complex<double>> as_cube(py::handle value, const Radar& 
   const Shape shape = cube_shape(radar);
   for (py::ssize_t axis = 0; axis < 4; ++axis) {
     if (array.shape(axis) == shape[axis]) continue;
-    std::ostringstream text;
-    text << "cube: must have shape [tx, rx, chirp, sample] = [" << shape[0] << ", " << shape[1] << ", " << shape[2] << ", "
-         << shape[3] << "], got [" << array.shape(0) << ", " << array.shape(1) << ", " << array.shape(2) << ", "
-         << array.shape(3) << "]";
-    throw std::invalid_argument(text.str());
+    throw std::invalid_argument(streamed("cube: must have shape [tx, rx, chirp, sample] = [", shape[0], ", ", shape[1], ", ",
+                                         shape[2], ", ", shape[3], "], got [", array.shape(0), ", ", array.shape(1), ", ",
+                                         array.shape(2), ", ", array.shape(3), "]"));
   }
   return {array.data(), array.data() + array.size()};
 }

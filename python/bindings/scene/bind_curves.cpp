@@ -11,6 +11,7 @@
 #include "call/define.h"
 #include "call/leaving.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/motion/curve_motion.h"
 #include "echopath/motion/morph_targets.h"
 #include "scene/deformation_type.h"
@@ -69,26 +70,6 @@ std::shared_ptr<MorphTargets> morph_targets(Arg<"vertices", Points> vertices, Ar
   return std::make_shared<MorphTargets>(*vertices, *targets, *weights, playback);
 }
 
-py::dict keywords_of(const Curve& self) {
-  return py::dict(py::arg("times") = to_numpy(self.times), py::arg("values") = rows_of(self, self.values),
-                  py::arg("interpolation") = kCurveInterpolation.name_of(self.interpolation),
-                  py::arg("in_tangents") = tangents_of(self, self.in_tangents),
-                  py::arg("out_tangents") = tangents_of(self, self.out_tangents));
-}
-
-py::dict keywords_of(const CurveMotion& self) {
-  const MotionCurves& curves = self.curves();
-  return py::dict(py::arg("translation") = curves.translation, py::arg("rotation") = curves.rotation,
-                  py::arg("scale") = curves.scale, py::arg("period") = period_of(self.playback()),
-                  py::arg("offset") = self.playback().offset);
-}
-
-py::dict keywords_of(const MorphTargets& self) {
-  return py::dict(py::arg("vertices") = to_numpy(self.vertices()), py::arg("targets") = to_numpy(self.targets()),
-                  py::arg("weights") = self.weights(), py::arg("period") = period_of(self.playback()),
-                  py::arg("offset") = self.playback().offset);
-}
-
 py::array_t<double> value_at(const Curve& self, Arg<"time", Real> time) {
   std::vector<double> row(self.num_columns());
   evaluate(self, {}, *time, row);
@@ -105,26 +86,22 @@ in_tangents, out_tangents: [T, C] per s, before and behind each key; for "hermit
 Before its first key and after its last one it holds their values. Raises TypeError or ValueError naming the argument.)");
   define_init(type, &curve, py::arg("times"), py::arg("values"), py::arg("interpolation") = "linear", py::kw_only(),
               py::arg("in_tangents") = py::none(), py::arg("out_tangents") = py::none())
-      .def_property_readonly(
-          "times", [](const Curve& self) { return to_numpy(self.times); }, "[T] in s")
+      .def_property_readonly("times", array_of(&Curve::times), "[T] in s")
       .def_property_readonly(
           "values", [](const Curve& self) { return rows_of(self, self.values); }, "[T, C]")
-      .def_property_readonly(
-          "interpolation", [](const Curve& self) { return kCurveInterpolation.name_of(self.interpolation); },
-          "\"step\", \"linear\" or \"hermite\"")
+      .def_property_readonly("interpolation", name_of(kCurveInterpolation, &Curve::interpolation),
+                             "\"step\", \"linear\" or \"hermite\"")
       .def_property_readonly(
           "in_tangents", [](const Curve& self) { return tangents_of(self, self.in_tangents); }, "[T, C] per s, or None")
       .def_property_readonly(
           "out_tangents", [](const Curve& self) { return tangents_of(self, self.out_tangents); }, "[T, C] per s, or None")
       .def("__repr__", [](const Curve& self) {
-        std::ostringstream text;
-        text << "Curve(" << self.times.size() << " keys, " << self.times.front() << " to " << self.times.back() << " s, "
-             << self.num_columns() << " columns, " << kCurveInterpolation.name_of(self.interpolation) << ")";
-        return text.str();
+        return streamed("Curve(", self.times.size(), " keys, ", self.times.front(), " to ", self.times.back(), " s, ",
+                        self.num_columns(), " columns, ", kCurveInterpolation.name_of(self.interpolation), ")");
       });
   define(type, "at", &value_at, py::arg("time"), "Values [C] at `time` in s, column by column. Raises ValueError.");
-  define_value<Curve>(type, &keywords_of);
-  define_replace<Curve>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 template <class Moving, class... Options>
@@ -163,8 +140,8 @@ argument.)");
         return text.str();
       });
   add_playback(type);
-  define_value<CurveMotion>(type, &keywords_of);
-  define_replace<CurveMotion>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 void bind_morph_targets(py::module_& m) {
@@ -179,10 +156,8 @@ period, offset: s, as of a CurveMotion
 A Skin moves its result with `Skin(..., shape=...)`. Raises TypeError or ValueError naming the argument.)");
   define_init(type, &morph_targets, py::arg("vertices"), py::arg("targets"), py::arg("weights"), py::kw_only(),
               py::arg("period") = py::none(), py::arg("offset") = 0.0)
-      .def_property_readonly(
-          "vertices", [](const MorphTargets& self) { return to_numpy(self.vertices()); }, "[V, 3] in m")
-      .def_property_readonly(
-          "targets", [](const MorphTargets& self) { return to_numpy(self.targets()); }, "[K, V, 3] in m, a copy")
+      .def_property_readonly("vertices", array_of(&MorphTargets::vertices), "[V, 3] in m")
+      .def_property_readonly("targets", array_of(&MorphTargets::targets), "[K, V, 3] in m, a copy")
       .def_property_readonly(
           "weights", [](const MorphTargets& self) { return self.weights(); }, "Curve of [T, K]")
       .def("__repr__", [](const MorphTargets& self) {
@@ -190,8 +165,8 @@ A Skin moves its result with `Skin(..., shape=...)`. Raises TypeError or ValueEr
                std::to_string(self.targets().size()) + " targets)";
       });
   add_playback(type);
-  define_value<MorphTargets>(type, &keywords_of);
-  define_replace<MorphTargets>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 }  // namespace

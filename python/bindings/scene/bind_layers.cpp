@@ -20,11 +20,6 @@ Layer layer(Arg<"thickness", Real> thickness, Arg<"permittivity", Complex> permi
   return made;
 }
 
-py::dict layer_fields(const Layer& self) {
-  return py::dict(py::arg("thickness") = self.thickness, py::arg("permittivity") = self.permittivity,
-                  py::arg("conductivity") = self.conductivity);
-}
-
 std::string layer_text(const Layer& self) {
   const std::string conductivity =
       self.conductivity > 0 ? ", conductivity=" + std::string(py::repr(py::float_(self.conductivity))) : std::string();
@@ -45,8 +40,8 @@ Raises TypeError or ValueError naming the field, the rule and the value.)");
       .def_readonly("permittivity", &Layer::permittivity, "complex, relative")
       .def_readonly("conductivity", &Layer::conductivity, "S/m")
       .def("__repr__", &layer_text);
-  define_value<Layer>(type, &layer_fields);
-  define_replace<Layer>(type, &layer_fields);
+  define_value(type);
+  define_replace(type);
 }
 
 }  // namespace echopath::bindings

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "call/argument.h"
 #include "call/define.h"
 #include "call/leaving.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/scene/readers/readers.h"
 #include "echopath/scene/smooth/tessellation.h"
 #include "values/array.h"
@@ -30,16 +30,8 @@ std::shared_ptr<Mesh> mesh(Arg<"vertices", Points> vertices, Arg<"triangles", Tr
 }
 
 std::string mesh_text(const Mesh& self) {
-  std::ostringstream text;
-  text << "Mesh(" << self.vertices().size() << " vertices, " << self.triangles().size() << " triangles, "
-       << (self.is_closed() ? "closed" : "open") << ", " << self.area() << " m^2)";
-  return text.str();
-}
-
-// A read-only view of one of the mesh's arrays.
-template <class Getter>
-auto view_of(Getter getter) {
-  return [getter](const py::object& self) { return numpy_view((self.cast<const Mesh&>().*getter)(), self); };
+  return streamed("Mesh(", self.vertices().size(), " vertices, ", self.triangles().size(), " triangles, ",
+                  (self.is_closed() ? "closed" : "open"), ", ", self.area(), " m^2)");
 }
 
 std::shared_ptr<Mesh> part_of(const std::shared_ptr<Mesh>& self, const py::object& triangles) {
@@ -72,7 +64,8 @@ py::dict keywords_of_whole(const Mesh& self) {
                   py::arg("original_triangle") = to_numpy(original));
 }
 
-py::dict keywords_of(const Mesh& self) {
+py::dict keywords_of_mesh(const py::object& object) {
+  const auto& self = object.cast<const Mesh&>();
   if (!self.whole()) return keywords_of_whole(self);
   return py::dict(py::arg("whole") = shared(self.whole()), py::arg("triangles") = to_numpy(self.whole_triangle()));
 }
@@ -106,9 +99,7 @@ finite, and where no face has an area.)");
       .def_property_readonly("num_duplicated_vertices", &Mesh::num_duplicated_vertices, "added where sheets meet")
       .def_property_readonly("is_closed", &Mesh::is_closed, "no boundary edge, no duplicated vertex")
       .def_property_readonly("area", &Mesh::area, "m^2")
-      .def_property_readonly(
-          "whole", [](const Mesh& self) { return shared(self.whole()); },
-          "the Mesh that this is a part of, None for a whole")
+      .def_property_readonly("whole", shared_of(&Mesh::whole), "the Mesh that this is a part of, None for a whole")
       .def_property_readonly("whole_triangle", view_of(&Mesh::whole_triangle), "[F] triangle of `whole`, [0] for a whole")
       .def("__repr__", &mesh_text);
   define(type, "part", &part_of, py::arg("triangles"), R"(Some triangles as a mesh of their own, to be labelled.
@@ -117,7 +108,7 @@ triangles: [N] indices of triangles, or a mask [F] of bool
 Returns a Mesh of these in their order. A smooth surface keeps its vertex normals across the cut, and a deformation of the
 whole deforms each part. Raises ValueError for none or one out of range.)");
   define_static(type, "_part_of", &part_of_whole, py::arg("whole"), py::arg("triangles"));
-  define_value<Mesh>(type, &keywords_of, &maker_of_mesh);
+  define_value(type, &keywords_of_mesh, &maker_of_mesh);
 }
 
 py::list meshes_of_file(const std::filesystem::path& path, double unit) {

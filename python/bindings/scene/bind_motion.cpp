@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include "call/argument.h"
@@ -12,6 +11,7 @@
 #include "call/leaving.h"
 #include "call/plausible.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/motion/looped_sequence.h"
 #include "scene/deformation_type.h"
 #include "scene/playback.h"
@@ -29,10 +29,8 @@ py::typing::Tuple<double, double> as_tuple(const TimeSpan& span) {
 }
 
 std::string description(const char* kind, const TimeSpan& span, size_t num_times, Interpolation interpolation) {
-  std::ostringstream text;
-  text << kind << "(" << num_times << " times, " << span.begin << " to " << span.end << " s, "
-       << kInterpolation.name_of(interpolation) << ")";
-  return text.str();
+  return streamed(kind, "(", num_times, " times, ", span.begin, " to ", span.end, " s, ",
+                  kInterpolation.name_of(interpolation), ")");
 }
 
 std::shared_ptr<LinearMotion> linear_motion(Arg<"velocity", Vector3> velocity,
@@ -67,29 +65,6 @@ std::shared_ptr<VertexSequence> vertex_sequence(Arg<"times", VectorOf<double>> t
 Playback loop_of(const VertexSequence& self) {
   const auto* looped = dynamic_cast<const LoopedSequence*>(&self);
   return looped ? looped->playback() : Playback{};
-}
-
-py::dict keywords_of(const LinearMotion& self) {
-  return py::dict(py::arg("velocity") = to_numpy(self.velocity()),
-                  py::arg("angular_velocity") = to_numpy(self.angular_velocity()));
-}
-
-template <class Values>
-py::object or_none(const Values& values) {
-  return values.empty() ? py::object(py::none()) : py::object(to_numpy(values));
-}
-
-py::dict keywords_of(const KeyframeMotion& self) {
-  return py::dict(py::arg("times") = to_numpy(self.times()), py::arg("translations") = or_none(self.translations()),
-                  py::arg("rotations") = or_none(self.rotations()),
-                  py::arg("interpolation") = kInterpolation.name_of(self.interpolation()));
-}
-
-py::dict keywords_of(const VertexSequence& self) {
-  const Playback playback = loop_of(self);
-  return py::dict(py::arg("times") = to_numpy(self.times()), py::arg("vertices") = to_numpy(self.vertices()),
-                  py::arg("interpolation") = kInterpolation.name_of(self.interpolation()),
-                  py::arg("period") = period_of(playback), py::arg("offset") = playback.offset);
 }
 
 constexpr const char* kTurnRateDoc = R"(Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
@@ -135,19 +110,15 @@ angular_velocity: [3] in rad/s, right-handed about its own direction
 Raises TypeError or ValueError naming the argument.)");
   define_init(type, &linear_motion, py::arg("velocity") = py::make_tuple(0.0, 0.0, 0.0),
               py::arg("angular_velocity") = py::make_tuple(0.0, 0.0, 0.0))
-      .def_property_readonly(
-          "velocity", [](const LinearMotion& self) { return to_numpy(self.velocity()); }, "[3] in m/s")
-      .def_property_readonly(
-          "angular_velocity", [](const LinearMotion& self) { return to_numpy(self.angular_velocity()); }, "[3] in rad/s")
+      .def_property_readonly("velocity", array_of(&LinearMotion::velocity), "[3] in m/s")
+      .def_property_readonly("angular_velocity", array_of(&LinearMotion::angular_velocity), "[3] in rad/s")
       .def("__repr__", [](const LinearMotion& self) {
-        std::ostringstream text;
         const Vec3 &v = self.velocity(), &w = self.angular_velocity();
-        text << "LinearMotion(velocity=(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s, angular_velocity=(" << w.x()
-             << ", " << w.y() << ", " << w.z() << ") rad/s)";
-        return text.str();
+        return streamed("LinearMotion(velocity=(", v.x(), ", ", v.y(), ", ", v.z(), ") m/s, angular_velocity=(", w.x(), ", ",
+                        w.y(), ", ", w.z(), ") rad/s)");
       });
-  define_value<LinearMotion>(type, &keywords_of);
-  define_replace<LinearMotion>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 void bind_keyframes(py::module_& m) {
@@ -160,22 +131,18 @@ interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; e
 Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.)");
   define_init(type, &keyframe_motion, py::arg("times"), py::arg("translations") = py::none(),
               py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
-      .def_property_readonly(
-          "times", [](const KeyframeMotion& self) { return to_numpy(self.times()); }, "[T] in s")
-      .def_property_readonly(
-          "translations", [](const KeyframeMotion& self) { return to_numpy(self.translations()); },
-          "[T, 3] in m, [0, 3] where none were given")
-      .def_property_readonly(
-          "rotations", [](const KeyframeMotion& self) { return to_numpy(self.rotations()); },
-          "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
-      .def_property_readonly(
-          "interpolation", [](const KeyframeMotion& self) { return kInterpolation.name_of(self.interpolation()); },
-          "\"cubic\" or \"linear\"")
+      .def_property_readonly("times", array_of(&KeyframeMotion::times), "[T] in s")
+      .def_property_readonly("translations", array_of(&KeyframeMotion::translations),
+                             "[T, 3] in m, [0, 3] where none were given")
+      .def_property_readonly("rotations", array_of(&KeyframeMotion::rotations),
+                             "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
+      .def_property_readonly("interpolation", name_of(kInterpolation, &KeyframeMotion::interpolation),
+                             "\"cubic\" or \"linear\"")
       .def("__repr__", [](const KeyframeMotion& self) {
         return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
       });
-  define_value<KeyframeMotion>(type, &keywords_of);
-  define_replace<KeyframeMotion>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 void bind_deformation(py::module_& m) {
@@ -199,13 +166,10 @@ offset: s, the time of a loop at time 0
 Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)");
   define_init(type, &vertex_sequence, py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic",
               py::kw_only(), py::arg("period") = py::none(), py::arg("offset") = 0.0)
-      .def_property_readonly(
-          "times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
-      .def_property_readonly(
-          "vertices", [](const VertexSequence& self) { return to_numpy(self.vertices()); }, "[T, V, 3] in m, a copy")
-      .def_property_readonly(
-          "interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
-          "\"cubic\" or \"linear\"")
+      .def_property_readonly("times", array_of(&VertexSequence::times), "[T] in s")
+      .def_property_readonly("vertices", array_of(&VertexSequence::vertices), "[T, V, 3] in m, a copy")
+      .def_property_readonly("interpolation", name_of(kInterpolation, &VertexSequence::interpolation),
+                             "\"cubic\" or \"linear\"")
       .def_property_readonly(
           "period", [](const VertexSequence& self) { return period_of(loop_of(self)); }, "s, or None where it is no loop")
       .def_property_readonly(
@@ -214,8 +178,8 @@ Raises TypeError or ValueError naming the argument. Cubic sequences take twice t
         const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";
         return kind + description("", self.span(), self.times().size(), self.interpolation()).substr(1);
       });
-  define_value<VertexSequence>(type, &keywords_of);
-  define_replace<VertexSequence>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "call/argument.h"
 #include "call/define.h"
 #include "call/run_job.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/scene/overlap/coplanar.h"
 #include "echopath/scene/scene.h"
 #include "values/travel.h"
@@ -36,10 +36,8 @@ std::vector<NamedOverlap> named_overlaps(const Scene& scene, Arg<"time", Real> t
 }
 
 std::string overlap_text(const NamedOverlap& self) {
-  std::ostringstream text;
-  text << "CoplanarOverlap('" << self.first << "', '" << self.second << "', " << self.overlap.num_triangles << " triangles, "
-       << self.overlap.area << " m^2)";
-  return text.str();
+  return streamed("CoplanarOverlap('", self.first, "', '", self.second, "', ", self.overlap.num_triangles, " triangles, ",
+                  self.overlap.area, " m^2)");
 }
 
 }  // namespace

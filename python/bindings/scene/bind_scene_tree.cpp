@@ -18,6 +18,7 @@
 #include "values/array.h"
 #include "values/shared.h"
 #include "values/travel.h"
+#include "values/value.h"
 
 namespace echopath::bindings {
 namespace {
@@ -41,27 +42,6 @@ Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<in
   made.smooth = *smooth;
   made.visible = *visible;
   return made;
-}
-
-py::dict node_fields(const Node& self) {
-  py::dict fields;
-  fields["name"] = self.name;
-  fields["parent"] = self.parent;
-  fields["placement"] = to_numpy(self.placement);
-  fields["motion"] = shared(self.motion);
-  fields["mesh"] = shared(self.mesh);
-  fields["deformation"] = shared(self.deformation);
-  fields["material"] = shared(self.material);
-  fields["material_name"] = self.material_name;
-  fields["smooth"] = self.smooth;
-  fields["visible"] = self.visible;
-  return fields;
-}
-
-py::object changed_node(const Node& self, const py::kwargs& changes) {
-  py::dict fields = node_fields(self);
-  for (const auto& [name, value] : changes) fields[name] = value;
-  return py::type::of<Node>()(**fields);
 }
 
 // What scene.meshes lists.
@@ -177,25 +157,18 @@ void bind_nodes(py::module_& m) {
               py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
               py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
               py::arg("visible") = true);
-  define(type, "replace", &changed_node,
-         "A copy with some fields changed: node.replace(visible=False). Raises TypeError or ValueError naming the field.");
+  define_replace(type);
   type.def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
-      .def_property_readonly(
-          "placement", [](const Node& self) { return to_numpy(self.placement); },
-          "[4, 4] at rest, relative to the parent, m")
-      .def_property_readonly(
-          "motion", [](const Node& self) { return shared(self.motion); }, "a motion or None")
-      .def_property_readonly(
-          "mesh", [](const Node& self) { return shared(self.mesh); }, "a Mesh or None")
-      .def_property_readonly(
-          "deformation", [](const Node& self) { return shared(self.deformation); }, "a VertexSequence, a Skin or None")
-      .def_property_readonly(
-          "material", [](const Node& self) { return shared(self.material); }, "a Material or None")
+      .def_property_readonly("placement", array_of(&Node::placement), "[4, 4] at rest, relative to the parent, m")
+      .def_property_readonly("motion", shared_of(&Node::motion), "a motion or None")
+      .def_property_readonly("mesh", shared_of(&Node::mesh), "a Mesh or None")
+      .def_property_readonly("deformation", shared_of(&Node::deformation), "a VertexSequence, a Skin or None")
+      .def_property_readonly("material", shared_of(&Node::material), "a Material or None")
       .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
       .def_readonly("smooth", &Node::smooth, "whether the mesh stands for a curved surface")
       .def_readonly("visible", &Node::visible, "False: neither it nor what is below it takes part in anything")
-      .def(py::pickle([](const Node& self) { return node_fields(self); },
+      .def(py::pickle(&keywords_by_attribute<Node>,
                       [](const py::dict& fields) { return py::type::of<Node>()(**fields).cast<Node>(); }))
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
 

@@ -16,6 +16,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/scene/readers/skin_parts.h"
 #include "scene/deformation_type.h"
+#include "values/shared.h"
 #include "values/value.h"
 
 namespace echopath::bindings {
@@ -117,7 +118,7 @@ py::list parts_of_skin(const Skin& skin, Arg<"mesh", Instance<std::shared_ptr<Me
     parts = parts_by_joint(*mesh, skin);
   }
   py::list result;
-  for (const NamedMesh& part : parts) result.append(py::make_tuple(part.name, std::const_pointer_cast<Mesh>(part.mesh)));
+  for (const NamedMesh& part : parts) result.append(py::make_tuple(part.name, shared(part.mesh)));
   return result;
 }
 
@@ -127,20 +128,6 @@ py::array_t<double> joint_transforms(const Skin& self, Arg<"time", Real> time) {
 
 py::object inverse_bind_of(const NamedJoint& self) {
   return self.joint.inverse_bind ? py::object(to_numpy(*self.joint.inverse_bind)) : py::none();
-}
-
-py::dict keywords_of(const NamedJoint& self) {
-  return py::dict(py::arg("name") = self.joint.name, py::arg("parent") = self.parent,
-                  py::arg("transform") = to_numpy(self.joint.placement),
-                  py::arg("motion") = std::const_pointer_cast<Motion>(self.joint.motion),
-                  py::arg("inverse_bind") = inverse_bind_of(self));
-}
-
-py::dict keywords_of(const Skin& self) {
-  return py::dict(py::arg("vertices") = to_numpy(self.vertices()), py::arg("joints") = named_joints(self),
-                  py::arg("weights") = by_vertex(self, self.weights().weight),
-                  py::arg("joint_indices") = by_vertex(self, self.weights().joint),
-                  py::arg("shape") = std::const_pointer_cast<Deformation>(self.shape()));
 }
 
 void bind_joint(py::module_& m) {
@@ -164,14 +151,13 @@ Raises TypeError or ValueError naming the argument.)");
           "transform", [](const NamedJoint& self) { return to_numpy(self.joint.placement); },
           "[4, 4] at rest, relative to the parent, m")
       .def_property_readonly(
-          "motion", [](const NamedJoint& self) { return std::const_pointer_cast<Motion>(self.joint.motion); },
-          "a motion or None")
+          "motion", [](const NamedJoint& self) { return shared(self.joint.motion); }, "a motion or None")
       .def_property_readonly("inverse_bind", &inverse_bind_of, "[4, 4], or None where it follows from the joints at rest")
       .def("__repr__", [](const NamedJoint& self) {
         return "Joint('" + self.joint.name + "'" + (self.parent ? ", '" + *self.parent + "')" : ")");
       });
-  define_value<NamedJoint>(type, &keywords_of);
-  define_replace<NamedJoint>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 void bind_skin_itself(py::module_& m) {
@@ -186,8 +172,7 @@ shape: MorphTargets or VertexSequence that replaces v at each time before the jo
 Raises TypeError or ValueError naming the argument.)");
   define_init(type, &skin, py::arg("vertices"), py::arg("joints"), py::arg("weights"), py::arg("joint_indices") = py::none(),
               py::arg("shape") = py::none())
-      .def_property_readonly(
-          "vertices", [](const Skin& self) { return to_numpy(self.vertices()); }, "[V, 3] in m, as bound")
+      .def_property_readonly("vertices", array_of(&Skin::vertices), "[V, 3] in m, as bound")
       .def_property_readonly("joints", &named_joints, "list [J] of Joint, each with its inverse_bind")
       .def_property_readonly(
           "weights", [](const Skin& self) { return by_vertex(self, self.weights().weight); },
@@ -195,9 +180,7 @@ Raises TypeError or ValueError naming the argument.)");
       .def_property_readonly(
           "joint_indices", [](const Skin& self) { return by_vertex(self, self.weights().joint); },
           "[V, K] joint of each weight")
-      .def_property_readonly(
-          "shape", [](const Skin& self) { return std::const_pointer_cast<Deformation>(self.shape()); },
-          "the Deformation before the joints move it, or None")
+      .def_property_readonly("shape", shared_of(&Skin::shape), "the Deformation before the joints move it, or None")
       .def("__repr__", [](const Skin& self) {
         return "Skin(" + std::to_string(self.num_vertices()) + " vertices, " + std::to_string(self.joints().size()) +
                " joints)";
@@ -211,8 +194,8 @@ time: s. Returns [J, 4, 4], translations in m. Raises ValueError outside `span`.
 mesh: a Mesh made from as many vertices [V] as the skin has
 Returns a list of (name of joint, Mesh) of those joints that dominate any triangle; all are parts of `mesh`.
 Raises ValueError for another number of vertices.)");
-  define_value<Skin>(type, &keywords_of);
-  define_replace<Skin>(type, &keywords_of);
+  define_value(type);
+  define_replace(type);
 }
 
 }  // namespace

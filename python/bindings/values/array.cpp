@@ -8,6 +8,7 @@
 #include "call/shown.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/geometry.h"
+#include "echopath/base/text/streamed.h"
 
 namespace echopath::bindings {
 namespace {
@@ -36,13 +37,8 @@ bool fits(const py::array& array, const Shape& shape) {
 }
 
 std::string rule(std::string_view argument, std::string_view shape, std::string_view what) {
-  std::ostringstream text;
-  if (shape == "[]") {
-    text << argument << ": must be a single value (" << what << "), got ";
-  } else {
-    text << argument << ": must be an array " << shape << " of " << what << ", got ";
-  }
-  return text.str();
+  if (shape == "[]") return streamed(argument, ": must be a single value (", what, "), got ");
+  return streamed(argument, ": must be an array ", shape, " of ", what, ", got ");
 }
 
 // Whether some values of a numpy.ma.MaskedArray are masked: what stands in their places means nothing.

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -88,6 +89,16 @@ template <class T>
 py::array_t<T> numpy_take(std::vector<T>&& values) {  // [N]
   const Shape shape{std::ssize(values)};
   return numpy_take(std::move(values), shape);
+}
+
+// Getters of attributes, of a member or a method of Class: a new array, or a view of memory in the object.
+template <class Class, class Member>
+auto array_of(Member Class::* member) {
+  return [member](const Class& self) { return to_numpy(std::invoke(member, self)); };
+}
+template <class Class, class Member>
+auto view_of(Member Class::* member) {
+  return [member](const py::object& self) { return numpy_view(std::invoke(member, self.cast<const Class&>()), self); };
 }
 
 namespace detail {

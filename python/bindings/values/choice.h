@@ -2,6 +2,7 @@
 // Enums that Python knows by name: the look-up, and the names of those that several binding files take.
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -46,6 +47,12 @@ struct Choice {
 template <class Enum, class... Names>
 constexpr Choice<Enum, sizeof...(Names)> choice(const char* argument, Names... names) {
   return {argument, {names...}};
+}
+
+// A getter of the name of an enum, of a member or a method of Class.
+template <class Enum, size_t N, class Class, class Member>
+auto name_of(const Choice<Enum, N>& choice, Member Class::* member) {
+  return [choice, member](const Class& self) { return choice.name_of(std::invoke(member, self)); };
 }
 
 inline constexpr auto kFootprint = choice<Footprint>("footprint", "none", "first_order", "second_order", "edges");

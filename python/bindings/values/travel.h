@@ -1,7 +1,7 @@
 #pragma once
-// Pickle, copy, deepcopy and == of plain results, told by a list of their fields:
+// Pickle, copy, deepcopy and == of plain results, told by a list of their fields, of which some are attributes, too:
 //
-//   def_travel(bound, field("range", &Map::range), field("zero_pad", &Map::zero_pad))
+//   def_travel(bound, attribute("range", &Map::range, "[range] m"), field("zero_pad", &Map::zero_pad))
 //
 // The state of a pickle is a dict of the fields by name, with vectors as NumPy arrays. Each is checked on the way in: a
 // state that lacks a field, has others or holds what does not fit raises a ValueError or TypeError that names it.
@@ -131,6 +131,32 @@ Field<Access> field(const char* name, Access access) {
   return {name, std::move(access)};
 }
 
+// A field that is a read-only attribute of the same name, as pybind11 shows it: a vector as a list.
+template <class Member>
+struct Attribute : Field<Member> {
+  const char* doc;
+
+  void show(auto& bound) const { bound.def_readonly(this->name, this->access, doc); }
+};
+
+template <class Member>
+Attribute<Member> attribute(const char* name, Member member, const char* doc) {
+  return {{name, member}, doc};
+}
+
+// The same of a vector that is shown as a view (array.h).
+template <class Member>
+struct ArrayAttribute : Field<Member> {
+  const char* doc;
+
+  void show(auto& bound) const { bound.def_property_readonly(this->name, view_of(this->access), doc); }
+};
+
+template <class Member>
+ArrayAttribute<Member> array_attribute(const char* name, Member member, const char* doc) {
+  return {{name, member}, doc};
+}
+
 // A field that is an enum, by its name; `names` is a Choice (choice.h).
 template <class Access, class Names>
 struct NamedField {
@@ -157,26 +183,25 @@ NamedField<Access, Names> field(const char* name, Access access, Names names) {
   return {name, std::move(access), std::move(names)};
 }
 
-template <class Value>
-py::ssize_t num_of(const std::vector<Value>& values) {
-  return std::ssize(values);
-}
-
 // Raises ValueError unless `values` has as many as fit the shape.
 template <class Value>
 void require_shape(const std::vector<Value>& values, const Shape& shape, const char* name) {
   py::ssize_t count = 1;
   for (const py::ssize_t size : shape) count *= size;
-  require(num_of(values) == count, name, "must have " + std::to_string(count) + " values, as the other fields have it",
+  require(std::ssize(values) == count, name, "must have " + std::to_string(count) + " values, as the other fields have it",
           values.size());
 }
 
 // Raises ValueError unless the state of a pickle has these fields and no others.
 void require_fields(const py::dict& state, const std::vector<std::string>& names);
 
-// Gives a class pickle, copy and ==. `check` raises where fields do not fit each other.
+// Gives a class pickle, copy and ==, and its attributes. `check` raises where fields do not fit each other.
 template <class Type, class... Options, class Check, class... Fields>
 void def_travel_checked(py::class_<Type, Options...>& bound, Check check, Fields... fields) {
+  const auto show = [&bound](const auto& each) {
+    if constexpr (requires { each.show(bound); }) each.show(bound);
+  };
+  (show(fields), ...);
   bound.def("__eq__", [fields...](const Type& a, const Type& b) { return (fields.same(a, b) && ...); }, py::is_operator());
   bound.def(py::pickle(
       [fields...](const Type& self) {

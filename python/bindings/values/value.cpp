@@ -23,6 +23,14 @@ py::object hashable(py::handle value) {
 
 }  // namespace
 
+py::dict attributes_of(const py::object& self, const std::vector<std::string>& names) {
+  py::dict found;
+  for (const std::string& name : names) {
+    if (py::hasattr(self, name.c_str())) found[name.c_str()] = self.attr(name.c_str());
+  }
+  return found;
+}
+
 bool same_values(const py::dict& one, const py::dict& other) {
   if (one.size() != other.size()) return false;
   for (const auto& [name, value] : one) {

@@ -1,5 +1,5 @@
 #pragma once
-// Values: objects that are nothing but what their constructor was given.
+// Values: objects that are nothing but what their constructor was given, and have it as attributes of the same names.
 #include <pybind11/pybind11.h>
 
 #include <memory>
@@ -13,6 +13,8 @@ namespace echopath::bindings {
 
 namespace detail {
 
+// The attributes of an object that have one of the names.
+pybind11::dict attributes_of(const pybind11::object& self, const std::vector<std::string>& names);
 // Whether two keywords have equal values, arrays by their numbers.
 bool same_values(const pybind11::dict& one, const pybind11::dict& other);
 // Equal for equal values.
@@ -37,23 +39,32 @@ pybind11::object constructor_for(const pybind11::dict&) {
 
 }  // namespace detail
 
-// Gives a class pickle, copy, deepcopy, == and a hash. `keywords_of` returns the keywords that make the value again, so the
-// state of a pickle is checked by the constructor, as any other input. `maker_for` names what takes the keywords where that
-// is not the class.
+// Returns the keywords that make a value again: those attributes that have the name of an argument of its constructor.
+template <class Value>
+pybind11::dict keywords_by_attribute(const pybind11::object& self) {
+  return detail::attributes_of(self, detail::argument_names<Value>());
+}
+
+using KeywordsOf = pybind11::dict (*)(const pybind11::object& self);
+using MakerFor = pybind11::object (*)(const pybind11::dict& keywords);
+
+// Gives a class pickle, copy, deepcopy, == and a hash. The state of a pickle is the keywords that make the value again, so
+// it is checked by the constructor, as any other input. `maker_for` names what takes the keywords where that is not the
+// class.
 template <class Value, class... Options>
-void define_value(pybind11::class_<Value, Options...>& type, pybind11::dict (*keywords_of)(const Value&),
-                  pybind11::object (*maker_for)(const pybind11::dict&) = &detail::constructor_for<Value>) {
+void define_value(pybind11::class_<Value, Options...>& type, KeywordsOf keywords_of = &keywords_by_attribute<Value>,
+                  MakerFor maker_for = &detail::constructor_for<Value>) {
   namespace py = pybind11;
   using Held = detail::Held<Value, typename py::class_<Value, Options...>::holder_type>;
   type.def(
       "__eq__",
-      [keywords_of](const Value& self, const py::object& other) -> py::object {
+      [keywords_of](const py::object& self, const py::object& other) -> py::object {
         if (!py::isinstance<Value>(other)) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
-        return py::bool_(detail::same_values(keywords_of(self), keywords_of(other.cast<const Value&>())));
+        return py::bool_(detail::same_values(keywords_of(self), keywords_of(other)));
       },
       py::arg("other"), "Whether the other one is made of the same values.");
-  type.def("__hash__", [keywords_of](const Value& self) { return detail::hash_of_values(keywords_of(self)); });
-  type.def(py::pickle([keywords_of](const Value& self) { return keywords_of(self); },
+  type.def("__hash__", [keywords_of](const py::object& self) { return detail::hash_of_values(keywords_of(self)); });
+  type.def(py::pickle([keywords_of](const py::object& self) { return keywords_of(self); },
                       [maker_for](const py::object& state) {
                         const std::string name = py::cast<std::string>(py::type::of<Value>().attr("__name__"));
                         const py::dict keywords = detail::checked_state(state, name.c_str());
@@ -72,13 +83,13 @@ void define_no_change(pybind11::class_<Value, Options...>& type) {
 
 // Gives a value `replace`: a copy with other values of some of its keywords.
 template <class Value, class... Options>
-void define_replace(pybind11::class_<Value, Options...>& type, pybind11::dict (*keywords_of)(const Value&),
-                    pybind11::object (*maker_for)(const pybind11::dict&) = &detail::constructor_for<Value>) {
+void define_replace(pybind11::class_<Value, Options...>& type, KeywordsOf keywords_of = &keywords_by_attribute<Value>,
+                    MakerFor maker_for = &detail::constructor_for<Value>) {
   namespace py = pybind11;
   using Held = detail::Held<Value, typename py::class_<Value, Options...>::holder_type>;
   define(
       type, "replace",
-      [keywords_of, maker_for](const Value& self, const py::kwargs& changes) {
+      [keywords_of, maker_for](const py::object& self, const py::kwargs& changes) {
         const py::dict keywords = keywords_of(self);
         return detail::remade(maker_for(keywords), keywords, changes).template cast<Held>();
       },

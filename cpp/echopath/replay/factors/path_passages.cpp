@@ -91,8 +91,9 @@ FieldVector PathPassages::through(const LegOfAntenna& at, FieldVector field) con
 }
 
 std::pair<size_t, size_t> PathPassages::passes_on(int leg) const {
-  const auto found = std::ranges::equal_range(passes_, leg, {}, [](const Pass& pass) { return static_cast<int>(pass.leg); });
-  return {found.begin() - passes_.begin(), found.end() - passes_.begin()};
+  const auto leg_of = [](const Pass& pass) { return static_cast<int>(pass.leg); };
+  return {std::ranges::lower_bound(passes_, leg, {}, leg_of) - passes_.begin(),
+          std::ranges::upper_bound(passes_, leg, {}, leg_of) - passes_.begin()};
 }
 
 // Returns whether a leg between an antenna and an edge is one on which `through` follows the field.

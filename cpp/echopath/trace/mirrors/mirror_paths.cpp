@@ -36,8 +36,8 @@ using FrustumRange = std::pair<const MirrorFrustum*, const MirrorFrustum*>;
 
 FrustumRange with_mirrors(const std::vector<MirrorFrustum>& frusta, size_t count) {
   const auto num_mirrors = [](const MirrorFrustum& frustum) { return frustum.mirrors.size(); };
-  const auto found = std::ranges::equal_range(frusta, count, {}, num_mirrors);
-  return {std::to_address(found.begin()), std::to_address(found.end())};
+  return {std::to_address(std::ranges::lower_bound(frusta, count, {}, num_mirrors)),
+          std::to_address(std::ranges::upper_bound(frusta, count, {}, num_mirrors))};
 }
 
 // Finds pairs of frusta of transmitter and receiver, each of which shows the other's antenna, or its image.

@@ -680,7 +680,10 @@ class Node:
         ...
     def replace(self, *, name: str = ..., parent: int = ..., placement: ArrayLike | None = ..., motion: Motion | None = ..., mesh: Mesh | None = ..., deformation: Deformation | None = ..., material: Material | None = ..., material_name: str = ..., smooth: bool = ..., visible: bool = ...) -> Node:
         """
-        A copy with some fields changed: node.replace(visible=False). Raises TypeError or ValueError naming the field.
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
         """
     @property
     def deformation(self) -> Deformation:
@@ -2021,7 +2024,7 @@ class Stratum:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, axis: ArrayLike, versine: float, num_rays: int, ray_density: float, name: str, across: ArrayLike = (0.0, 0.0, 0.0), half_azimuth: float = 0.0, low: float = 0.0, high: float = 0.0, object: int = -1, num_mirrors: int = 0, focus_of: int = -1) -> None:
+    def __init__(self, *, axis: ArrayLike, versine: float, across: ArrayLike = (0.0, 0.0, 0.0), half_azimuth: float = 0.0, low: float = 0.0, high: float = 0.0, num_rays: int, ray_density: float, name: str, object: int = -1, num_mirrors: int = 0, focus_of: int = -1) -> None:
         ...
     def __repr__(self) -> str:
         ...

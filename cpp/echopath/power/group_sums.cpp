@@ -210,6 +210,7 @@ class Sums {
     const double by_lot = is_drawn ? power : std::norm(open.lot_field);
     if (!is_drawn) add_even(group, path, certain);
     sums.drawn_squares += by_lot * by_lot + 2.0 * certain * by_lot;
+    sums.strongest_hit = std::max(sums.strongest_hit, power);
     ++sums.num_diffuse_hits;
     open.path = kNoPath;
   }

@@ -140,6 +140,7 @@ class ValidityCheck {
       raise(report_.largest_phase_error, slid);
       raise(report_.motion_phase_error, phase(check_.error_of(found.state).motion));
       raise(report_.stepped_phase_error, phase(found.state.stepped.largest));
+      raise(report_.largest_cosine_change, found.state.cosine_change);
     }
     const PowerSums sum = whole.combined(whole.field_scale());
     report_.shares = sum.shares();
@@ -153,7 +154,7 @@ class ValidityCheck {
     const auto size = static_cast<size_t>(paths_.num_paths());
     const auto resize = [size](auto&... columns) { (columns.resize(size), ...); };
     resize(arrays.power, arrays.phase_error, arrays.stepped_phase_error, arrays.left, arrays.blocked,
-           arrays.receiver_blocked, arrays.turned);
+           arrays.receiver_blocked, arrays.turned, arrays.cosine_change);
   }
 
   void keep(size_t path, const PathFinding& found) {
@@ -165,6 +166,7 @@ class ValidityCheck {
     arrays.blocked[path] = found.state.blocked;
     arrays.receiver_blocked[path] = found.state.is_receiver_blocked;
     arrays.turned[path] = found.state.is_turned;
+    arrays.cosine_change[path] = static_cast<float>(found.state.cosine_change);
   }
 
   void make_objects() {

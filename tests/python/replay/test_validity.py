@@ -138,6 +138,18 @@ def test_a_surface_that_turns_edge_on_is_a_warning():
     assert "turn" in only_warning(report_of(scene, radar_of(num_chirps=100, chirp_interval=1e-3)))
 
 
+def test_cosines_change_as_a_plate_turns():
+    """A small plate far away turns from 0.5 to 0.9 rad: from 0.7 rad at mid-frame, the cosine changes by cos 0.7 - cos 0.9 at
+    most."""
+    turn = ep.KeyframeMotion(times=[0, 0.1], rotations=[[np.cos(a / 2), 0, 0, np.sin(a / 2)] for a in (0.5, 0.9)])
+    scene = scene_of(plate=(shapes.plate((0, 0, 0), (-1, 0, 0), 0.1), ROUGH, (20, 0, 1), turn))
+    radar = radar_of(num_chirps=100, chirp_interval=1e-3)
+    report = ep.validity(ep.trace(scene, radar, num_rays=2000).select("T 'plate' R"), radar, arrays=True)
+    changes = report.cosine_change
+    assert report.largest_cosine_change == pytest.approx(np.cos(0.7) - np.cos(0.9), rel=0.03)  # instants within the frame
+    assert len(changes) and changes.max() == pytest.approx(report.largest_cosine_change, rel=SUMS)
+
+
 def test_a_point_of_reflection_that_leaves_its_mirror_is_a_warning():
     """The point moves along the mirror at half the target's speed and reaches its end."""
     mirror = shapes.rectangle((9, 3, -1), (2, 0, 0), (0, 0, 2))

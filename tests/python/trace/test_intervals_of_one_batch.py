@@ -43,3 +43,10 @@ def test_they_hold_the_power_and_are_not_much_wider(body, sampler, scatterers):
     assert np.mean([one.low <= truth <= one.high for one in found]) > LEAST
     wide = np.median([one.high - one.low for one in found]) / (2.0 * 1.96 * np.std([one.power for one in found]))
     assert wide < MOST_TOO_WIDE[scatterers]
+
+
+def test_the_strongest_share_is_that_of_the_strongest_hit():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5), name="ball", material=ROUGH, position=(9.0, 0.0, 0.0))
+    paths = ep.trace(scene, targets.radar(), num_rays=2000, max_bounces=1)
+    assert ep.received_power(paths).strongest_share == pytest.approx(paths.power.max() / paths.power.sum(), rel=1e-9)

@@ -91,7 +91,7 @@ def test_labels_of_a_scene_file_are_keywords_of_annotate(scene_path, tmp_path):
 
 
 @pytest.mark.parametrize("table, message", [
-    ("objects = 3", "labels.objects: must be globs in an array, or a table of name = glob or name = [globs], got 3"),
+    ("objects = 3", 'labels.objects: must be globs in an array, a table of name = glob or name = [globs], or "found", got 3'),
     ("objects = {a = []}", "labels.objects: must be globs in an array"),
     ("objects = ['vam']",
      "labels.objects: path expression: expected a glob that takes a mesh, got 'vam'; nearest names: van"),

@@ -14,6 +14,7 @@ from echopath.readers.material_names import material_of, note_of_unknown
 from echopath.readers.sizes import unit_doubt
 from fuzz.foreign import SQUARE
 from fuzz.foreign_seeds import bvh_text, walk_frames
+from support.files.mesh_texts import obj_boxes
 from support.files.scene_text import WAVEFORM
 
 ROUNDING = 1e-12
@@ -257,21 +258,12 @@ def test_an_object_alone_is_no_mirror_in_the_scene_that_is_written_for_it(tmp_pa
     assert ep.trace(found.scene, found.radar, num_rays=2000).num_paths > 100
 
 
-def box_text(name: str, sides, middle, first: int) -> str:
-    """A box in an OBJ file; first: number of vertices before it."""
-    corners = "".join(f"v {middle[0] + x * sides[0]} {middle[1] + y * sides[1]} {middle[2] + z * sides[2]}\n"
-                      for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5))
-    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
-    return f"o {name}\n{corners}" + "".join(f"f {' '.join(str(first + k) for k in quad)}\n" for quad in quads)
-
-
 def test_things_of_a_street_are_told_apart_in_the_scene_that_is_written_for_it(tmp_path, capsys):
     boxes = {"ground": ((60, 30, 0.1), (20, 0, -0.05)), "house": ((30, 10, 8), (20, 14, 4)),
              "wall": ((30, 0.3, 5), (20, -8, 2.5)), "van": ((4.5, 1.9, 2), (8, 2.2, 1.1)),
              "trailer": ((13.6, 2.6, 4), (25, 2.2, 2.1)), "pole": ((0.2, 0.2, 8), (15, -6, 4)),
              "bin": ((0.8, 0.8, 1.1), (12, -5, 0.6))}
-    text = "".join(box_text(name, *box, 8 * number) for number, (name, box) in enumerate(boxes.items()))
-    (tmp_path / "street.obj").write_text(text)
+    (tmp_path / "street.obj").write_text(obj_boxes(boxes))
     out = tmp_path / "street.toml"
     assert main(["scene", str(tmp_path / "street.obj"), "--out", str(out), "--up", "z"]) == 0
     found = ep.load_scene(out)

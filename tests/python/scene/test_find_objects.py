@@ -4,6 +4,8 @@ import pytest
 
 import echopath as ep
 from echopath.actors import shapes
+from support.files.mesh_texts import obj_boxes
+from support.files.scene_text import SMALL_RADAR
 from support.labelled import make_radar
 
 ROUGH = ep.Material(reflectivity=0.3, scattering=1.0)
@@ -18,16 +20,16 @@ def town():
     """A ground and a house whose windows touch it, a group of parked cars one metre apart, and a pole; all below one node that
     has but one below it, as files of modellers have."""
     scene = ep.Scene()
-    root = scene.add(None, name="root", parent=scene.add(None, name="town"))
-    scene.add(shapes.ground((200.0, 200.0), z=-1.0), name="ground", material=ROUGH, parent=root)
-    house = scene.add(None, name="house", parent=root)
+    block = scene.add(None, name="block", parent=scene.add(None, name="town"))
+    scene.add(shapes.ground((200.0, 200.0), z=-1.0), name="ground", material=ROUGH, parent=block)
+    house = scene.add(None, name="house", parent=block)
     _add(scene, house, "walls", (10.0, 10.0, 6.0), (30.0, 20.0, 2.0))
     for number in range(5):
         _add(scene, house, f"window_{number}", (0.1, 1.0, 1.0), (25.0, 16.0 + 2.0 * number, 2.0))
-    cars = scene.add(None, name="cars", parent=root)
+    cars = scene.add(None, name="cars", parent=block)
     for number in range(4):
         _add(scene, cars, f"car_{number}", (4.5, 1.8, 1.5), (8.0 + 5.5 * number, -6.0, -0.2))
-    _add(scene, root, "pole", (0.2, 0.2, 8.0), (12.0, 6.0, 3.0))
+    _add(scene, block, "pole", (0.2, 0.2, 8.0), (12.0, 6.0, 3.0))
     return scene
 
 
@@ -35,19 +37,19 @@ def _usual(scene):
     return [seen.name for seen in ep.visibility(scene, make_radar())]
 
 
-CARS = {f"car_{number}": f"town/root/cars/car_{number}" for number in range(4)}
+CARS = {f"car_{number}": f"town/block/cars/car_{number}" for number in range(4)}
 
 
 def test_things_of_a_town_are_found_and_parts_of_a_house_are_not(town):
-    assert ep.find_objects(town, make_radar()) == {"pole": "town/root/pole"} | CARS
+    assert ep.find_objects(town, make_radar()) == {"pole": "town/block/pole"} | CARS
 
 
 def test_usual_objects_keep_their_names_and_go_before_things(town):
     scene = town
     scene.add(shapes.box((0.5, 0.6, 1.8)), name="pole", material=ROUGH, position=(9.0, 1.0, 0.0))
-    _add(scene, "town/root", "what[ever]", (1.0, 1.0, 1.0), (14.0, 2.0, 0.0))
+    _add(scene, "town/block", "what[ever]", (1.0, 1.0, 1.0), (14.0, 2.0, 0.0))
     found = ep.find_objects(scene, make_radar())
-    assert found == {"pole": "pole", "town/root/pole": "town/root/pole"} | CARS
+    assert found == {"pole": "pole", "town/block/pole": "town/block/pole"} | CARS
 
 
 def test_a_group_of_the_scene_whose_parts_stand_apart_gives_way_to_them():
@@ -74,9 +76,9 @@ def test_the_vehicle_that_carries_the_radar_has_no_things():
 
 def test_mirrors_and_large_planes_are_no_objects(town):
     wall = ep.Mesh([[40, -3, -1], [40, 3, -1], [40, 3, 3], [40, -3, 3]], [[0, 3, 2], [0, 2, 1]])
-    town.add(wall, name="wall", material=ep.Material.metal(), parent="town/root")
+    town.add(wall, name="wall", material=ep.Material.metal(), parent="town/block")
     town.add(shapes.plate(0.5, 0.5), name="sign", material=ep.Material.metal(mirror=True), position=(15, 3, 1), yaw=np.pi,
-             parent="town/root")
+             parent="town/block")
     assert set(ep.find_objects(town, make_radar())) == {"pole", *CARS}
 
 
@@ -88,24 +90,11 @@ def test_labels_of_a_town_tell_its_things_apart(town):
     assert [label.name for label in ep.annotate(frame.paths).objects] == []  # the town alone, which surrounds the radar
 
 
-def test_a_scene_file_asks_for_what_is_found(town, tmp_path):
-    """The file names a town that was written as glTF would have it, and a box that was added to it."""
-    text = "".join(f"o {name}\n" + _obj_box(sides, middle, 8 * number) for number, (name, sides, middle) in enumerate([
-        ("ground", (100, 100, 0.1), (0, 0, -1)), ("van", (5, 2, 2), (12, 3, 0)), ("bin", (1, 1, 1), (8, -4, 0))]))
-    (tmp_path / "town.obj").write_text(text)
-    (tmp_path / "scene.toml").write_text("""
-[radar]
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 10e6
-num_chirps = 8
-chirp_interval = 50e-6
-[[radar.transmitters]]
-position = [0, 0, 0]
-[[radar.receivers]]
-position = [0, 0, 0]
+def test_a_scene_file_asks_for_what_is_found(tmp_path):
+    """The file names a town of another file, and a person who was added to it."""
+    boxes = {"ground": ((100, 100, 0.1), (0, 0, -1)), "van": ((5, 2, 2), (12, 3, 0)), "bin": ((1, 1, 1), (8, -4, 0))}
+    (tmp_path / "town.obj").write_text(obj_boxes(boxes))
+    (tmp_path / "scene.toml").write_text(SMALL_RADAR + """
 [[objects]]
 name = "town"
 model = "town.obj"
@@ -124,11 +113,3 @@ objects = "found"
     found = ep.load_scene(tmp_path / "scene.toml")
     named = (("visitor", ("visitor",)), ("van", ("town/van",)), ("bin", ("town/bin",)))
     assert set(found.labels.objects) == set(named) and found.truth.objects == {name: globs[0] for name, globs in named}
-
-
-def _obj_box(sides, middle, before: int) -> str:
-    corners = [[m + 0.5 * k * s for m, k, s in zip(middle, signs, sides)] for signs in np.ndindex(2, 2, 2)
-               for signs in [[2 * one - 1 for one in signs]]]
-    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
-    return "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join(
-        f"f {' '.join(str(before + one) for one in quad)}\n" for quad in quads)

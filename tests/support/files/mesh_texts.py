@@ -14,6 +14,11 @@ def obj(vertices, faces, name: str = "") -> bytes:
     return "\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]).encode()
 
 
+def obj_boxes(boxes: dict) -> str:
+    """Boxes {name: (sides, middle)} in m, each an object of an OBJ file."""
+    return "".join(_obj_box(name, *box, 8 * number) for number, (name, box) in enumerate(boxes.items()))
+
+
 def ply(vertices, faces) -> bytes:
     head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\nproperty float y\n"
             f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
@@ -54,3 +59,11 @@ def usda(vertices, faces, name: str = "ball") -> bytes:
 
 def npz(vertices, faces) -> bytes:
     return archive(vertices=vertices[None], triangles=np.asarray(faces))
+
+
+def _obj_box(name: str, sides, middle, first: int) -> str:
+    """A box in an OBJ file; first: number of vertices before it."""
+    corners = "".join(f"v {middle[0] + x * sides[0]} {middle[1] + y * sides[1]} {middle[2] + z * sides[2]}\n"
+                      for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5))
+    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    return f"o {name}\n{corners}" + "".join(f"f {' '.join(str(first + k) for k in quad)}\n" for quad in quads)

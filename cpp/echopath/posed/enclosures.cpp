@@ -1,23 +1,16 @@
 #include "echopath/posed/enclosures.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/solid_angle.h"
 #include "echopath/posed/bodies.h"
 
 namespace echopath {
 namespace {
 
 constexpr double kWholeSphere = 0.99;  // of 4 pi sr; seams between the parts of a body may be open by less
-
-// Returns the solid angle of a triangle in sr, negative where its back is seen.
-double solid_angle(const std::array<Vec3, 3>& corners, const Vec3& eye) {
-  const Vec3 a = corners[0] - eye, b = corners[1] - eye, c = corners[2] - eye;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-}
 
 bool encloses(const Scene& scene, const PosedScene& pose, const Body& body, const Vec3& eye) {
   if (!body.box.contains(eye)) return false;

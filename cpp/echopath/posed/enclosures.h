@@ -18,7 +18,6 @@ struct Enclosure {
 // pass, are openings. What is wound against its neighbours, and shells whose inner side is wound against the outer one, add
 // up to less and are not found; a hole of less than a hundredth of the sphere (20 by 20 degrees) is no opening. Raises
 // invalid_argument where a motion is not defined then.
-// Source: van Oosterom and Strackee 1983 (solid angle of a triangle).
 std::vector<Enclosure> enclosures(const Scene& scene, const PosedScene& pose, const std::vector<Body>& bodies,
                                   const Radar& radar);
 

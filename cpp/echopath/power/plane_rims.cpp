@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/plane.h"
+#include "echopath/base/solid_angle.h"
 #include "echopath/scene/edges/planar_patches.h"
 #include "echopath/scene/mesh/adjacency.h"
 
@@ -16,13 +17,6 @@ constexpr double kMostOfEnd = 1.1705;  // of half the wave of a stationary point
 constexpr double kSeenWhole = 0.97;    // of the rays of a plane: as many are counted where nothing hides any of it
 constexpr double kNoDirection = 1e-9;
 constexpr double kShadowLines = 3.0;  // that cross a plane of which a part is hidden, in phase
-
-// Returns the solid angle of a triangle seen from the origin, sr (van Oosterom, Strackee 1983).
-double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double below = la * lb * lc + a.dot(b) * lc + a.dot(c) * lb + b.dot(c) * la;
-  return std::abs(2.0 * std::atan2(a.dot(b.cross(c)), below));
-}
 
 // Computes the waves of the rim of one plane, seen from the origin.
 class RimOfPlane {
@@ -130,7 +124,7 @@ class PlaneSearch {
     std::vector<Vec3> rim_corners;
     for (const uint32_t triangle : patch) {
       const std::array<Vec3, 3> at = corners(triangle);
-      sum.solid_angle += solid_angle(at[0], at[1], at[2]);
+      sum.solid_angle += std::abs(solid_angle(at, Vec3::Zero()));
       reflects = reflects || rim.reflects_within(at);
       for (size_t side = 0; side < 3; ++side) {
         if (!is_rim(triangle, side)) continue;

@@ -11,7 +11,7 @@
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/power/facet_phase.h"
-#include "echopath/power/plane_rims.h"
+#include "echopath/power/mesh_views.h"
 #include "echopath/power/row_differences.h"
 #include "echopath/power/shared_phase.h"
 #include "echopath/power/triangle_points.h"
@@ -63,13 +63,10 @@ uint64_t kind_of(const Paths& paths, int64_t path) {
 
 bool has_bounced_before(uint64_t kind) { return kind != kMirrorsAlone && (kind & 1) != 0; }
 
-// Returns whether rays of a stratum go straight to all of a mesh: as of those of the object that it belongs to.
-bool is_aimed_at(const Stratum& stratum, const Scene& scene, uint32_t mesh) {
-  if (stratum.num_mirrors > 0 || stratum.focus_of >= 0) return false;
-  int node = scene.meshes()[mesh].node;
-  while (node >= 0 && node != stratum.object) node = scene.nodes()[static_cast<size_t>(node)].parent;
-  return node >= 0;
-}
+uint32_t mesh_of(uint64_t kind) { return static_cast<uint32_t>(kind >> 1); }
+
+// Returns whether the rims of the planes of its mesh bound what a kind sends back: it comes there over mirrors at most.
+bool may_have_rims(uint64_t kind) { return kind != kMirrorsAlone && !has_bounced_before(kind); }
 
 // Numbers the kinds that a group has so far. Paths that follow each other are mostly of one kind.
 class KnownKinds {
@@ -83,39 +80,29 @@ class KnownKinds {
     return last_index_;
   }
 
-  // Counts a ray that found a path of the kind that was looked up last, and met this triangle of a mesh of so many.
-  void count_ray(uint16_t stratum, uint32_t triangle, size_t num_triangles) {
-    if (num_triangles > PlaneRims::kMostTriangles) return;
-    if (last_index_ >= rays_.size()) rays_.resize(last_index_ + 1);
-    std::vector<RaysOfStratum>& known = rays_[last_index_];
-    auto found = std::find_if(known.begin(), known.end(), [&](const auto& one) { return one.stratum == stratum; });
-    if (found == known.end()) found = known.insert(known.end(), {stratum, std::vector<int64_t>(num_triangles)});
-    ++found->at_triangle[triangle];
+  // Counts the ray of a path of the kind that was looked up last.
+  void count_ray(const PlaneInView& met) {
+    if (last_index_ >= views_.size()) views_.resize(last_index_ + 1);
+    SeenPlanes& seen = views_[last_index_][met.view];
+    if (met.solid_angle == 0.0) return;
+    std::vector<double>& of_planes = seen[met.stratum];
+    if (met.plane >= of_planes.size()) of_planes.resize(met.plane + 1);
+    of_planes[met.plane] += met.solid_angle;
   }
 
-  void set_shapes(const Paths& paths, FacetPhases& phases, PlaneRims& rims, double image_at_a_metre,
-                  std::vector<CoherentKind>& kinds) const {
+  void set_shapes(FacetPhases& phases, MeshViews& views, double image_at_a_metre, std::vector<CoherentKind>& kinds) const {
     for (const auto& [kind, index] : index_) {
       if (kind == kMirrorsAlone) continue;
-      const auto mesh = static_cast<uint32_t>(kind >> 1);
-      kinds[index].facet_phase = phases.of(mesh);
-      if (!kinds[index].is_straight || index >= rays_.size()) continue;
-      for (const RaysOfStratum& rays : rays_[index]) {
-        const Stratum& stratum = paths.frame.strata[rays.stratum];
-        if (!is_aimed_at(stratum, *paths.scene, mesh)) continue;
-        const double most = rims.of(mesh).at_most(rays.at_triangle, stratum.ray_density);
-        kinds[index].rims_at_most = std::min(kinds[index].rims_at_most, image_at_a_metre * most);
-      }
+      kinds[index].facet_phase = phases.of(mesh_of(kind));
+      if (index >= views_.size() || views_[index].empty()) continue;
+      double sum = 0.0;
+      for (const auto& [view, seen] : views_[index]) sum += views.at_most(view, seen);
+      kinds[index].rims_at_most = image_at_a_metre * sum;
     }
   }
 
  private:
-  struct RaysOfStratum {
-    uint16_t stratum;
-    std::vector<int64_t> at_triangle;  // number [F]
-  };
-
-  std::vector<std::vector<RaysOfStratum>> rays_;  // by index of the kind
+  std::vector<std::map<uint32_t, SeenPlanes>> views_;  // by index of the kind and of the view
   std::unordered_map<uint64_t, size_t> index_;
   uint64_t last_ = 0;
   size_t last_index_ = 0;
@@ -146,15 +133,14 @@ class Sums {
 
   // `arriving` holds one field for each of kCellViews, `stride` apart; `image_field` is that of an endless mirror, sqrt(W).
   void add_coherent(size_t group, int64_t path, uint64_t kind, const std::complex<double>* arriving, size_t stride,
-                    double image_field) {
+                    double image_field, const PlaneInView& met) {
     GroupSums& sums = groups_[group];
     sums.field[batch_of(path)] += arriving[kAsLaunched * stride];
     CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
     const bool has_cell = paths_.is_of_a_ray(static_cast<size_t>(path));  // others hold nothing between rays
     of_kind.has_cells = of_kind.has_cells || has_cell;
     of_kind.has_bounced = has_bounced_before(kind);
-    of_kind.is_straight = of_kind.is_straight && has_cell && paths_.num_bounces[static_cast<size_t>(path)] == 1;
-    if (of_kind.is_straight) count_ray(group, path);
+    if (met.view != PlaneInView::kNone) kinds_[group].count_ray(met);
     of_kind.image_field = std::max(of_kind.image_field, image_field);
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
@@ -175,10 +161,10 @@ class Sums {
     ++sums.num_coherent_paths;
   }
 
-  std::vector<GroupSums> finish(FacetPhases& phases, PlaneRims& rims, double image_at_a_metre) {
+  std::vector<GroupSums> finish(FacetPhases& phases, MeshViews& views, double image_at_a_metre) {
     for (size_t group = 0; group < groups_.size(); ++group) {
       close(group);
-      kinds_[group].set_shapes(paths_, phases, rims, image_at_a_metre, groups_[group].kinds);
+      kinds_[group].set_shapes(phases, views, image_at_a_metre, groups_[group].kinds);
       for (const RowDifferences& rows : rows_[group]) groups_[group].even_variance += rows.variance();
       groups_[group].even_variance += triangles_[group].variance();
     }
@@ -188,12 +174,6 @@ class Sums {
  private:
   size_t batch_of(int64_t path) const {
     return std::min<size_t>(paths_.batch[path], static_cast<size_t>(paths_.frame.batches));
-  }
-
-  void count_ray(size_t group, int64_t path) {
-    const Hit& hit = *paths_.hits_of(path);
-    kinds_[group].count_ray(paths_.stratum[static_cast<size_t>(path)], hit.triangle_id,
-                            paths_.scene->node_of(hit.mesh_id).mesh->triangles().size());
   }
 
   void close(size_t group) {
@@ -241,18 +221,24 @@ class Sums {
 // Evaluates the paths of a block and what they send back.
 class Block {
  public:
-  Block(const Paths& paths, const Radar& radar)
-      : paths_(paths), replayer_(paths, radar), turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight),
-        image_at_a_metre_(image_at_a_metre(radar)) {}
+  // `views` gets those of the coherent paths, and must outlive it.
+  Block(const Paths& paths, const Radar& radar, MeshViews& views)
+      : paths_(paths), views_(views), replayer_(paths, radar),
+        turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight), image_at_a_metre_(image_at_a_metre(radar)) {}
 
   void evaluate(int64_t begin, int64_t end, PowerAndLength* of_paths) {
     diffuse_.clear();
     coherent_.clear();
     kinds_.clear();
+    met_.clear();
     for (int64_t path = begin; path < end; ++path) {
       (paths_.diffuse[path] == 0 ? coherent_ : diffuse_).push_back(path);
     }
-    for (const int64_t path : coherent_) kinds_.push_back(kind_of(paths_, path));
+    for (const int64_t path : coherent_) {
+      const uint64_t kind = kind_of(paths_, path);
+      kinds_.push_back(kind);
+      met_.push_back(may_have_rims(kind) ? views_.of(path, mesh_of(kind)) : PlaneInView{});
+    }
     replayer_.evaluate(diffuse_, paths_.frame.trace_time, lengths_, diffuse_fields_);
     if (of_paths) note(diffuse_, diffuse_fields_, *of_paths);
     arrive(diffuse_.size(), 1, diffuse_fields_);
@@ -269,7 +255,7 @@ class Block {
     for (size_t i = 0; i < coherent_.size(); ++i) {
       const uint32_t group = group_of_path[coherent_[i]];
       sums.add_coherent(group, coherent_[i], kinds_[i], coherent_fields_.data() + i, coherent_.size(),
-                        image_at_a_metre_ / std::max(coherent_lengths_[i], kNearAntenna));
+                        image_at_a_metre_ / std::max(coherent_lengths_[i], kNearAntenna), met_[i]);
     }
   }
 
@@ -296,11 +282,13 @@ class Block {
   }
 
   const Paths& paths_;
+  MeshViews& views_;
   const Replayer replayer_;
   const double turns_per_metre_;
   const double image_at_a_metre_;
   std::vector<int64_t> diffuse_, coherent_;
-  std::vector<uint64_t> kinds_;  // of the coherent ones
+  std::vector<uint64_t> kinds_;   // of the coherent ones
+  std::vector<PlaneInView> met_;  // likewise
   std::vector<double> lengths_, coherent_lengths_;
   std::vector<std::complex<double>> diffuse_fields_, coherent_fields_;
 };
@@ -316,8 +304,9 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
   std::vector<Sums> sums;
   for (const Sorting& sorting : sortings) sums.emplace_back(paths, sorting.num_groups);
   if (job) job->start(paths.num_paths());
+  MeshViews views(paths, radar);
   std::optional<Block> block;
-  if (paths.num_paths() > 0) block.emplace(paths, radar);
+  if (paths.num_paths() > 0) block.emplace(paths, radar, views);
   for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
     if (job) job->throw_if_cancelled();
     const int64_t end = std::min(begin + kBlock, paths.num_paths());
@@ -326,9 +315,8 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
     if (job) job->advance(end - begin);
   }
   FacetPhases phases(*paths.scene, kTwoPi * radar.waveform.start_frequency / kSpeedOfLight, paths.frame.trace_time);
-  PlaneRims rims(*paths.scene, radar, paths.frame.trace_time);
   std::vector<std::vector<GroupSums>> found;
-  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish(phases, rims, image_at_a_metre(radar)));
+  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish(phases, views, image_at_a_metre(radar)));
   return found;
 }
 

@@ -2,49 +2,107 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/plane.h"
 #include "echopath/base/solid_angle.h"
 #include "echopath/scene/edges/planar_patches.h"
-#include "echopath/scene/mesh/adjacency.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kMostApart = 0.05;    // of the distance: the antennas may be so far from each other
 constexpr double kMostOfEnd = 1.1705;  // of half the wave of a stationary point: the most that a part of it may have
-constexpr double kSeenWhole = 0.97;    // of the rays of a plane: as many are counted where nothing hides any of it
+constexpr double kSeenWhole = 0.97;    // of a plane: as much is found to be seen where nothing hides any of it
 constexpr double kNoDirection = 1e-9;
 constexpr double kShadowLines = 3.0;  // that cross a plane of which a part is hidden, in phase
 
-// Computes the waves of the rim of one plane, seen from the origin.
+// Computes the waves of the rim of one plane, for a wave from one antenna to the other. Both are on one side of it.
 class RimOfPlane {
  public:
-  RimOfPlane(const Plane& plane, double wavenumber)
-      : normal_(plane.normal), foot_(0.5 * plane.image(Vec3::Zero())), wavenumber_(wavenumber) {}
+  RimOfPlane(const Plane& plane, const AntennaPair& antennas, double wavenumber)
+      : normal_(plane.normal), antennas_(antennas), reflection_(plane.met_on_line(antennas.from, plane.image(antennas.to))),
+        wavenumber_(wavenumber) {}
 
-  // Returns whether the triangle reflects the wave back to where it came from.
+  // Returns whether the point that reflects the wave lies in the triangle.
   bool reflects_within(const std::array<Vec3, 3>& corners) const {
     const auto turns_left = [&](size_t side) {
       const Vec3& from = corners[side];
-      return normal_.dot((corners[(side + 1) % 3] - from).cross(foot_ - from)) >= 0.0;
+      return normal_.dot((corners[(side + 1) % 3] - from).cross(reflection_ - from)) >= 0.0;
     };
     return turns_left(0) == turns_left(1) && turns_left(1) == turns_left(2);
   }
 
   // Returns the sum of the sizes of the waves of a straight side of the rim, 1/m.
-  double of_side(const Vec3& from, const Vec3& to) const {
-    const double length = (to - from).norm();
-    const Line line = line_through(from, (to - from) / length);
-    const double inside = 0.0 < line.next && line.next < length ? at_nearest(line) : 0.0;
+  double of_side(const Vec3& begin, const Vec3& end) const {
+    const double length = (end - begin).norm();
+    const Line line = line_through(begin, (end - begin) / length);
+    const double inside = 0.0 < line.stationary && line.stationary < length ? at_stationary(line) : 0.0;
     return inside + at_end(line, 0.0) + at_end(line, length);
   }
 
-  // Returns the most that an upright line of sight past a point of the plane has on it, 1/m. `corners`: of the plane.
+  // Returns the most that upright lines of sight past a point of the plane have on it, 1/m. `corners`: of the plane.
   double of_upright(const Vec3& point, const std::vector<Vec3>& corners) const {
-    const Vec3 across = normal_.cross(point.cross(Vec3::UnitZ()));
-    if (across.norm() <= kNoDirection * point.norm()) return 0.0;
+    return std::max(of_upright(antennas_.from, point, corners), of_upright(antennas_.to, point, corners));
+  }
+
+ private:
+  // Where a line lies to an antenna: the place along it next to the antenna, and the distance of the antenna from it, m.
+  struct Side {
+    double next, distance;
+  };
+  struct Line {
+    Vec3 begin, along;  // m; unit
+    Side from, to;
+    double stationary;  // m: where along it the length of the way is the least
+  };
+  struct Slopes {
+    double first, second;  // rad/m, rad/m^2: of the phase along a line
+  };
+
+  Line line_through(const Vec3& begin, const Vec3& along) const {
+    const auto seen_from = [&](const Vec3& antenna) -> Side {
+      const double next = (antenna - begin).dot(along);
+      return {next, (begin + next * along - antenna).norm()};
+    };
+    const Side from = seen_from(antennas_.from), to = seen_from(antennas_.to);
+    return {begin, along, from, to, (from.next * to.distance + to.next * from.distance) / (from.distance + to.distance)};
+  }
+
+  Slopes slopes(const Line& line, double at) const {
+    Slopes sum{0.0, 0.0};
+    for (const Side& side : {line.from, line.to}) {
+      const double ahead = at - side.next, distance = std::hypot(ahead, side.distance);
+      sum.first += wavenumber_ * ahead / distance;
+      sum.second += wavenumber_ * side.distance * side.distance / (distance * distance * distance);
+    }
+    return sum;
+  }
+
+  double at_end(const Line& line, double at) const {
+    const Slopes phase = slopes(line, at);
+    const double of_part = kMostOfEnd * std::sqrt(0.25 * kTwoPi / phase.second);
+    return strength(line, at) * std::min(1.0 / std::abs(phase.first), of_part);
+  }
+
+  double at_stationary(const Line& line) const {
+    return strength(line, line.stationary) * std::sqrt(kTwoPi / slopes(line, line.stationary).second);
+  }
+
+  // Returns what a metre of a line counts, 1/m^2: with the gradient g of the way along the plane, the part of g across the
+  // line, over g^2, times the amplitude of the integral over the plane.
+  double strength(const Line& line, double at) const {
+    const Vec3 point = line.begin + at * line.along, in = point - antennas_.from, out = point - antennas_.to;
+    const double length_in = in.norm(), length_out = out.norm();
+    const Vec3 directions = in / length_in + out / length_out, gradient = directions - directions.dot(normal_) * normal_;
+    const double across = std::abs(gradient.dot(line.along.cross(normal_)));
+    const double cosine = std::max(std::abs(in.dot(normal_)) / length_in, std::abs(out.dot(normal_)) / length_out);
+    return cosine * across / (kTwoPi * length_in * length_out * gradient.squaredNorm());
+  }
+
+  double of_upright(const Vec3& eye, const Vec3& point, const std::vector<Vec3>& corners) const {
+    const Vec3 sight = point - eye, across = normal_.cross(sight.cross(Vec3::UnitZ()));
+    if (across.norm() <= kNoDirection * sight.norm()) return 0.0;
     const Line line = line_through(point, across.normalized());
     double begin = 0.0, end = 0.0;
     for (const Vec3& corner : corners) {
@@ -52,169 +110,98 @@ class RimOfPlane {
       begin = std::min(begin, at);
       end = std::max(end, at);
     }
-    return begin < line.next && line.next < end ? at_nearest(line) : at_end(line, line.next < begin ? begin : end);
+    const bool is_inside = begin < line.stationary && line.stationary < end;
+    return is_inside ? at_stationary(line) : at_end(line, line.stationary < begin ? begin : end);
   }
 
- private:
-  struct Line {
-    Vec3 from, along;      // m; unit
-    double next, nearest;  // m: where along it the point next to the antennas lies, and how far from them
-    double off;            // m, of the point of reflection
-  };
-
-  Line line_through(const Vec3& from, const Vec3& along) const {
-    const double next = -from.dot(along);
-    return {from, along, next, (from + next * along).norm(), std::abs(along.cross(normal_).dot(from - foot_))};
-  }
-
-  double at_end(const Line& line, double at) const {
-    const Vec3 end = line.from + at * line.along;
-    const double distance = end.norm();
-    const double turn = 2.0 * wavenumber_ * std::abs(at - line.next) / distance;  // rad/m, of the phase along the line
-    const double bend = 2.0 * wavenumber_ * line.nearest * line.nearest / (distance * distance * distance);  // rad/m^2
-    return strength(end, line.off) * std::min(1.0 / turn, kMostOfEnd * std::sqrt(0.5 * kPi / bend));
-  }
-
-  double at_nearest(const Line& line) const {
-    return strength(line.from + line.next * line.along, line.off) * std::sqrt(kPi * line.nearest / wavenumber_);
-  }
-
-  // Returns what a metre of a line counts that passes the point of reflection in the plane at `off` m, 1/m^2.
-  double strength(const Vec3& at, double off) const {
-    return foot_.norm() * off / (2.0 * kTwoPi * at.squaredNorm() * (at - foot_).squaredNorm());
-  }
-
-  Vec3 normal_, foot_;  // the point of the plane next to the origin: where it would reflect the wave
+  Vec3 normal_;
+  AntennaPair antennas_;
+  Vec3 reflection_;  // the point of the plane that would reflect the wave
   double wavenumber_;
 };
 
-// Finds the waves of the planes of a mesh, with the antennas at the origin.
-class PlaneSearch {
- public:
-  PlaneSearch(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, double wavenumber)
-      : vertices_(vertices), triangles_(triangles), neighbours_(edge_neighbours(vertices, triangles)),
-        wavenumber_(wavenumber), patch_of_(triangles.size()) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& vertex : vertices) box.extend(vertex);
-    patches_ = planar_patches(vertices, triangles, flat_tolerance(box.diagonal().norm()));
-    for (size_t patch = 0; patch < patches_.size(); ++patch) {
-      for (const uint32_t triangle : patches_[patch]) patch_of_[triangle] = static_cast<uint32_t>(patch);
-    }
-  }
-
-  // `is_closed`: the mesh has a far side.
-  PlaneWaves run(bool is_closed) const {
-    PlaneWaves found;
-    found.plane_of.assign(triangles_.size(), PlaneWaves::kFarSide);
-    const double outside = volume() < 0.0 ? -1.0 : 1.0;  // by the winding
-    for (const std::vector<uint32_t>& patch : patches_) {
-      const Plane plane = plane_of(patch.front());
-      if (is_closed && outside * plane.height(Vec3::Zero()) <= 0.0) continue;
-      for (const uint32_t triangle : patch) found.plane_of[triangle] = static_cast<uint32_t>(found.planes.size());
-      found.planes.push_back(waves_of(patch, plane));
-    }
-    return found;
-  }
-
- private:
-  RimWaves waves_of(const std::vector<uint32_t>& patch, const Plane& plane) const {
-    const RimOfPlane rim(plane, wavenumber_);
-    RimWaves sum;
-    bool reflects = false;
-    std::vector<Vec3> rim_corners;
-    for (const uint32_t triangle : patch) {
-      const std::array<Vec3, 3> at = corners(triangle);
-      sum.solid_angle += std::abs(solid_angle(at, Vec3::Zero()));
-      reflects = reflects || rim.reflects_within(at);
-      for (size_t side = 0; side < 3; ++side) {
-        if (!is_rim(triangle, side)) continue;
-        const double wave = rim.of_side(at[side], at[(side + 1) % 3]);
-        sum.own += wave;
-        sum.of_shadow = std::max(sum.of_shadow, wave);
-        rim_corners.push_back(at[side]);
-      }
-    }
-    for (const Vec3& corner : rim_corners) sum.of_shadow = std::max(sum.of_shadow, rim.of_upright(corner, rim_corners));
-    if (reflects || std::isnan(sum.own)) sum.own = std::numeric_limits<double>::infinity();
-    return sum;
-  }
-
-  double volume() const {  // m^3, negative where the triangles wind the other way
-    double sum = 0.0;
-    for (uint32_t triangle = 0; triangle < triangles_.size(); ++triangle) {
-      const auto [a, b, c] = corners(triangle);
-      sum += a.dot(b.cross(c)) / 6.0;
-    }
-    return sum;
-  }
-
-  Plane plane_of(uint32_t triangle) const {
-    const auto [a, b, c] = corners(triangle);
-    return {a, (b - a).cross(c - a).normalized()};
-  }
-
-  std::array<Vec3, 3> corners(uint32_t triangle) const {
-    const Triangle& of = triangles_[triangle];
-    return {vertices_[of[0]], vertices_[of[1]], vertices_[of[2]]};
-  }
-
-  bool is_rim(uint32_t triangle, size_t side) const {
-    const uint32_t other = neighbours_[triangle][side];
-    return other == kNoTriangle || patch_of_[other] != patch_of_[triangle];
-  }
-
-  const std::vector<Vec3>& vertices_;
-  const std::vector<Triangle>& triangles_;
-  const std::vector<std::array<uint32_t, 3>> neighbours_;
-  const double wavenumber_;
-  std::vector<std::vector<uint32_t>> patches_;
-  std::vector<uint32_t> patch_of_;  // [F]
-};
+// Returns the volume that triangles enclose, m^3, negative where they wind the other way.
+double volume_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  double sum = 0.0;
+  for (const Triangle& of : triangles) sum += vertices[of[0]].dot(vertices[of[1]].cross(vertices[of[2]])) / 6.0;
+  return sum;
+}
 
 }  // namespace
 
-double PlaneWaves::at_most(const std::vector<int64_t>& num_rays, double density) const {
-  if (plane_of.empty()) return std::numeric_limits<double>::infinity();
-  std::vector<double> seen(planes.size());
-  for (size_t triangle = 0; triangle < plane_of.size(); ++triangle) {
-    if (plane_of[triangle] != kFarSide) seen[plane_of[triangle]] += static_cast<double>(num_rays[triangle]);
-  }
+double rims_at_most(std::span<const RimWaves> planes, std::span<const double> seen) {
   double sum = 0.0;
   for (size_t i = 0; i < planes.size(); ++i) {
-    const bool is_hidden = seen[i] < kSeenWhole * planes[i].solid_angle * density;
+    const bool is_hidden = (i < seen.size() ? seen[i] : 0.0) < kSeenWhole * planes[i].solid_angle;
     sum += planes[i].own + (is_hidden ? kShadowLines * planes[i].of_shadow : 0.0);
   }
   return sum;
 }
 
-PlaneRims::PlaneRims(const Scene& scene, const Radar& radar, double time)
-    : scene_(scene), wavenumber_(kTwoPi * radar.waveform.start_frequency / kSpeedOfLight), time_(time),
-      found_(scene.meshes().size()) {
-  const Transform world_from_radar = radar.world_from_radar(time);
-  const Vec3 from = world_from_radar * radar.transmitters.front().position;
-  const Vec3 to = world_from_radar * radar.receivers.front().position;
-  middle_ = 0.5 * (from + to);
-  apart_ = (to - from).norm();
-}
-
-const PlaneWaves& PlaneRims::of(uint32_t mesh_id) {
-  std::optional<PlaneWaves>& found = found_[mesh_id];
-  return found ? *found : found.emplace(this->found(mesh_id));
-}
-
-PlaneWaves PlaneRims::found(uint32_t mesh_id) {
-  const Node& node = scene_.node_of(mesh_id);
-  const bool is_curved = node.smooth && !node.mesh->is_flat();
-  if (is_curved || node.mesh->triangles().size() > kMostTriangles) return {};
-  if (!pose_) pose_.emplace(scene_, time_);
-  std::vector<Vec3> vertices = pose_->world_vertices(mesh_id);
-  double nearest = std::numeric_limits<double>::infinity();
-  for (Vec3& vertex : vertices) {
-    vertex -= middle_;
-    nearest = std::min(nearest, vertex.norm());
+FacetedBody::FacetedBody(std::vector<Vec3> vertices, const std::vector<Triangle>& triangles, bool is_closed)
+    : vertices_(std::move(vertices)), triangles_(triangles), neighbours_(edge_neighbours(vertices_, triangles)),
+      patch_of_(triangles.size()) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : vertices_) box.extend(vertex);
+  patches_ = planar_patches(vertices_, triangles, flat_tolerance(box.diagonal().norm()));
+  for (size_t patch = 0; patch < patches_.size(); ++patch) {
+    for (const uint32_t triangle : patches_[patch]) patch_of_[triangle] = static_cast<uint32_t>(patch);
   }
-  if (apart_ > kMostApart * nearest) return {};
-  return PlaneSearch(vertices, node.mesh->triangles(), wavenumber_).run(node.mesh->is_closed());
+  if (is_closed) outside_ = volume_of(vertices_, triangles) < 0.0 ? -1.0 : 1.0;
+}
+
+std::vector<RimWaves> FacetedBody::waves(const AntennaPair& antennas, double wavenumber) const {
+  std::vector<RimWaves> found;
+  for (uint32_t index = 0; index < patches_.size(); ++index) {
+    const Plane at = plane(index);
+    const double from = at.height(antennas.from), to = at.height(antennas.to);
+    const bool is_met = from * to > 0.0 && outside_ * from >= 0.0;
+    found.push_back(is_met ? waves_of(patches_[index], at, antennas, wavenumber) : RimWaves{});
+  }
+  return found;
+}
+
+Plane FacetedBody::plane(uint32_t index) const {
+  const auto [a, b, c] = corners(patches_[index].front());
+  return {a, (b - a).cross(c - a).normalized()};
+}
+
+Vec3 FacetedBody::point_at(uint32_t triangle, double u, double v) const {
+  const auto [a, b, c] = corners(triangle);
+  return a + u * (b - a) + v * (c - a);
+}
+
+RimWaves FacetedBody::waves_of(const std::vector<uint32_t>& patch, const Plane& plane, const AntennaPair& antennas,
+                               double wavenumber) const {
+  const RimOfPlane rim(plane, antennas, wavenumber);
+  RimWaves sum;
+  bool reflects = false;
+  std::vector<Vec3> rim_corners;
+  for (const uint32_t triangle : patch) {
+    const std::array<Vec3, 3> at = corners(triangle);
+    sum.solid_angle += std::abs(solid_angle(at, antennas.from));
+    reflects = reflects || rim.reflects_within(at);
+    for (size_t side = 0; side < 3; ++side) {
+      if (!is_rim(triangle, side)) continue;
+      const double wave = rim.of_side(at[side], at[(side + 1) % 3]);
+      sum.own += wave;
+      sum.of_shadow = std::max(sum.of_shadow, wave);
+      rim_corners.push_back(at[side]);
+    }
+  }
+  for (const Vec3& corner : rim_corners) sum.of_shadow = std::max(sum.of_shadow, rim.of_upright(corner, rim_corners));
+  if (reflects || std::isnan(sum.own)) sum.own = std::numeric_limits<double>::infinity();
+  return sum;
+}
+
+std::array<Vec3, 3> FacetedBody::corners(uint32_t triangle) const {
+  const Triangle& of = triangles_[triangle];
+  return {vertices_[of[0]], vertices_[of[1]], vertices_[of[2]]};
+}
+
+bool FacetedBody::is_rim(uint32_t triangle, size_t side) const {
+  const uint32_t other = neighbours_[triangle][side];
+  return other == kNoTriangle || patch_of_[other] != patch_of_[triangle];
 }
 
 }  // namespace echopath

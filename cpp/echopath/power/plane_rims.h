@@ -1,58 +1,60 @@
 #pragma once
-// Bounds what the planes of a mesh send straight back aslant: the waves of their rims.
-#include <limits>
-#include <optional>
+// Bounds what the planes of a mesh send from one antenna to another where none reflects: the waves of their rims.
+#include <array>
+#include <span>
 #include <vector>
 
-#include "echopath/posed/posed_scene.h"
-#include "echopath/radar/radar.h"
-#include "echopath/scene/scene.h"
+#include "echopath/base/plane.h"
+#include "echopath/scene/mesh/adjacency.h"
 
 namespace echopath {
 
-// A plane of which no point reflects the wave sends back, by physical optics, what its rim does: the integral of
-// cos(theta) exp(-2jkR) / (lambda R^2) over it is, to first order in 1/k, one along its rim (divergence theorem), and that
-// one, along straight sides, is a wave from each end and one from the point next to the antennas.
+// Holds where a wave comes from and where it goes, m: antennas, or their images over mirrors.
+struct AntennaPair {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+};
+
+// A plane of which no point reflects the wave sends on, by physical optics, what its rim does: the integral of
+// cos(theta) exp(-jk(R1 + R2)) / (lambda R1 R2) over it is, to first order in 1/k, one along its rim (divergence theorem).
+// That one, along straight sides, is a wave from each end and one from the point over which the way is the shortest.
 struct RimWaves {
   double own = 0.0;  // 1/m, sum of the sizes of these waves; infinite where the plane reflects, or is not known
   // This is the most, 1/m, that the rim of a shadow on the plane is taken to have. What hides a part of it is upright then,
   // or has sides along those of the plane.
   double of_shadow = 0.0;
-  double solid_angle = 0.0;  // sr
+  double solid_angle = 0.0;  // sr, where the wave comes from
 };
 
-// Holds the planes of a mesh, but for those on the far side of a closed body.
-struct PlaneWaves {
-  static constexpr uint32_t kFarSide = 0xFFFFFFFFu;
-  std::vector<RimWaves> planes;
-  std::vector<uint32_t> plane_of;  // [F] index into planes or kFarSide; empty where the waves of the mesh are not known
+// Returns the most that planes send on, 1/m. `seen` is the solid angle, sr, in which rays have met each of the planes; none
+// have met those behind its end. What is hidden of a plane adds rims.
+double rims_at_most(std::span<const RimWaves> planes, std::span<const double> seen);
 
-  // Returns the most that the planes send back, 1/m. `num_rays` [F] of an even `density` (rays per sr), with which all of
-  // the mesh was aimed at, have met each triangle: what is hidden of a plane adds rims.
-  double at_most(const std::vector<int64_t>& num_rays, double density) const;
-};
-
-// Finds the waves of the meshes of a scene when they are asked for. The scene must outlive it.
-class PlaneRims {
+// Holds the planes of a mesh at one time. The triangles must outlive it.
+class FacetedBody {
  public:
-  static constexpr size_t kMostTriangles = 4096;  // of meshes that are looked at
+  // `vertices`: [V], m. `is_closed`: the body has an inside, from which no wave meets it.
+  FacetedBody(std::vector<Vec3> vertices, const std::vector<Triangle>& triangles, bool is_closed);
 
-  // The wave goes from the first transmitter to the first receiver of `radar` at `time` (s).
-  PlaneRims(const Scene& scene, const Radar& radar, double time);
-  // Returns the waves of a mesh of flat facets, as if mirrored in full. They are not known for meshes of too many triangles,
-  // for smooth ones, and where the antennas are far from each other, seen from there.
-  const PlaneWaves& of(uint32_t mesh_id);
+  const std::vector<Vec3>& vertices() const { return vertices_; }
+  size_t num_planes() const { return patches_.size(); }
+  uint32_t plane_at(uint32_t triangle) const { return patch_of_[triangle]; }
+  Plane plane(uint32_t index) const;
+  Vec3 point_at(uint32_t triangle, double u, double v) const;  // m, at barycentric coordinates
+  // Returns the waves of each plane, as if mirrored in full; planes that do not face both antennas have none.
+  std::vector<RimWaves> waves(const AntennaPair& antennas, double wavenumber) const;
 
  private:
-  PlaneWaves found(uint32_t mesh_id);
+  RimWaves waves_of(const std::vector<uint32_t>& patch, const Plane& plane, const AntennaPair& antennas,
+                    double wavenumber) const;
+  std::array<Vec3, 3> corners(uint32_t triangle) const;
+  bool is_rim(uint32_t triangle, size_t side) const;
 
-  const Scene& scene_;
-  const double wavenumber_;  // rad/m
-  const double time_;
-  Vec3 middle_ = Vec3::Zero();  // of the two antennas, m
-  double apart_ = 0.0;          // m
-  std::optional<PosedScene> pose_;
-  std::vector<std::optional<PlaneWaves>> found_;  // by mesh ID
+  std::vector<Vec3> vertices_;
+  const std::vector<Triangle>& triangles_;
+  std::vector<std::array<uint32_t, 3>> neighbours_;
+  std::vector<std::vector<uint32_t>> patches_;
+  std::vector<uint32_t> patch_of_;  // [F]
+  double outside_ = 0.0;            // 1 or -1: the side of closed bodies on which the normals are; 0: there is no inside
 };
 
 }  // namespace echopath

@@ -61,11 +61,14 @@ double between_edges(const CoherentKind& kind, int num_batches, double in_phase)
   return num_batches * edges * std::lerp(of_each, 1.0, in_phase) * std::min(1.0, num_cells / kFewCells);
 }
 
+// Returns the most that the field of a kind can be, sqrt(W).
+double most_of(const CoherentKind& kind) { return std::min(kMostOfImage * kind.image_field, kind.rims_at_most); }
+
 // Returns by how much the field of a kind may grow by what waves of points hold between rays, sqrt(W).
 double missing_of_points(const CoherentKind& kind, int num_batches) {
   const double size = std::abs(kind.field[kAsLaunched]), points = between_points(kind, num_batches);
   const double times_field = kind.has_bounced ? kPointsTimesFieldOfSeveral : kPointsTimesField;
-  const double most = std::min(kMostOfPoints * std::sqrt(points), kMostOfImage * kind.image_field);
+  const double most = std::min(kMostOfPoints * std::sqrt(points), most_of(kind));
   return size > 0.0 ? std::clamp(points / (times_field * size) - size, 0.0, most) : most;
 }
 
@@ -103,17 +106,18 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
     if (lasting == Lasting::kCounted) surface += squared(kOfNearEdge) * kind.beside_edges;
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
-    const double most_of_edges = squared(std::min(kMostOfImage * kind.image_field, kind.rims_at_most));
+    const double most_of_edges = squared(most_of(kind));
     if (size == 0.0) {
       edges += std::min(of_edges * between_edges(kind, evidence.num_batches, 1.0), most_of_edges);
       continue;
     }
     const std::complex<double> change = kind.field[kHalfDensity] - kind.field[kAsLaunched];
     const double halving = std::abs(change) / size;
-    above.add(std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving) * change);
+    const double of_change = std::min(kOfHalving + kOfHalvingMore * halving, kMostOfHalving);
+    above.add(std::min(of_change, most_of(kind) / std::abs(change)) * change);
     below.add(kOfHalving * change);
     const double of_finer = std::abs(kind.field[kFiner] - kind.field[kAsLaunched]);
-    finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
+    finer += squared(std::min(kOfFiner * std::max(0.0, of_finer - kAliases * size), std::max(size, most_of(kind))));
     const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
     const double most = of_edges * between_edges(kind, evidence.num_batches, in_phase);
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;

@@ -23,12 +23,11 @@ struct CoherentKind {
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
   double image_field = INFINITY;              // sqrt(W), what an endless mirror would send back over the shortest path
-  double rims_at_most = INFINITY;             // sqrt(W), of the rims of flat facets (plane_rims.h)
+  double rims_at_most = INFINITY;             // sqrt(W), of the rims of flat facets (mesh_views.h)
   double facet_phase = 0.0;                   // rad, by which the facets stray from a smooth surface (facet_phase.h)
   double beside_edges = 0.0;                  // W, sum of |a|^2 of images beside the edge of a plane (kBesideEdge)
   bool has_cells = false;                     // else its paths are images
   bool has_bounced = false;                   // off other surfaces before, flagged mirrors aside
-  bool is_straight = true;                    // all its paths are single bounces of rays
 };
 
 // Holds what the record tells of the power of a set of paths, with all rays.
@@ -94,8 +93,9 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //      change little by chance: q is at least e / (kKnownAbove |F|^2) - 1, up to 1. Where F is 0, q and w are 1 and s q is
 //      0.
 //  A surface sends back no more than an endless mirror over the same way: (3) and (5) each add at most kMostOfImage times
-//  the field of that mirror, twice it because curved surfaces may gather. (5) adds no more than rims_at_most, which is known
-//  where the wave comes straight to flat facets of which none is a mirror to the antennas.
+//  the field of that mirror, twice it because curved surfaces may gather. They add no more than rims_at_most, too, nor does
+//  (1); (2) adds at most the larger one of both and |F|. rims_at_most is known where the wave meets mirrors at most before
+//  and behind flat facets of which none reflects it to the receiver.
 //  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
 //      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
 //      rays closer than facets see another field than rays farther apart. Images are exact, but for those beside the edge of

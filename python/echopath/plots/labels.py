@@ -55,15 +55,24 @@ def plot_ghosts(labels: Labels, *, title: str = "Objects and their ghosts") -> F
     """Cells of objects and of their ghosts in the map, and the extent of each ghost with its class and its mirrors.
 
     labels: Labels; title: above the map. Returns a matplotlib figure; left as `plot_labels`, right a row for each object and
-    each of the strongest ghosts: range in m, radial velocity in m/s or azimuth in degrees, power in dBm.
-    Raises TypeError naming labels.
+    each of the strongest ghosts: range in m, radial velocity in m/s or azimuth in degrees, power in dBm. Where none of them has
+    a cell there is the map alone, which says so. Raises TypeError naming labels.
     """
     _require_labels(labels)
     rows = [label for label in labels.objects if label.peak is not None] + _strongest_ghosts(labels)
+    if not rows:
+        return _map_without_cells(labels, title)
     with new_figure(14.5, max(4.8, 1.6 + 0.27 * len(rows))) as figure:
         left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.35))
         _draw_map(left, labels, _class_areas(labels), title)
         _draw_extents(right.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.0)), labels, rows)
+    return figure
+
+
+def _map_without_cells(labels, title: str) -> Figure:
+    """The map of `plot_ghosts` of labels that give no cell to an object or a ghost."""
+    with new_figure(9.0, 4.8) as figure:
+        _draw_map(figure, labels, [], f"{title}: none has a cell of its own")
     return figure
 
 
@@ -250,7 +259,7 @@ def _draw_extents(panels, labels, rows: list) -> None:
     num_hidden = max(0, sum(ghost.peak is not None for ghost in labels.ghosts) - MAX_GHOSTS)
     words = "Where each echo appears: from its first to its last cell, line at its strongest, whose level is told"
     hidden = f"\n{num_hidden} weaker ghosts are not shown" if num_hidden else ""
-    across.figure.suptitle(words + hidden if rows else "No cells of objects or ghosts", fontsize=10)
+    across.figure.suptitle(words + hidden, fontsize=10)
     for axes in panels:
         axes.grid(axis="x", alpha=0.25)
         axes.use_sticky_edges = False

@@ -75,6 +75,16 @@ def test_pictures_colour_exactly_the_cells_and_tell_what_is_hidden(labels):
     assert _num_cells(axes) == (labels.object_map >= 0).sum() + (labels.ghost_map >= 0).sum()
 
 
+def test_a_picture_without_cells_of_objects_is_the_map_alone(labels):
+    none = np.full(labels.shape, -1, np.int16)
+    unseen = [dataclasses.replace(one, status="hidden in noise", cells=0, peak=None, box=None) for one in labels.objects]
+    bare = dataclasses.replace(labels, object_map=none, ghost_map=none, objects=unseen, ghosts=[])
+    figure = plot_ghosts(bare)
+    assert all(axes.has_data() for axes in figure.axes) and len(figure.axes) == 2  # the map and its colour bar
+    assert "none has a cell" in figure.get_suptitle()
+    assert len(plot_ghosts(labels).axes) == 4
+
+
 def _num_cells(axes) -> int:
     from matplotlib.collections import PolyCollection
 

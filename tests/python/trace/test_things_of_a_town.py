@@ -136,3 +136,22 @@ def test_more_things_than_rays_can_serve_are_left_to_the_field_of_view():
     assert set(_strata(paths)) == {*nearest, "field of view"} and paths.frame.statistics.num_unaimed == 144
     few = ep.trace(scene, targets.radar(), max_bounces=1, num_rays=600)
     assert set(_strata(few)) == {"field of view"}
+
+
+def test_more_images_than_rays_can_serve_are_told():
+    """Each of 200 poles between two walls that are mirrors has an image over each; 256 of these have rays of their own."""
+    scene = ep.Scene()
+    for name, side, yaw in (("left", 10.0, 0.0), ("right", -10.0, np.pi)):
+        scene.add(shapes.wall(2000.0, 200.0), name=name, material=ep.Material.metal(mirror=True), position=(0.0, side, -100.0),
+                  yaw=yaw)
+    town = scene.add(None, name="town")
+    scene.add(shapes.ground((200.0, 19.0), z=-1.0), name="ground", material=ROUGH, parent=town)
+    for index in range(200):
+        scene.add(shapes.box((0.05, 0.05, 0.2)), name=f"pole_{index}", material=ROUGH, parent=town,
+                  position=(20.0 + 0.3 * index, 5.0 * np.sin(index), 0.0))
+    with pytest.warns(RuntimeWarning, match="at least 100 objects and images have no rays of their own"):
+        paths = ep.trace(scene, targets.radar(), max_bounces=2, num_rays=RAYS)
+    images = [stratum for stratum in paths.frame.strata if stratum.num_mirrors == 1]
+    assert len(images) == 256 and paths.frame.statistics.num_unaimed == 2 * 200 - 256
+    reason, = (effect.reason for effect in paths.effects if effect.name == "rays aimed at objects")
+    assert "144 objects and images have no rays of their own" in reason

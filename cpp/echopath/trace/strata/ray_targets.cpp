@@ -295,10 +295,14 @@ class TargetSearch {
       std::ranges::stable_sort(things, std::greater(), &Thing::echo);
     }
     const size_t kept = std::min(things.size(), kMostThings);
-    out_.num_left_out += std::ssize(things) - static_cast<int64_t>(kept);
-    if (kept < things.size()) out_.any_unaimed = true;
+    leave_out(things.size() - kept);
     things.erase(things.begin() + static_cast<int64_t>(kept), things.end());
     aim_at(things);
+  }
+
+  void leave_out(size_t count) {
+    out_.num_left_out += static_cast<int64_t>(count);
+    out_.any_unaimed = out_.any_unaimed || count > 0;
   }
 
   // Together the things have the weight of one object, and their images no more than that.
@@ -311,7 +315,9 @@ class TargetSearch {
       append(finder_.at_images(thing.target), images);
     }
     std::ranges::stable_sort(images, has_fewer_mirrors);
-    if (images.size() > kMostThings) images.resize(kMostThings);
+    const size_t num_kept = std::min(images.size(), kMostThings);
+    leave_out(images.size() - num_kept);
+    images.resize(num_kept);
     for (RayTarget& image : images) image.weight *= std::min(share, 1.0 / static_cast<double>(images.size()));
     append(std::move(images), images_);
   }

@@ -13,7 +13,8 @@ namespace echopath {
 // A target is an object (scene_objects.h). Where no stratum holds it, because it surrounds the transmitter as a town does,
 // or where it is a group of things that stand apart, the things that it consists of are targets: the largest of its parts,
 // and of theirs in turn, that a stratum holds. Of more than 256, these are the ones in sight that have the strongest echoes
-// by their size and distance, and rays of the field of view meet the others.
+// by their size and distance, and of more than 256 images of them those over the fewest mirrors; rays of the field of view
+// meet the others.
 struct RayTarget {
   Stratum stratum;  // holds the target; without rays
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh
@@ -40,8 +41,9 @@ struct RayTargets {
   std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
   int num_objects = 0;              // with the parts of those that surround the transmitter
   bool any_unaimed = false;         // some object has no stratum
-  int64_t num_left_out =
-      0;  // beyond the strata that a record can tell apart; all objects where these are too many to aim at
+  // Counts the things and images of one object beyond those that have rays of their own, and what is beyond the strata that
+  // a record can tell apart; all objects where these are too many to aim at.
+  int64_t num_left_out = 0;
 };
 
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

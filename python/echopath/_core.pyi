@@ -672,13 +672,13 @@ class Node:
     """
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, name: str, parent: int = -1, placement: ArrayLike | None = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False, visible: bool = True) -> None:
+    def __init__(self, *, name: str, parent: int = -1, placement: ArrayLike | None = None, motion: Motion | None = None, mesh: Mesh | None = None, deformation: Deformation | None = None, material: Material | None = None, material_name: str = '', smooth: bool = False, visible: bool = True, lifetime: typing.Sequence[float] | None = None) -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def replace(self, *, name: str = ..., parent: int = ..., placement: ArrayLike | None = ..., motion: Motion | None = ..., mesh: Mesh | None = ..., deformation: Deformation | None = ..., material: Material | None = ..., material_name: str = ..., smooth: bool = ..., visible: bool = ...) -> Node:
+    def replace(self, *, name: str = ..., parent: int = ..., placement: ArrayLike | None = ..., motion: Motion | None = ..., mesh: Mesh | None = ..., deformation: Deformation | None = ..., material: Material | None = ..., material_name: str = ..., smooth: bool = ..., visible: bool = ..., lifetime: typing.Sequence[float] | None = ...) -> Node:
         """
         A copy with other values of some arguments.
 
@@ -689,6 +689,11 @@ class Node:
     def deformation(self) -> Deformation:
         """
         a VertexSequence, a Skin or None
+        """
+    @property
+    def lifetime(self) -> typing.Any:
+        """
+        (begin, end) in s: it is part of the frames that this covers wholly; None: of all
         """
     @property
     def material(self) -> Material:
@@ -822,6 +827,8 @@ class Scene:
         ...
     def _change(self, index: int, node: Node) -> None:
         ...
+    def _hide_absent(self, begin: float, end: float) -> None:
+        ...
     def _index_of(self, name: typing.Any) -> int:
         """
         Raises KeyError naming the nearest names.
@@ -855,12 +862,15 @@ class Scene:
         """
     def require_times(self, begin: float, end: float) -> None:
         """
-        Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).
+        Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s) within its lifetime.
         """
     def world_vertices(self, mesh_id: int, time: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
         """
         Vertices [V, 3] in m of a mesh at `time` in s, in world coordinates. Raises IndexError, ValueError.
         """
+    @property
+    def _has_lifetimes(self) -> bool:
+        ...
     @property
     def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
         """

@@ -29,6 +29,8 @@ void check_content(const Node& node) {
   require(!node.mesh || node.material, "material", "must be given with a mesh in node", node.name);
   require(node.mesh || !node.material, "material", "must not be given without a mesh in node", node.name);
   if (node.material) node.material->validate();
+  require(node.lifetime.begin <= node.lifetime.end, "lifetime", "must be a begin and an end in s, ascending, in node",
+          node.name);
   require(!node.motion || node.motion->is_rigid(), "motion", "must keep lengths: scales move joints of a Skin alone; node",
           node.name);
   if (!node.deformation) return;
@@ -46,11 +48,18 @@ bool scales_unevenly(const Mat3& linear) {
   return (gram - mean * Mat3::Identity()).cwiseAbs().maxCoeff() > kRounding * mean;
 }
 
+bool covers(const TimeSpan& span, double begin, double end, double slack = 0.0) {
+  return begin >= span.begin - slack && end <= span.end + slack;
+}
+
+// Returns the rounding of the ends of a frame, which are sums of intervals, in s.
+double rounding_of(double begin, double end) { return 1e-12 * std::max({1.0, std::abs(begin), std::abs(end)}); }
+
 void require_span(const TimeSpan& span, double begin, double end, const std::string& name) {
-  if (begin >= span.begin && end <= span.end) return;
-  // Ends are sums of intervals, so their rounding is forgiven as the motions do.
+  if (covers(span, begin, end)) return;
+  // The rounding of the ends is forgiven as the motions do.
   const double slack = 1e-12 * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
-  if (begin >= span.begin - slack && end <= span.end + slack) return;
+  if (covers(span, begin, end, slack)) return;
   const std::string rule = streamed("must cover the frame, ", begin, " to ", end,
                                     " s (that of an actor is as long as its duration=); node ", name);
   require(false, "motion", rule, streamed(span.begin, " to ", span.end, " s"));
@@ -100,6 +109,11 @@ void Scene::remove(int index) {
   number_all();
 }
 
+void Scene::hide_absent(double begin, double end) {
+  for (Node& node : nodes_) node.visible = node.visible && covers(node.lifetime, begin, end, rounding_of(begin, end));
+  number_all();
+}
+
 void Scene::keep_meshes(const std::vector<bool>& kept) {
   std::vector<bool> keeps(nodes_.size());
   for (size_t id = 0; id < meshes_.size(); ++id) keeps[meshes_[id].node] = kept[id];
@@ -120,8 +134,9 @@ void Scene::require_node(int index) const {
 void Scene::number_node(int index) {
   const Node& node = at(index);
   takes_part_.push_back(node.visible && (node.parent < 0 || takes_part(node.parent)));
-  if (!node.mesh || !takes_part(index)) return;
-  SceneMesh mesh{index, index};
+  if (!node.mesh) return;
+  SceneMesh mesh{index, index, num_all_meshes_++};
+  if (!takes_part(index)) return;
   for (int above = node.parent; above >= 0; above = at(above).parent) mesh.object = above;
   meshes_.push_back(mesh);
 }
@@ -129,7 +144,22 @@ void Scene::number_node(int index) {
 void Scene::number_all() {
   takes_part_.clear();
   meshes_.clear();
+  num_all_meshes_ = 0;
   for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) number_node(index);
+}
+
+TimeSpan Scene::lifetime(int index) const {
+  TimeSpan common;
+  for (int i = index; i >= 0; i = at(i).parent) {
+    common.begin = std::max(common.begin, at(i).lifetime.begin);
+    common.end = std::min(common.end, at(i).lifetime.end);
+  }
+  return common;
+}
+
+bool Scene::has_lifetimes() const {
+  const TimeSpan always;
+  return !std::ranges::all_of(nodes_, [&](const Node& node) { return covers(node.lifetime, always.begin, always.end); });
 }
 
 int64_t Scene::num_triangles() const {
@@ -199,9 +229,12 @@ std::vector<double> Scene::breakpoints(const TimeSpan& during) const {
 void Scene::require_times(double begin, double end) const {
   for (int index = 0; index < static_cast<int>(nodes_.size()); ++index) {
     const Node& node = at(index);
-    if (!takes_part(index)) continue;
-    if (node.motion) require_span(node.motion->span(), begin, end, node.name);
-    if (node.deformation) require_span(node.deformation->span(), begin, end, node.name);
+    if (!takes_part(index) || (!node.motion && !node.deformation)) continue;
+    const TimeSpan there = lifetime(index);
+    const double from = std::max(begin, there.begin), until = std::min(end, there.end);
+    if (from > until) continue;
+    if (node.motion) require_span(node.motion->span(), from, until, node.name);
+    if (node.deformation) require_span(node.deformation->span(), from, until, node.name);
   }
 }
 

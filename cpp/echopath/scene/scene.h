@@ -26,12 +26,16 @@ struct Node {
   std::string material_name;                       // as the user gave it, may be empty
   bool smooth = false;                             // the mesh stands for a curved surface (scene/smooth/smooth.h)
   bool visible = true;                             // false: neither it nor what is below it takes part in anything
+  TimeSpan lifetime;                               // when it is there, with what is below it (Scene::hide_absent)
 };
 
 // Tells where a mesh ID stands in the tree.
 struct SceneMesh {
   int node = 0;    // index into Scene::nodes()
   int object = 0;  // index of the child of the root above it (or itself)
+  // Counts the meshes before it, also those that do not take part: random numbers of its surface go by it, so that they stay
+  // the same when another mesh is hidden.
+  uint32_t number = 0;
 };
 
 // The full name of a node tells for good which one is meant. Indices of nodes and mesh IDs count without gaps what is there
@@ -48,6 +52,8 @@ class Scene {
   void change(int index, Node node);
   // Removes a node with all that is below it. The nodes behind them move up.
   void remove(int index);
+  // Hides the nodes that are not there during all of a frame, from `begin` to `end` (s).
+  void hide_absent(double begin, double end);
   // Takes the meshes away from all nodes but those of `kept` [mesh ID]. The nodes stay, with their motions.
   void keep_meshes(const std::vector<bool>& kept);
 
@@ -55,6 +61,9 @@ class Scene {
   // Returns whether a node and all above it are visible. What does not take part has no mesh ID, and its motions are not
   // asked for anything.
   bool takes_part(int index) const { return takes_part_[index]; }
+  // Returns when a node and all above it are there. It is empty, with its end before its begin, where they never are.
+  TimeSpan lifetime(int index) const;
+  bool has_lifetimes() const;                                       // whether some node is not always there
   const std::vector<SceneMesh>& meshes() const { return meshes_; }  // that take part, by mesh ID
   const Node& node_of(uint32_t mesh_id) const { return nodes_[meshes_[mesh_id].node]; }
   int64_t num_triangles() const;                // of the meshes that take part
@@ -73,7 +82,8 @@ class Scene {
   bool may_stretch(uint32_t mesh_id) const;
   // Returns those of all motions that take part, ascending (Motion::breakpoints).
   std::vector<double> breakpoints(const TimeSpan& during = {}) const;
-  // Raises invalid_argument naming the node when a motion that takes part is not defined on all of [begin, end] (s).
+  // Raises invalid_argument naming the node when a motion that takes part is not defined on all of [begin, end] (s) within
+  // the lifetime of its node.
   void require_times(double begin, double end) const;
 
  private:
@@ -85,6 +95,7 @@ class Scene {
   std::vector<Node> nodes_;  // parents before their children
   std::vector<bool> takes_part_;
   std::vector<SceneMesh> meshes_;
+  uint32_t num_all_meshes_ = 0;                 // also those that do not take part
   std::unordered_map<std::string, int> index_;  // full name -> node
 };
 

@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -26,10 +27,17 @@ namespace {
 template <class T>
 using OrNone = Optional<Instance<std::shared_ptr<T>>>;
 
+TimeSpan span_of(const std::vector<double>& ends, const char* argument) {
+  const bool is_span = ends.size() == 2 && ends[0] <= ends[1];
+  require(is_span, argument, "must be (begin, end) in s, ascending", shown(py::cast(ends)));
+  return {std::max(ends[0], TimeSpan{}.begin), std::min(ends[1], TimeSpan{}.end)};
+}
+
 Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<int>::max()>> parent,
           Arg<"placement", Optional<Matrix>> placement, Arg<"motion", OrNone<Motion>> motion, Arg<"mesh", OrNone<Mesh>> mesh,
           Arg<"deformation", OrNone<Deformation>> deformation, Arg<"material", OrNone<Material>> material,
-          Arg<"material_name", Text> material_name, Arg<"smooth", Flag> smooth, Arg<"visible", Flag> visible) {
+          Arg<"material_name", Text> material_name, Arg<"smooth", Flag> smooth, Arg<"visible", Flag> visible,
+          Arg<"lifetime", Optional<List<Number>>> lifetime) {
   Node made;
   made.name = *name;
   made.parent = *parent;
@@ -41,7 +49,17 @@ Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<in
   made.material_name = *material_name;
   made.smooth = *smooth;
   made.visible = *visible;
+  if (*lifetime) made.lifetime = span_of(**lifetime, "lifetime");
   return made;
+}
+
+// Returns (begin, end) in s, infinite where it has none; None: always.
+py::object lifetime_of(const Node& node) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const TimeSpan always, span = node.lifetime;
+  const bool has_begin = span.begin > always.begin, has_end = span.end < always.end;
+  if (!has_begin && !has_end) return py::none();
+  return py::make_tuple(has_begin ? span.begin : -kInfinity, has_end ? span.end : kInfinity);
 }
 
 // What scene.meshes lists.
@@ -156,7 +174,7 @@ void bind_nodes(py::module_& m) {
   define_init(type, &node, py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
               py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
               py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
-              py::arg("visible") = true);
+              py::arg("visible") = true, py::arg("lifetime") = py::none());
   define_replace(type);
   type.def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
@@ -168,6 +186,8 @@ void bind_nodes(py::module_& m) {
       .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
       .def_readonly("smooth", &Node::smooth, "whether the mesh stands for a curved surface")
       .def_readonly("visible", &Node::visible, "False: neither it nor what is below it takes part in anything")
+      .def_property_readonly("lifetime", &lifetime_of,
+                             "(begin, end) in s: it is part of the frames that this covers wholly; None: of all")
       .def(py::pickle(&keywords_by_attribute<Node>,
                       [](const py::dict& fields) { return py::type::of<Node>()(**fields).cast<Node>(); }))
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
@@ -209,6 +229,8 @@ void bind_tree(py::module_& m) {
       .def("_change", &Scene::change, py::arg("index"), py::arg("node"))
       .def("_remove", &Scene::remove, py::arg("index"))
       .def("_takes_part", &Scene::takes_part, py::arg("index"))
+      .def("_hide_absent", &Scene::hide_absent, py::arg("begin"), py::arg("end"))
+      .def_property_readonly("_has_lifetimes", &Scene::has_lifetimes)
       .def("__len__", [](const Scene& self) { return self.nodes().size(); })
       .def(
           "__iter__", [](const Scene& self) { return names_of(self).attr("__iter__")(); }, "Full names, parents first.")
@@ -233,7 +255,7 @@ void bind_tree(py::module_& m) {
   define(tree, "is_moving", &is_mesh_moving, py::arg("mesh_id"),
          "Whether the mesh moves or deforms at some time. Raises IndexError.");
   define(tree, "require_times", &require_scene_times, py::arg("begin"), py::arg("end"),
-         "Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).");
+         "Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s) within its lifetime.");
   define(tree, "world_vertices", &world_vertices_of, py::arg("mesh_id"), py::arg("time") = 0.0,
          "Vertices [V, 3] in m of a mesh at `time` in s, in world coordinates. Raises IndexError, ValueError.");
   m.def("glob_takes", &glob_takes, py::arg("glob"), py::arg("full_name"),

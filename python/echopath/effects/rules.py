@@ -152,7 +152,7 @@ QUANTITIES = {
     "ChirpSequence": ("start_frequency", "num_samples", "num_chirps", "chirp_interval", "slope", "chirp_duration",
                       "window_centre", "centre_frequency", "wavelength", "range_resolution", "max_range", "mean_interval"),
     "Radar": ("waveform", "transmit_power", "frame_duration", "num_slots", "position", "yaw", "pitch"),
-    "Node": ("name", "parent", "placement", "mesh", "material", "material_name", "visible"),
+    "Node": ("name", "parent", "placement", "mesh", "material", "material_name", "visible", "lifetime"),
     "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress"),
     "synthesize": ("paths", "radar", "tolerance", "method", "phase_tolerance", "keyframes", "settings", "progress", "probe"),
 }

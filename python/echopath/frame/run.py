@@ -18,6 +18,7 @@ from ..paths.families import check_objects
 from ..paths.subset import part_of_path
 from ..receiver.chain import transmitted_code
 from ..receiver.channels import require_channels
+from ..scene.lifetimes import scene_in_frame
 from ..signals.beside import cubes_beside
 from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
 from ..signals.part_pass import takes_a_pass
@@ -143,8 +144,9 @@ class FrameRun:
     def _bare_frame(self, paths, whole, cubes: dict, groups: dict, probe, stages: list) -> Frame:
         """A frame without maps and what is made of them."""
         signal = self.signal
-        return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, parts=cubes, selections=self.selections,
-                     part_of_path=groups, noise_seed=signal.noise_seed, spectrum_settings=self.map_settings,
+        return Frame(scene=self._scene_of(paths), radar=self.radar, paths=paths, cube=whole, parts=cubes,
+                     selections=self.selections, part_of_path=groups, noise_seed=signal.noise_seed,
+                     spectrum_settings=self.map_settings,
                      angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
                      effect_choices=self.trace.effects,
@@ -164,7 +166,11 @@ class FrameRun:
             return None
         with clock("interference"):
             timed = self.trace.replace(start_time=paths.frame.start_time)
-            return interference_cube(self.scene, self.radar, timed, self.signal.replay, progress)
+            return interference_cube(self._scene_of(paths), self.radar, timed, self.signal.replay, progress)
+
+    def _scene_of(self, paths):
+        """The scene of the frame of a record."""
+        return scene_in_frame(self.scene, self.radar, paths.frame.start_time)
 
     @property
     def selections(self) -> dict:

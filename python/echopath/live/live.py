@@ -16,6 +16,7 @@ from ..arguments.settings import (
 )
 from ..base.counts import counted
 from ..base.known_attributes import known_attributes
+from ..scene.lifetimes import scene_in_frame
 from ..scene.scene import Scene
 from ..signals.parts import as_partition
 from ..tracing.edges import looks_for_edges
@@ -214,7 +215,8 @@ class Live:
     def _snapshot(self) -> _Seen:
         """What is to be seen now. It is taken before `_busy`, which a change that is being made may wait for."""
         with self._changes.still():
-            return _Seen(Scene(self._scene), self._radar, self._window, self._zero_pad, self.number)
+            scene = scene_in_frame(Scene(self._scene), self._radar, self._trace["start_time"])
+            return _Seen(scene, self._radar, self._window, self._zero_pad, self.number)
 
     def _view_of(self, kept: KeptSignal, seen: _Seen, *, is_preview: bool, progress) -> LiveView:
         if not is_preview:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import flag, real, refused, vector
+from ..arguments.checks import array, flag, real, refused, vector
 from ..base.counts import counted
 from ..base.made_by import made_by
 from ..trajectories.trajectory import Trajectory
@@ -112,7 +112,7 @@ class SceneNode:
     def motion(self) -> _core.Motion | _core.Deformation | None:
         """A LinearMotion, KeyframeMotion, CurveMotion, VertexSequence, MorphTargets or Skin, in the axes of the parent about
         the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as
-        `Scene.add` makes them."""
+        `Scene.add` makes them. To set it sets `lifetime`, too: to that of a Trajectory, or to None."""
         node = self._node
         return node.deformation or node.motion
 
@@ -124,7 +124,7 @@ class SceneNode:
                 rule = f"none that divides its mesh, as a Skin does; remove '{self._name}' and add it anew"
                 raise refused(ValueError, "motion", rule, value)
             motion, deformation = split_motion(value, mesh, self._name)
-            self._change(motion=motion, deformation=deformation)
+            self._change(motion=motion, deformation=deformation, lifetime=lifetime_of(value))
 
     @property
     def material(self) -> _core.Material | None:
@@ -152,6 +152,16 @@ class SceneNode:
     @visible.setter
     def visible(self, value) -> None:
         self._change(visible=flag("visible", value))
+
+    @property
+    def lifetime(self) -> tuple[float, float] | None:
+        """(begin, end) in s, either of which may be infinite: it and what is below it take part in the frames that lie wholly
+        between them, and are not visible in others. None: in all. A Trajectory with outside="absent" brings its own."""
+        return self._node.lifetime
+
+    @lifetime.setter
+    def lifetime(self, value) -> None:
+        self._change(lifetime=None if value is None else _span("lifetime", value))
 
     @property
     def _index(self) -> int:
@@ -185,6 +195,18 @@ class SceneNode:
         hidden = "" if self._scene._takes_part(self._index) else ", not visible"
         meshes = counted(len(self.meshes), "mesh")
         return f"SceneNode('{self._name}', position=({position}) m, yaw={self.yaw:g} rad, {meshes}{hidden})"
+
+
+def _span(argument: str, value) -> tuple[float, float]:
+    begin, end = np.asarray(array("[2]")(argument, value), float).tolist()
+    if not begin < end:
+        raise refused(ValueError, argument, "(begin, end) in s, ascending, or None", value)
+    return begin, end
+
+
+def lifetime_of(motion) -> tuple[float, float] | None:
+    """When what moves so is there, (begin, end) in s; None: always."""
+    return motion.lifetime if isinstance(motion, Trajectory) else None
 
 
 def split_motion(motion, mesh, name: str) -> tuple:

@@ -16,7 +16,7 @@ from ..weather import Weather
 from ..weather.weather import weather_text
 from .interferers import Interferer, interferers_of, interferers_rule
 from .materials import known_material, materials
-from .node import SceneNode, split_motion
+from .node import SceneNode, lifetime_of, split_motion
 from .placements import ORIGIN, motion_ahead, placement
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
@@ -104,8 +104,8 @@ class Scene(_core.Scene):
             becomes a node with a child for each joint that dominates any of its triangles, named after the joint
             (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart. The velocities, translations
             and turns of a motion are in the axes of the parent (of the world, for an object without one) and about the
-            object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. A Trajectory is a motion, too;
-            an actor that was made with one brings it. Only the parts of an
+            object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. A Trajectory is a motion, too,
+            which may bring a lifetime (`SceneNode.lifetime`); an actor that was made with one brings it. Only the parts of an
             object have its axes for their parent's, so a pedestrian of `actors` walks where its yaw points
         speed: m/s, instead of motion: straight ahead, along the object's own +x as yaw or transform turn it; what parts of
             an actor do by themselves, such as walking, adds to it
@@ -227,11 +227,12 @@ class _Batch:
 
     def _add(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> int:
         material, material_name = _material(material, mesh, name)
+        lifetime = lifetime_of(motion)
         motion, deformation = split_motion(motion, mesh, name)
         self.nodes.append(_core.Node(name=name, parent=parent, placement=place, motion=motion, mesh=mesh,
                                      deformation=deformation, material=material, material_name=material_name,
                                      smooth=(self._smooth or smooth) and mesh is not None,
-                                     visible=self._visible or len(self.nodes) > 0))
+                                     visible=self._visible or len(self.nodes) > 0, lifetime=lifetime))
         return self._first + len(self.nodes) - 1
 
 

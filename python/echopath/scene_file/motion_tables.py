@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from ..trajectories.arguments import checked_points, checked_stops, checked_times
+from ..trajectories.arguments import GOES_ON, Outside, checked_points, checked_stops, checked_times
 from ..trajectories.trajectory import ACCELERATION, DECELERATION
-from .table import NotNegative, Number, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
+from .table import Number, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 
 
 class LinearMotionTable(Table):
@@ -29,6 +29,10 @@ MotionTable = Annotated[
     Discriminator(by_kind("kind"))]
 
 
+GoesOn = Annotated[Any, by_check(GOES_ON)]
+OF_FILE = ("id", "goes_on", "outside")  # keys beside a trajectory that is a file
+
+
 class TrajectoryTable(Table):
     points: Annotated[Any, by_check(checked_points)] = Field(description="m, an array of [x, y] or [x, y, z]")
     speed: Any = Field(None, description="m/s, or an array of [m or s, m/s]; with times: m/s, one per time")
@@ -41,7 +45,8 @@ class TrajectoryTable(Table):
     lateral_acceleration: Positive | None = Field(None, description="m/s^2, at most, in curves; none: any")
     speed_over: Literal["distance", "time"] = Field("distance", description="what the first column of speed counts")
     start_time: Number = Field(0.0, description="s, at the first point")
-    goes_on: NotNegative = Field(0.0, description="s, straight on before its begin and after its end")
+    goes_on: GoesOn = Field(0.0, description="s, straight on before its begin and after its end")
+    outside: Outside = Field("stands", description="whether it stands there or is \"absent\" before and after that")
     pitch: bool = Field(False, description="its nose follows the slope of the path")
 
 
@@ -51,10 +56,11 @@ TrajectoryValue = Annotated[
 
 
 def one_motion(table):
-    """Raises where a table has several motions, or an id without a file to look it up in."""
+    """Raises where a table has several motions, or keys of a trajectory of a file without a file."""
     given = [key for key in ("motion", "speed", "trajectory") if getattr(table, key) is not None]
     if len(given) > 1:
         raise broken_rule(given[1], f"must not stand beside {given[0]}", getattr(table, given[1]))
-    if table.id is not None and not isinstance(table.trajectory, str):
-        raise broken_rule("id", "needs a trajectory that is a file", table.id)
+    for key in OF_FILE:
+        if getattr(table, key, None) is not None and not isinstance(table.trajectory, str):
+            raise broken_rule(key, "needs a trajectory that is a file", getattr(table, key))
     return table

@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from ..arguments.checks import positive
-from .motion_tables import MotionTable, TrajectoryValue, one_motion
+from ..trajectories.arguments import Outside
+from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
 from .table import Matrix4, Name, NotNegative, Number, Positive, Table, Vector3, broken_rule, by_check, is_number
 
 
@@ -84,6 +85,8 @@ class ObjectTable(Table):
     speed: Number | None = Field(None, description="m/s straight ahead, along its own +x, instead of motion")
     trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
     id: str | None = Field(None, description="of the object of the file; none: its only one")
+    goes_on: GoesOn | None = Field(None, description="s, straight on before the begin and after the end of that; none: 0")
+    outside: Outside | None = Field(None, description="likewise: it \"stands\" or is absent; none: absent")
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
     smooth: bool | None = Field(None, description="the mesh stands for a curved surface; none: it does not, a model as it says")
     visible: bool = Field(True, description="false: it takes no part in anything until it is shown")

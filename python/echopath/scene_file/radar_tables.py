@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from ..receiver.settings import receiver_rule
 from ..scene.interferers import Over
-from .motion_tables import MotionTable, TrajectoryValue, one_motion
+from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
 from .table import NotNegative, Number, Pitch, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 
 
@@ -85,6 +85,7 @@ class RadarTable(Table):
     speed: Number | None = Field(None, description="m/s, level and ahead as yaw_deg turns it, instead of motion")
     trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
     id: str | None = Field(None, description="of the object of the file; none: its only one")
+    goes_on: GoesOn | None = Field(None, description="s, straight on before the begin and after the end of that; none: 0")
 
     _one_motion = model_validator(mode="after")(one_motion)
 

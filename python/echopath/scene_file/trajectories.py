@@ -20,7 +20,7 @@ class Trajectories:
         self._read = functools.cache(read_trajectories)
 
     def of(self, table: ObjectTable | RadarTable, key: str) -> Trajectory | None:
-        """That of a table with the keys `trajectory` and `id`, None where it has none."""
+        """That of a table with the key `trajectory` and those beside it, None where it has none."""
         given = table.trajectory
         if given is None:
             return None
@@ -31,7 +31,9 @@ class Trajectories:
                 return Trajectory(**values, yaw=None if yaw is None else np.radians(yaw))
             found = self._read(self._folder / given)
         with blamed(f"{key}.id"):
-            return _chosen(found, table.id)
+            chosen = _chosen(found, table.id)
+        ends = {name: getattr(table, name, None) for name in ("goes_on", "outside")}
+        return chosen.replace(**{name: value for name, value in ends.items() if value is not None})
 
 
 def _chosen(found: dict[str, Trajectory], name: str | None) -> Trajectory:

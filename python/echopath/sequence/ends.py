@@ -1,6 +1,7 @@
 """Ways that begin or end while frames in time go on."""
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,6 +12,7 @@ from ..base.callers import warn_user
 
 SLOWEST = 0.1   # m/s, at an end of a way: what is slower has come to rest
 STEP = 1e-3     # s, within which speeds at the ends are told
+ALWAYS = -math.inf, math.inf  # s, the lifetime of what has none
 
 
 def warn_of_ends(scene: _core.Scene, radar: _core.Radar, begin: float, end: float) -> None:
@@ -18,18 +20,20 @@ def warn_of_ends(scene: _core.Scene, radar: _core.Radar, begin: float, end: floa
 
     begin, end: s, of the first and the last frame
     """
-    names = [name for name, motion in _ways(scene, radar) if _breaks_off(motion, begin, end)]
+    names = [name for name, motion, (first, last) in _ways(scene, radar)
+             if _breaks_off(motion, max(begin, first), min(end, last))]
     if names:
         stand = "stands" if len(names) == 1 else "stand"
         warn_user(f"{first_names(names)} {stand} still in some of the frames, for want of a way that lasts from their first to "
-                  "their last: a trajectory with goes_on goes straight on, Traffic.show hides what is not there at the time of a "
-                  "frame")
+                  "their last: a trajectory with goes_on goes straight on, and one with outside='absent' leaves out what is not "
+                  "there")
 
 
-def _ways(scene: _core.Scene, radar: _core.Radar) -> Iterator[tuple[str, _core.Motion]]:
-    """(name, motion) of the radar, and of the nodes that move and that nothing above moves, as far as they take part."""
+def _ways(scene: _core.Scene, radar: _core.Radar) -> Iterator[tuple[str, _core.Motion, tuple[float, float]]]:
+    """(name, motion, lifetime) of the radar, and of the nodes that move and that nothing above moves, as far as they take
+    part."""
     if radar.motion is not None:
-        yield "the radar", radar.motion
+        yield "the radar", radar.motion, ALWAYS
     nodes = scene.nodes
     told: set[int] = set()
     for index in sorted({mesh.node for mesh in scene.meshes}):
@@ -39,7 +43,16 @@ def _ways(scene: _core.Scene, radar: _core.Radar) -> Iterator[tuple[str, _core.M
             index = nodes[index].parent
         if moved >= 0 and moved not in told:
             told.add(moved)
-            yield f"'{nodes[moved].name}'", nodes[moved].motion
+            yield f"'{nodes[moved].name}'", nodes[moved].motion, _lifetime_of(nodes, moved)
+
+
+def _lifetime_of(nodes, index: int) -> tuple[float, float]:
+    """When a node and all above it are there, s."""
+    begin, end = ALWAYS
+    while index >= 0:
+        first, last = nodes[index].lifetime or ALWAYS
+        begin, end, index = max(begin, first), min(end, last), nodes[index].parent
+    return begin, end
 
 
 def _breaks_off(motion: _core.Motion, begin: float, end: float) -> bool:

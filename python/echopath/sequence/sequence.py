@@ -26,6 +26,7 @@ from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
 from ..frame.run import FrameRun, Recorded
+from ..scene.lifetimes import warn_of_absence
 from ..scene.scene import Scene
 from ..signals.interference_of_frame import require_interferers
 from ..signals.parts import Selections
@@ -52,8 +53,10 @@ class Sequence(Row[Frame]):
     A frame is simulated when it is asked for, and kept by nobody. Frame k starts at start_time + k interval; all motions, that
     of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. While the signal of one is
     made in a loop over frames, a thread traces the next, unless ep.set_num_threads(1) was called. A slice is a Sequence of
-    frames of the same bits, `sequence[-1]` the last frame. Objects keep their mesh IDs; what surrounds the antenna in frame 0
-    is no object of labels and truth in any frame (`families` tells the rule). Noise is that of the start time.
+    frames of the same bits, `sequence[-1]` the last frame. Objects that have a lifetime (`SceneNode.lifetime`), as the
+    vehicles of SUMO, take part in the frames that it covers wholly: others are as without them, and their scenes have them as not
+    visible. Names tell objects for good; mesh IDs count what is there. What surrounds the antenna in frame 0 is no object of
+    labels and truth in any frame (`families` tells the rule). Noise is that of the start time.
     scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
     frames: number of frames K, 1 to 1e6; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0
@@ -63,8 +66,9 @@ class Sequence(Row[Frame]):
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
         labels, detections, truth, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
-    Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames. Warns (RuntimeWarning) of
-    trajectories that begin or end within the frames, at some speed. A frame raises and warns as that of `simulate` does.
+    Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames that its object is in. Warns
+    (RuntimeWarning) of trajectories that begin or end within the frames, at some speed, and of scenes of which nothing that has
+    a lifetime is there. A frame raises and warns as that of `simulate` does.
     """
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
@@ -93,6 +97,7 @@ class Sequence(Row[Frame]):
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         warn_of_ends(scene, radar, start_time, end)
+        warn_of_absence(scene, radar, start_time, end)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
 
     @property

@@ -14,6 +14,7 @@ from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sam
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.bodies import warn_of_bodies
+from ..scene.lifetimes import scene_in_frame, warn_of_absence
 from ..weather.weather import attenuation_of
 from .edge_paths import warn_of_edge_paths
 from .edges import looks_for_edges
@@ -41,7 +42,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
           settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
     """Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
-    scene: what is traced; radar: that looks at it
+    scene: what is traced, without objects whose lifetimes do not cover the frame wholly; radar: that looks at it
     num_rays: a budget of rays. They go where the error is: a pilot of an eighth as many beside them, which is thrown away,
         tells how many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get
         more; up to half of those of each lie closer about its points of reflection (strata with focus_of). Unless given, and
@@ -89,10 +90,11 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     Returns Paths. Raises TypeError or ValueError naming the argument, also for smooth mirrors that are not flat and motions
     that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
     edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
-    touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, the radar stands
-    in a closed body that hides the rest, the lengths of an object look like those of another unit, or paths around sharp
-    edges are so many that signals of them take long.
+    touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, or all that has a
+    lifetime is absent, the radar stands in a closed body that hides the rest, the lengths of an object look like those of
+    another unit, or paths around sharp edges are so many that signals of them take long.
     """
+    warn_of_absence(scene, radar, start_time, start_time + radar.frame_duration)
     return traced(scene, radar, settings_among(TraceSettings, locals()), progress=progress)
 
 
@@ -106,6 +108,7 @@ def traced(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, o
     require_frame("radar", radar, start_time)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
+    scene = scene_in_frame(scene, radar, start_time)
     if is_first:
         warn_of_bodies(scene, radar, start_time)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)

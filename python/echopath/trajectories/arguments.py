@@ -1,6 +1,8 @@
 """Rules of the arguments of trajectories and lanes."""
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from ..arguments.checks import array, real, refused
@@ -13,6 +15,8 @@ FASTEST = 1e4           # m/s
 LATEST = 1e7            # s, beyond which a time in double precision is no longer known to nanoseconds
 RATE = real(high=1e6, unit="m/s^2", above=0.0)    # of accelerations
 NEAREST = 1e-3          # m, of points that follow each other
+GOES_ON = real(0.0, 1e5, "s")
+Outside = Literal["stands", "absent"]   # where something is before the begin and after the end of its trajectory
 
 
 def checked_points(argument: str, value) -> np.ndarray:

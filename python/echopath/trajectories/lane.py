@@ -6,8 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments.checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
-from .arguments import LATEST, RATE, checked_path, checked_points
+from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text
+from .arguments import GOES_ON, LATEST, RATE, Outside, checked_path, checked_points
 from .path import Path, turn_of
 from .track import Track
 from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
@@ -116,20 +116,21 @@ class Lane:
 
     @checked(self=anything, speed=anything, offset=real(-WIDEST, WIDEST, "m"), changes=anything, reverse=flag, stops=anything,
              acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
-             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"),
-             pitch=flag, kind=text)
+             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=GOES_ON,
+             outside=one_of(Outside), pitch=flag, kind=text)
     def trajectory(self, *, speed: ArrayLike, offset: float = 0.0, changes: ArrayLike = (), reverse: bool = False,
                    stops: ArrayLike = (), acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
                    lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
-                   start_time: float = 0.0, goes_on: float = 0.0, pitch: bool = False, kind: str = "") -> Trajectory:
+                   start_time: float = 0.0, goes_on: float = 0.0, outside: Outside = "stands", pitch: bool = False,
+                   kind: str = "") -> Trajectory:
         """Drives along the lane, or so far beside it: a Trajectory.
 
         offset: m to the left of the centre line as its points go; `lane.width` is the middle of the next lane on the left
         changes: [N, 3]: distance at which a change of lanes begins, its length along the centre line, and the offset behind it,
             in m; a quintic, which begins and ends without sideways speed and acceleration
         reverse: whether it drives against the points; then distances count from the last one
-        speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time, goes_on, pitch, kind: as of
-            Trajectory; distances of `speed` and `stops` are those that it travels
+        speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time, goes_on, outside, pitch,
+            kind: as of Trajectory; distances of `speed` and `stops` are those that it travels
         Returns a Trajectory. Raises TypeError or ValueError naming the argument.
         """
         arguments = {name: value for name, value in locals().items() if name != "self"}
@@ -140,7 +141,8 @@ class Lane:
             path = OffsetPath(center, Offsets(sign * offset, rows * [1.0, 1.0, sign]))
         profile = profile_along(path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time)
         trajectory = Trajectory.__new__(Trajectory)
-        trajectory._follow(Track(path, profile), goes_on=goes_on, pitch=pitch, kind=kind, made=(self.trajectory, arguments))
+        trajectory._follow(Track(path, profile), goes_on=goes_on, outside=outside, pitch=pitch, kind=kind,
+                           made=(self.trajectory, arguments))
         return trajectory
 
     def __eq__(self, other: object) -> bool:

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments.checks import array, checked, is_writable, real, refused
+from ..arguments.checks import array, checked, is_writable, one_of, real, refused
 from ..arguments.checks import file as file_rule
 from ..base.callers import warn_user
 from ..base.counts import counted
+from .arguments import GOES_ON, Outside
 from .doubts import doubts_of
 from .geodesy import east_north_up
 from .kinds import usual_kind
@@ -44,9 +45,11 @@ def _length_rule(argument: str, value):
     return None if value is None else rule(argument, value)
 
 
-@checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=_length_rule)
+@checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=_length_rule, goes_on=GOES_ON,
+         outside=one_of(Outside))
 def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None = None, smoothing: float = 0.0,
-                      vehicle_length: float | Mapping[str, float] | None = None) -> dict[str, Trajectory]:
+                      vehicle_length: float | Mapping[str, float] | None = None, goes_on: float = 0.0,
+                      outside: Outside = "absent") -> dict[str, Trajectory]:
     """Reads where objects were over time, by the suffix of the file.
 
     path: of the file, one of
@@ -63,6 +66,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     vehicle_length: m, or {type: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which its
         files tell; None, and types that are not among them: as long as the actor that `add_traffic` takes for the type, so that
         its front is where the file has it (with an `actor_of` of one's own, give the lengths of its actors)
+    goes_on: s, so long they go straight on before their first and behind their last positions; outside: "absent": nobody is
+        there before and behind that, or "stands"; both as of Trajectory
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
@@ -89,7 +94,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
             samples.times = [time - earliest for time in samples.times]
     if is_geographic:
         origin = next(iter(tracks.values())).places[0] if origin is None else origin
-    return _trajectories(path, tracks, origin if is_geographic else None, smoothing)
+    return _trajectories(path, tracks, origin if is_geographic else None, smoothing, {"goes_on": goes_on, "outside": outside})
 
 
 def _length_of(vehicle_length):
@@ -107,7 +112,7 @@ def _check_order(path: Path, samples: Samples) -> None:
                    f"{after:.12g}")
 
 
-def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float) -> dict[str, Trajectory]:
+def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float, ends: dict) -> dict[str, Trajectory]:
     single = [name for name, samples in tracks.items() if len(samples.times) < 2]
     if single:
         warn_user(f"{path}: {counted(len(single), 'object')} with a single position "
@@ -122,7 +127,7 @@ def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: flo
         doubts += [f"'{name[:60]}' {words}" for words in doubts_of(np.array(samples.times), places, samples.yaws, samples.speeds)]
         try:
             found[name] = Trajectory(smoothed(np.array(samples.times), places, smoothing), times=samples.times,
-                                     yaw=samples.yaws or None, speed=samples.speeds or None, kind=samples.kind)
+                                     yaw=samples.yaws or None, speed=samples.speeds or None, kind=samples.kind, **ends)
         except ValueError as error:
             refuse(path, samples.lines[0], f"'{name[:60]}': {error}")
     if doubts:

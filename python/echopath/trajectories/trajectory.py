@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments.checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
-from .arguments import LATEST, RATE, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
+from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text
+from .arguments import (
+    GOES_ON, LATEST, RATE, Outside, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times,
+)
 from .knots import curve_through
 from .limits import Limits, over_distance
 from .path import Path
@@ -27,7 +29,7 @@ class Trajectory(_core.CurveMotion):
     `scene.add(..., motion=trajectory)`, `ep.Radar(motion=trajectory)`; actors with wheels and legs take it themselves
     (`ep.actors.car(trajectory=trajectory)`). It places an object in the axes of its parent, turned by the yaw; the position
     [0, 0, 0] of that object belongs to the points as they are. Before its begin and after its end it stands where it is
-    then; `goes_on` lets it go straight on, `Traffic.show` hides what is not there.
+    then, or is not there at all (`outside`); `goes_on` lets it go straight on before that.
 
     points: [P, 2] or [P, 3] in m, P >= 2; those of two columns are at z = 0
     speed: m/s, constant; or [N, 2]: distances in m and speeds in m/s, between which the acceleration is constant; of `times`
@@ -41,6 +43,8 @@ class Trajectory(_core.CurveMotion):
     speed_over: "distance", or "time": the first column of `speed` is the time in s since its begin, the speed linear between
     start_time: s, when it is at its first point; of `times`, their own
     goes_on: s, so long it goes straight on at its first and last speed before its begin and after its end
+    outside: "stands", or "absent": what follows it takes no part in frames that do not lie wholly between its begin and its end
+        (`scene[name].lifetime`), as vehicles that come and go; a radar stands there all the same
     pitch: whether its nose follows the slope of the path; else it stays level
     kind: what moves, as files tell ("passenger")
 
@@ -51,13 +55,14 @@ class Trajectory(_core.CurveMotion):
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
              yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
              acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
-             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"),
-             pitch=flag, kind=text)
+             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=GOES_ON,
+             outside=one_of(Outside), pitch=flag, kind=text)
     def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,
                  yaw: ArrayLike | None = None, turn_radius: float | None = None, stops: ArrayLike = (),
                  acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
                  lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
-                 start_time: float = 0.0, goes_on: float = 0.0, pitch: bool = False, kind: str = ""):
+                 start_time: float = 0.0, goes_on: float = 0.0, outside: Outside = "stands", pitch: bool = False,
+                 kind: str = ""):
         arguments = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if times is None:
             if yaw is not None:
@@ -67,12 +72,12 @@ class Trajectory(_core.CurveMotion):
                                               start_time))
         else:
             track = _timed(arguments)
-        self._follow(track, goes_on=goes_on, pitch=pitch, kind=kind, made=(Trajectory, arguments))
+        self._follow(track, goes_on=goes_on, outside=outside, pitch=pitch, kind=kind, made=(Trajectory, arguments))
 
-    def _follow(self, track: Track, *, goes_on: float, pitch: bool, kind: str, made: tuple) -> None:
+    def _follow(self, track: Track, *, goes_on: float, outside: Outside, pitch: bool, kind: str, made: tuple) -> None:
         """Becomes the motion of a track. made: (what makes it, its keywords), for copies."""
         self._track = Track(track.path, track.profile.going_on(goes_on), track.headings)
-        self._has_pitch, self._kind, self._made = pitch, kind, made
+        self._has_pitch, self._kind, self._made, self._outside = pitch, kind, made, outside
         junctions = self._track.junctions()
         translation = curve_through(self._track.places, junctions, TOLERANCE)
         rotation = curve_through(lambda t: self._track.rotations(t, pitch), junctions, ROTATION_TOLERANCE)
@@ -87,6 +92,11 @@ class Trajectory(_core.CurveMotion):
     def end(self) -> float:
         """s, until which it moves."""
         return self._track.profile.end
+
+    @property
+    def lifetime(self) -> tuple[float, float] | None:
+        """(begin, end) in s, between which alone what follows it is there (outside="absent"); None: it always is."""
+        return (self.begin, self.end) if self._outside == "absent" else None
 
     @property
     def length(self) -> float:
@@ -166,7 +176,8 @@ class Trajectory(_core.CurveMotion):
         return _remade, self._made
 
     def __eq__(self, other: object) -> bool:
-        return super().__eq__(other) and (not isinstance(other, Trajectory) or self.kind == other.kind)
+        return super().__eq__(other) and (not isinstance(other, Trajectory) or
+                                          (self.kind, self.lifetime) == (other.kind, other.lifetime))
 
     def __hash__(self) -> int:
         return super().__hash__()

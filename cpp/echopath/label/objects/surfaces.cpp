@@ -129,6 +129,21 @@ bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& ob
   return bounding_sphere(all, {0}).holds(point) && is_flat_or_holds(vertices, point);
 }
 
+// Returns the nodes of the objects that surround a point (world) at `time` (s). What is not there then surrounds nothing.
+std::set<int> nodes_around(const Scene& scene, double time, const Vec3& point) {
+  if (scene.has_lifetimes()) {
+    Scene then = scene;
+    then.hide_absent(time, time);
+    if (then.meshes().size() < scene.meshes().size()) return nodes_around(then, time, point);
+  }
+  const PosedScene pose(scene, time);
+  std::set<int> around;
+  for (const SceneObject& object : objects_of(scene)) {
+    if (surrounds(scene, pose, object, point)) around.insert(object.node);
+  }
+  return around;
+}
+
 }  // namespace
 
 std::vector<uint32_t> SurfaceMap::meshes_of(uint32_t surface) const {
@@ -162,9 +177,9 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
   SurfaceMap map;
   map.of_mesh.assign(scene.meshes().size(), kNone);
-  const PosedScene pose(scene, time);
+  const std::set<int> around = nodes_around(scene, time, antenna);
   for (const SceneObject& object : objects_of(scene)) {
-    if (surrounds(scene, pose, object, antenna)) continue;
+    if (around.contains(object.node)) continue;
     for (const uint32_t mesh : object.mesh_ids) map.of_mesh[mesh] = map.num_objects;
     map.names.push_back(scene.nodes()[object.node].name);
     ++map.num_objects;

@@ -36,7 +36,7 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
 // `antenna` (world) at `time` (s); in the order of the scene. An object whose bounding sphere holds the antenna surrounds it
 // where the box along its principal axes, half a metre wider, holds the antenna too, as those of a tunnel and of the radar's
 // own vehicle do, or where it is flat (the smallest side of that box is at most a tenth of the middle one), as a wall or a
-// road.
+// road. What is not there at `time` (Node::lifetime) surrounds nothing.
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna);
 
 // Does the same for a record, as its frame says: at objects_time, for the mean position of the transmitters then.

@@ -37,7 +37,7 @@ struct PointDensity {
 };
 
 // Appends the points of a triangle, whichever of its sides the viewer sees. `corners` are in the coordinates of the
-// viewer.
+// viewer. The random numbers go by the name alone.
 void add_surface_points(uint64_t seed, TriangleName name, const std::array<Vec3, 3>& corners, const PointDensity& density,
                         std::vector<SurfacePoint>& out);
 

@@ -12,6 +12,7 @@ constexpr int64_t kTrianglesTogether = 4096;
 
 struct TriangleRange {
   uint32_t mesh_id;
+  uint32_t number;  // SceneMesh::number
   int64_t begin, end;
   double outward;  // sign of the side of its triangles that can be seen; 0: both
 };
@@ -44,7 +45,7 @@ std::vector<TriangleRange> ranges_of(const Scene& scene, const EmbreeScene& geom
     const double outward = visible_side(*node.mesh, geometry, id, settings.transmitter);
     const auto count = static_cast<int64_t>(geometry.num_triangles(id));
     for (int64_t begin = 0; begin < count; begin += kTrianglesTogether) {
-      ranges.push_back({id, begin, std::min(begin + kTrianglesTogether, count), outward});
+      ranges.push_back({id, scene.meshes()[id].number, begin, std::min(begin + kTrianglesTogether, count), outward});
     }
   }
   return ranges;
@@ -64,10 +65,11 @@ class PointFinder {
       const auto triangle = static_cast<uint32_t>(i);
       const auto corners = geometry_.corners(range.mesh_id, triangle);
       if (range.outward * side_of(corners) >= 0.0) {
-        add_surface_points(settings_.seed, {range.mesh_id, triangle}, corners, density, points);
+        add_surface_points(settings_.seed, {range.number, triangle}, corners, density, points);
       }
     }
     std::erase_if(points, [&](SurfacePoint& point) {
+      point.on.mesh_id = range.mesh_id;
       point.stratum = stratum;
       return !directions.contains((point.position - settings_.transmitter).normalized());
     });

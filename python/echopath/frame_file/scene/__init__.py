@@ -11,6 +11,7 @@ from .kept_meshes import KeptMeshes
 from .motion import read_motion, write_motion
 
 NONE = -1  # index that means "has none"
+ALWAYS = -np.inf, np.inf  # s, the lifetime of what has none
 
 
 class _Pool:
@@ -38,6 +39,9 @@ def write_scene(group, scene) -> None:
     write_texts(group, "material_name", [node.material_name for node in nodes])
     write_array(group, "smooth", np.array([node.smooth for node in nodes], np.uint8))
     write_array(group, "visible", np.array([node.visible for node in nodes], np.uint8))
+    if scene._has_lifetimes:
+        lifetimes = [node.lifetime or ALWAYS for node in nodes]
+        write_array(group, "lifetime", np.array(lifetimes, np.float64), unit="s")
     write_array(group, "parent", np.array([node.parent for node in nodes], np.int32))
     placements = np.array([node.placement for node in nodes], np.float64).reshape(-1, 4, 4)
     write_array(group, "placement", placements, unit="m")
@@ -56,6 +60,7 @@ def read_scene(group, meshes: KeptMeshes | None = None):
     material_names = read_texts(group, "material_name", count)
     smooth = read_array(group, "smooth", np.uint8, (count,))
     visible = read_array(group, "visible", np.uint8, (count,))
+    lifetimes = _read_lifetimes(group, count)
     parents = read_array(group, "parent", np.int32, (count,))
     placements = read_array(group, "placement", np.float64, (count, 4, 4))
     shared = {kind: _read_shared(group, kind, count, meshes) for kind in _SHARED}
@@ -67,11 +72,21 @@ def read_scene(group, meshes: KeptMeshes | None = None):
         own_name = names[index] if parent == NONE else names[index].removeprefix(names[parent] + "/")
         nodes.append(_core.Node(name=own_name, parent=parent, placement=placements[index],
                                 material_name=material_names[index], smooth=bool(smooth[index]),
-                                visible=bool(visible[index]),
+                                visible=bool(visible[index]), lifetime=lifetimes[index],
                                 **{kind: items[index] for kind, items in shared.items()}))
     scene = Scene()
     scene._add_nodes(nodes)
     return scene
+
+
+def _read_lifetimes(group, count: int) -> list:
+    """(begin, end) in s of each node, None of what is always there."""
+    if "lifetime" not in group:
+        return [None] * count
+    lifetimes = read_array(group, "lifetime", np.float64, (count, 2))
+    if not np.all(lifetimes[:, 0] <= lifetimes[:, 1]):
+        raise _core.FileError(f"{group.name}/lifetime: must hold begins and ends, ascending")
+    return [(begin, end) for begin, end in lifetimes.tolist()]
 
 
 def _write_pool(group, pool: _Pool, write) -> None:

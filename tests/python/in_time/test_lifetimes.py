@@ -1,0 +1,222 @@
+"""Vehicles come and go while frames follow each other: each is in the frames alone that its way covers wholly."""
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.cli import main
+from support.files.scene_text import ANTENNAS, WAVEFORM
+from support.frames_in_time import make_radar
+
+# Fronts of three cars of SUMO, by second: two drive at 2 m/s along lanes of their own, one passes behind them.
+ROWS = {"early": (0, 2, -4.0), "late": (1, 4, 0.0), "through": (0, 4, 4.0)}  # {name: (first, last) s, y in m}
+START, SPEED = 9.0, 2.0  # m, m/s
+FRAMES, INTERVAL = 9, 0.5
+ROUGH = ep.Material(reflectivity=0.3, scattering=1.0)
+
+
+def fcd() -> str:
+    steps = []
+    for second in range(5):
+        rows = [f'<vehicle id="{name}" x="{START + SPEED * second}" y="{y}" angle="90" type="car" speed="{SPEED}"/>'
+                for name, (first, last, y) in ROWS.items() if first <= second <= last]
+        steps.append(f'<timestep time="{second}.00">{"".join(rows)}</timestep>')
+    return f"<fcd-export>{''.join(steps)}</fcd-export>"
+
+
+def there(time: float, duration: float, goes_on: float = 0.0) -> list[str]:
+    """The names of those whose rows reach over a frame."""
+    return [name for name, (first, last, _) in ROWS.items()
+            if first - goes_on <= time + 1e-9 and time + duration <= last + goes_on + 1e-9]
+
+
+def street(path, **ends) -> ep.Scene:
+    path.write_text(fcd())
+    scene = ep.Scene()
+    for name, trajectory in ep.read_trajectories(path, **ends).items():
+        scene.add(ep.actors.box((4.0, 1.8, 1.5)), name=name, material=ROUGH, motion=trajectory)
+    return scene
+
+
+def drive(scene: ep.Scene, **settings) -> ep.Sequence:
+    given = {"frames": FRAMES, "interval": INTERVAL, "num_rays": 2000, "guard": False, "labels": True, "truth": True}
+    return ep.Sequence(scene, make_radar(), **given | settings)
+
+
+@pytest.mark.parametrize("ends", [{}, {"goes_on": 0.7}, {"outside": "stands"}])
+def test_frames_have_those_alone_whose_rows_reach_over_them(tmp_path, ends):
+    sequence = drive(street(tmp_path / "fcd.xml", **ends))
+    for time, frame in zip(sequence.times, sequence):
+        duration = frame.radar.frame_duration
+        wanted = list(ROWS) if "outside" in ends else there(time, duration, ends.get("goes_on", 0.0))
+        assert sorted(frame.truth.name) == sorted(wanted)
+        assert sorted(one.name for one in frame.labels["parts"].objects) == sorted(wanted)
+        assert {name for name in ROWS if frame.scene[name].visible} == set(wanted)
+        assert {mesh.name.split("/")[0] for mesh in frame.paths.scene.meshes} == set(wanted)
+        if "outside" not in ends:  # the middle of a SUMO vehicle lies half a length behind its front
+            middles = START + SPEED * (time + 0.5 * duration) - 0.5 * 4.3
+            assert frame.truth.origin[:, 0] == pytest.approx(middles, abs=1e-5)
+
+
+def test_a_frame_is_as_if_what_is_absent_had_never_been(tmp_path):
+    """The last object of the scene, so that the random numbers of the others are the same without it, too."""
+    scene = street(tmp_path / "fcd.xml")
+    assert list(scene)[0] == "early" and scene.meshes[-1].name == "late"
+    without = scene.copy()
+    without.remove("late")
+    with_late, bare = drive(scene)[1], drive(without)[1]  # at 0.5 s
+    assert with_late.truth.name.tolist() == bare.truth.name.tolist()
+    assert np.array_equal(with_late.cube, bare.cube) and np.abs(bare.cube).max() > 0.0
+    assert not np.array_equal(drive(scene)[5].cube, drive(without)[5].cube)
+
+
+def test_frames_alone_have_the_bits_of_the_run_and_of_simulate(tmp_path):
+    scene = street(tmp_path / "fcd.xml")
+    sequence = drive(scene)
+    for place, frame in enumerate(sequence):
+        assert np.array_equal(frame.cube, sequence[place].cube)
+    one = ep.simulate(scene, make_radar(), start_time=sequence.times[7], num_rays=2000, scatterers="surface", guard=False,
+                      labels=True)
+    assert np.array_equal(one.cube, sequence[7].cube) and not one.scene["early"].visible
+    assert scene["early"].visible and sequence.scene["early"].visible  # what is simulated stays as it is
+
+
+def test_the_points_of_rough_surfaces_stay_where_another_body_before_them_comes_and_goes():
+    """A body that is absent takes no rays, so there are more points then; those that were there are among them."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="guest", material=ROUGH, position=(14.0, -4.0, 0.0), yaw=np.pi)
+    scene.add(ep.actors.plate(2.0, 2.0), name="host", material=ROUGH, position=(10.0, 2.0, 0.0), yaw=np.pi)
+    scene["guest"].lifetime = 0.4, np.inf
+    alone, beside = drive(scene, frames=2, num_rays=4000)
+
+    def points(frame) -> set:
+        chosen = frame.paths.select("T 'host' R")
+        chosen = chosen.select(chosen.diffuse > 0)
+        hits = chosen.hits[chosen.offsets]
+        return {(int(hit["triangle_id"]), round(float(hit["u"]), 5), round(float(hit["v"]), 5)) for hit in hits}
+
+    assert [len(frame.paths.scene.meshes) for frame in (alone, beside)] == [1, 2]
+    assert 100 < len(points(beside)) < len(points(alone))
+    assert len(points(beside) - points(alone)) < 0.02 * len(points(beside))  # those next to an edge
+
+
+@pytest.mark.parametrize("start, is_there", [(0.1 * 3, True), (0.3, True), (0.3 - 1e-6, False), (0.5, True)])
+def test_a_frame_that_begins_with_the_lifetime_but_for_rounding_is_in_it(start, is_there):
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="plate", material="metal", position=(10.0, 0.0, 0.0), yaw=np.pi)
+    radar = make_radar()
+    scene["plate"].lifetime = 0.3, 0.5 + radar.frame_duration
+    paths = ep.trace(scene, radar, start_time=start, num_rays=500) if is_there else None
+    if not is_there:
+        with pytest.warns(RuntimeWarning, match="'plate' is absent from 0.299999 to"):
+            paths = ep.trace(scene, radar, start_time=start, num_rays=500)
+    assert (paths.num_paths > 0) == is_there
+
+
+def test_what_enters_where_the_radar_stood_at_first_is_an_object():
+    """Before it is there it stands at the begin of its way, about the antenna, and does not surround it."""
+    scene = ep.Scene()
+    way = ep.Trajectory([(0.0, 0.0), (40.0, 0.0)], speed=20.0, start_time=1.0, outside="absent")
+    scene.add(ep.actors.box((4.0, 1.8, 1.5)), name="car", material="metal", motion=way)
+    frame = drive(scene, start_time=0.0, frames=4)[3]
+    assert frame.truth.name.tolist() == ["car"] == [one.name for one in frame.labels["parts"].objects]
+
+
+def test_a_motion_is_asked_for_nothing_where_its_object_is_absent():
+    scene, short = ep.Scene(), ep.KeyframeMotion([0.9, 2.1], translations=[(0, 0, 0), (1, 0, 0)])
+    scene.add(ep.actors.plate(2.0, 2.0), name="plate", material="metal", position=(10.0, 0.0, 0.0), yaw=np.pi, motion=short)
+    with pytest.raises(ValueError, match="node plate"):
+        drive(scene)
+    scene["plate"].lifetime = 1.0, 2.1
+    assert [frame.truth.name.tolist() for frame in drive(scene)] == [[], [], ["plate"], ["plate"], ["plate"], [], [], [], []]
+
+
+@pytest.mark.parametrize("keep", ["all", "maps"])
+def test_files_of_a_run_know_who_was_there(tmp_path, keep):
+    sequence = drive(street(tmp_path / "fcd.xml"))
+    for where in ("drive", "drive.h5"):
+        stored = sequence.save(tmp_path / where, keep=keep)
+        assert stored.scene["late"].lifetime == (1.0, 4.0) and stored.scene["late"].visible
+        rows = {(int(frame), str(name)) for frame, name in zip(stored.truth.frame, stored.truth.name)}
+        duration = sequence.radar.frame_duration
+        assert rows == {(place, name) for place, time in enumerate(sequence.times) for name in there(time, duration)}
+        named = stored.to_xarray()
+        assert np.isnan(named.truth_range.sel(truth_object="late")[:2]).all()
+    if keep == "all":
+        loaded = ep.load_sequence(tmp_path / "drive")[0]
+        assert not loaded.scene["late"].visible and loaded.scene["late"].lifetime == (1.0, 4.0)
+        assert np.array_equal(loaded.cube, sequence[0].cube)
+
+
+def test_scene_files_and_the_command_line_do_the_same(tmp_path):
+    (tmp_path / "fcd.xml").write_text(fcd())
+    parts = "\n".join(f"""[[objects]]
+name = "{name}"
+actor = "box"
+parameters = {{size = [4.0, 1.8, 1.5]}}
+material = {{reflectivity = 0.3, scattering = 1.0}}
+trajectory = "fcd.xml"
+id = "{name}"
+{more}""" for name, more in (("early", "goes_on = 0.7"), ("late", ""), ("through", 'outside = "stands"')))
+    path = tmp_path / "street.toml"
+    path.write_text(WAVEFORM + ANTENNAS + parts + "\n[trace]\nnum_rays = 500\n[truth]\n[labels]\n")
+    scene = ep.load_scene(path).scene
+    assert [scene[name].lifetime for name in ROWS] == [(-0.7, 2.7), (1.0, 4.0), None]
+    assert main(["run", str(path), "--out", str(tmp_path / "out"), "--frames", "6", "--interval", "1.0"]) == 0
+    stored = ep.load_sequence(tmp_path / "out")
+    found = [stored.truth.of_frame(place).name.tolist() for place in range(6)]
+    assert found == [["early", "through"], ["early", "late", "through"], ["early", "late", "through"], ["late", "through"],
+                     ["through"], ["through"]]
+
+
+@pytest.mark.parametrize("lines, message", [
+    ("goes_on = 1.0\nspeed = 1.0", "goes_on: needs a trajectory that is a file"),
+    ('outside = "stands"', "outside: needs a trajectory that is a file"),
+    ('trajectory = "fcd.xml"\nid = "late"\ngoes_on = -1.0', "goes_on: must be"),
+    ('trajectory = "fcd.xml"\nid = "late"\noutside = "gone"', "outside: must be 'stands' or 'absent'"),
+])
+def test_keys_of_scene_files_are_checked(tmp_path, lines, message):
+    (tmp_path / "fcd.xml").write_text(fcd())
+    path = tmp_path / "street.toml"
+    path.write_text(WAVEFORM + ANTENNAS + f"""[[objects]]
+name = "car"
+actor = "car"
+{lines}
+""")
+    with pytest.raises(ValueError) as fault:
+        ep.load_scene(path)
+    assert f"objects[0].{message}" in str(fault.value)
+
+
+def test_a_run_that_nobody_takes_part_in_is_told(tmp_path):
+    scene = street(tmp_path / "fcd.xml")
+    with pytest.warns(RuntimeWarning, match="'early', 'through', 'late' are absent from 10 to 14.* from 0 to 4 s alone"):
+        drive(scene, start_time=10.0)
+
+
+def test_live_scenes_show_what_is_there(tmp_path):
+    scene = street(tmp_path / "fcd.xml")
+    live = ep.Live(scene, make_radar(), num_rays=2000, start_time=0.5)
+    live.update()
+    assert {mesh.name.split("/")[0] for mesh in live.paths().scene.meshes} == {"early", "through"}
+    live.scene["late"].lifetime = None
+    live.update()
+    assert "late" in {mesh.name.split("/")[0] for mesh in live.paths().scene.meshes}
+
+
+def test_lifetimes_travel_and_follow_the_motion(tmp_path):
+    scene = street(tmp_path / "fcd.xml")
+    for again in (scene.copy(), pickle.loads(pickle.dumps(scene)), ep.Scene(scene)):
+        assert [again[name].lifetime for name in ROWS] == [(0.0, 2.0), (1.0, 4.0), (0.0, 4.0)]
+    scene["late"].motion = ep.LinearMotion((1.0, 0.0, 0.0))
+    scene["early"].motion = ep.Trajectory([(0, 0), (1, 0)], speed=1.0, outside="absent")
+    assert scene["late"].lifetime is None and scene["early"].lifetime == (0.0, 1.0)
+    scene["late"].lifetime = 3.0, np.inf
+    assert scene["late"].lifetime == (3.0, np.inf)
+    for wrong in ((2.0, 1.0), (np.nan, 1.0), (1.0, 1.0)):
+        with pytest.raises(ValueError, match=r"lifetime: must be \(begin, end\) in s, ascending, or None, got"):
+            scene["late"].lifetime = wrong
+    assert ep.Lane([(0, 0), (9, 0)]).trajectory(speed=3.0, outside="absent", goes_on=1.0).lifetime == (-1.0, 4.0)

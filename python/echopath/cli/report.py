@@ -81,8 +81,8 @@ def overlaps_or_none(scene, time: float, names=None) -> list[str]:
 
 
 def folded_velocities(scene, radar, time: float) -> list[str]:
-    """Objects of a scene, or parts of them, that move faster at `time` (s) than a map of velocity tells, and where it shows them;
-    nothing where none do."""
+    """Objects of a scene, or parts of them, that move faster in a frame about `time` (s) than a map of velocity tells, and where
+    it shows them; nothing where none do."""
     limit = radar.waveform.max_velocity(radar.num_slots)
     found = bodies_faster_than(limit, scene, radar, time)
     lines = [line("  " + body.name, f"{'' if body.as_whole else 'up to '}{body.speed:+.2f} m/s, "

@@ -1,4 +1,5 @@
 """What radars, scenes, templates and frames tell of themselves: their repr, in notebooks, and to `echopath info`."""
+from math import pi
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,7 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.cli.report import folded_velocities
-from echopath.scene.closing_speeds import closing_speeds
+from echopath.scene.closing_speeds import bodies_faster_than, closing_speeds
 from support.radars import build_radar
 from support.shapes import quad
 
@@ -104,6 +105,20 @@ def test_closing_speeds_are_those_of_the_fastest_point():
     driving = closing_speeds(scene, radar.replace(motion=ep.LinearMotion(velocity=(5.0, 0.0, 0.0))), 0.0)
     assert min(driving["rod"]) == pytest.approx(-11.0, rel=ALIKE, abs=0)
     assert min(driving["wall"]) == pytest.approx(-5.0 * 9.0 / 81.0 ** 0.5, rel=0.02, abs=0)  # of its corners, 9.1 m away
+
+
+def test_a_blade_that_points_at_the_radar_in_mid_frame_is_as_fast_as_one_that_stands_across():
+    """Its ends go 30 x 0.2 m/s about an upright axis: across the line of sight a quarter of a turn earlier or later."""
+    chirps = ep.ChirpSequence(num_chirps=1024, chirp_interval=0.1 / 1024)  # half a turn
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+    for yaw in (0.0, 0.5 * pi):
+        scene = ep.Scene()
+        blade = quad((-0.2, 0.0, -0.03), (0.2, 0.0, -0.03), (0.2, 0.0, 0.03), (-0.2, 0.0, 0.03))
+        scene.add(blade, name="blade", material="metal", position=(50.0, 0.0, 0.0), yaw=yaw,
+                  motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, 30.0)))
+        (body,) = bodies_faster_than(4.0, scene, radar, 0.0)
+        assert (body.name, body.as_whole) == ("blade", False) and abs(body.speed) == pytest.approx(6.0, rel=0.03)
+        assert not bodies_faster_than(6.1, scene, radar, 0.0)
 
 
 def test_of_a_car_that_the_map_tells_only_the_wheels_are_named():

@@ -76,6 +76,7 @@ class ObjectTable(Table):
     way: Annotated[Any, by_check(_way)] | None = Field(
         None, description="m of the trajectory in which a looped animation is played once, \"auto\": as its feet or itself say")
     actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
+    group: bool = Field(False, description="true, instead: no shape of its own, it carries those that name it as parent")
     parameters: dict = Field({}, description="keywords of the actor")
     material: MaterialValue | None = Field(None, description="a known name or a table")
     position: Vector3 | None = Field(None, description="m")
@@ -93,8 +94,11 @@ class ObjectTable(Table):
 
     @model_validator(mode="after")
     def _one_shape(self):
-        if [self.mesh, self.model, self.actor].count(None) != 2:
-            raise broken_rule("mesh", "exactly one of mesh, model and actor must be given", self.mesh)
+        if [self.mesh, self.model, self.actor, self.group or None].count(None) != 3:
+            raise broken_rule("mesh", "exactly one of mesh, model, actor and group must be given", self.mesh)
+        for key in ("material", "smooth"):
+            if self.group and getattr(self, key) is not None:
+                raise broken_rule(key, "must not be given for a group, whose parts have theirs", getattr(self, key))
         if self.way is not None and (self.model is None or self.trajectory is None):
             raise broken_rule("way", "needs a model with a trajectory", self.way)
         if self.unit is not None and self.mesh is None and self.model is None:

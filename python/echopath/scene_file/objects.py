@@ -64,7 +64,9 @@ def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
 
 
 def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file, trajectory):
-    """The object's mesh, group of meshes, model or actor, and the material still to be given to it."""
+    """The object's mesh, group of meshes, model, actor or nothing, and the material still to be given to it."""
+    if table.group:
+        return None, None
     if table.mesh is not None:
         with blamed(f"{key}.mesh"):
             meshes = meshes_of_file(str(folder / table.mesh), unit=table.unit or 1.0)

@@ -217,3 +217,32 @@ def test_every_key_is_written_down_in_the_data_readme(name):
 
 def test_a_key_of_another_table_does_not_stand_for_one_that_is_missing():
     assert "`offset`" not in described("TraceTable") and "`num_rays`" in described("TraceTable")
+
+
+def test_a_group_carries_its_parts_and_has_no_shape(write):
+    """A point 0.2 m from the axis of a fan that hangs at (3, 1, 2) and turns by a quarter of a turn in a second."""
+    text = """
+[[objects]]
+name = "fan"
+group = true
+position = [3.0, 1.0, 2.0]
+[[objects]]
+name = "rotor"
+group = true
+parent = "fan"
+motion = {kind = "linear", angular_velocity = [1.5707963267948966, 0.0, 0.0]}
+[[objects]]
+name = "blade"
+parent = "fan/rotor"
+actor = "box"
+parameters = {size = [0.01, 0.4, 0.05]}
+material = "metal"
+[[objects]]
+name = "empty"
+group = true
+"""
+    scene = ep.load_scene(write(text)).scene
+    assert [mesh.name for mesh in scene.meshes] == ["fan/rotor/blade"] and "empty" in scene
+    tip = scene.world_vertices(0, 0.0)[:, 1].argmax()
+    np.testing.assert_allclose(scene.world_vertices(0, 0.0)[tip, 1], 1.2, rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(scene.world_vertices(0, 1.0)[tip, 2], 2.2, rtol=0, atol=ROUNDING)

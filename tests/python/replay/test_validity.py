@@ -7,6 +7,7 @@ import pytest
 import echopath as ep
 from echopath.base.data_folder import data_folder
 from support import shapes
+from support.radars import build_radar
 from support.slides import TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over
 from support.validity_scenes import BALL, radar_of, scene_of
 
@@ -277,3 +278,34 @@ def test_arrays_name_the_mirror_that_a_point_has_left():
         report = ep.validity(paths.select(f"T {select} R"), times=[paths.frame.trace_time + 0.01], arrays=True)
         hidden = (report.blocked != 0) | (report.receiver_blocked != 0)  # a few, by the ball's own horizon
         assert report.num_paths > 20 and np.mean(hidden) < FEW and np.all(report.left[~hidden] == left), select
+
+
+def corner_of(angle):
+    """Two flagged walls of 4 m that meet at an upright edge 5 m ahead at an angle in rad, and stand square to the ground."""
+    mirror, still = shapes.METAL.replace(mirror=True), (0, 0, 0)
+    half = 0.5 * angle
+    walls = {name: (shapes.rectangle((5, 0, -2), (-4 * np.cos(half), sign * 4 * np.sin(half), 0), (0, 0, 4)), mirror, still, None)
+             for name, sign in (("left", 1), ("right", -1))}
+    return scene_of(**walls)
+
+
+def test_in_a_square_corner_waves_take_both_walls_in_either_order():
+    """Transmitters stand to either side of the receiver, so that the wave to one of them meets the other wall first. The image
+    over both walls is one: each channel, traced by itself, has the signal that it has in the array."""
+    array = build_radar([(0, -0.01, 0), (0, 0.013, 0)], [(0, 0, 0)], num_samples=256)
+    paths = ep.trace(corner_of(0.5 * np.pi), array, num_rays=2000).select("T ('left' 'right' | 'right' 'left') R")
+    cube = ep.synthesize(paths, array)
+    for number in (0, 1):
+        alone = array.replace(transmitters=array.transmitters[number:number + 1])
+        of_channel = ep.trace(corner_of(0.5 * np.pi), alone, num_rays=2000).select("T ('left' 'right' | 'right' 'left') R")
+        np.testing.assert_allclose(cube[number, :, 0], ep.synthesize(of_channel, alone)[0, :, 0], rtol=0,
+                                   atol=SUMS * abs(cube).max())
+    report = ep.validity(paths)
+    assert report.ok and report.left_share == 0.0
+
+
+def test_in_a_corner_that_is_not_square_the_other_order_is_another_image():
+    array = build_radar([(0, -0.6, 0), (0, 2.2, 0)], [(0, 0, 0)])
+    for angle, left in ((0.5 * np.pi, 0.0), (1.6, 1.0)):
+        paths = ep.trace(corner_of(angle), array, num_rays=2000).select("T 'left' 'right' R")
+        assert ep.validity(paths).left_share == pytest.approx(left, abs=SUMS), angle

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace echopath {
 namespace {
@@ -9,6 +11,13 @@ namespace {
 constexpr double kSamePlace = 1e-6;         // m: bounces at an edge where two mirrors meet
 constexpr double kOnMirrorAbsolute = 1e-3;  // m: how far before its place a leg may meet another mirror's edge
 constexpr double kOnMirrorRelative = 1e-5;
+constexpr double kOneImage = 2e-5;  // m: images as near to each other are one; .03 rad at 77 GHz
+constexpr int kMostInTurn = 4;      // mirrors of a chain that are tried in other orders
+
+Vec3 image_over(std::span<const PosedHit> mirrors, Vec3 point) {
+  for (const Plane& plane : mirrors) point = plane.image(point);
+  return point;
+}
 
 }  // namespace
 
@@ -92,12 +101,46 @@ bool LegTester::is_blocked_before_sheet(const Vec3& from, const Vec3& to, int im
 // Tests the legs from `from` over the mirrors [first, last) to `to`; they arrive at the hits first to last.
 void LegTester::test(const End& from, int first, int last, const End& to) {
   if (is_known_blocked(first, last)) return;
-  const std::span<const PosedHit> mirrors = chain_of(hits_, first, last);
-  Vec3* points = image_points_ + first;
-  if (const auto missed = find_reflections(mirrors, from.point, to.point, points, kSamePlace)) {
+  const auto missed =
+      find_reflections(chain_of(hits_, first, last), from.point, to.point, image_points_ + first, kSamePlace);
+  if (!missed) return test_legs(from, first, last, to);
+  if (!test_in_another_order(from, first, last, to)) {
     shadows_.off_mirror |= uint64_t{1} << (static_cast<size_t>(first) + *missed);
-    return;
   }
+}
+
+// Mirrors that are square to each other have one image in whatever order, so beyond the edge where they meet a wave of the
+// same length takes them in another one. Tests the legs of that, and returns whether there is one.
+bool LegTester::test_in_another_order(const End& from, int first, int last, const End& to) {
+  if (last - first < 2 || last - first > kMostInTurn) return false;
+  const Vec3 image = image_over(chain_of(hits_, first, last), from.point);
+  std::vector<int> order(static_cast<size_t>(last - first));
+  std::iota(order.begin(), order.end(), first);
+  std::vector<PosedHit> posed(hits_, hits_ + path_.count);
+  std::vector<LocalHit> local(path_.hits, path_.hits + path_.count);
+  LocalPath path = path_;
+  path.hits = local.data();
+  while (std::ranges::next_permutation(order).found) {
+    for (size_t k = 0; k < order.size(); ++k) {
+      posed[static_cast<size_t>(first) + k] = hits_[order[k]];
+      local[static_cast<size_t>(first) + k] = path_.hits[order[k]];
+    }
+    const std::span<const PosedHit> mirrors = chain_of(posed.data(), first, last);
+    if ((image_over(mirrors, from.point) - image).norm() > kOneImage) continue;
+    LegTester other(geometry_, path, posed.data());
+    if (find_reflections(mirrors, from.point, to.point, other.image_points_ + first, kSamePlace)) continue;
+    other.test_legs(from, first, last, to);
+    if (other.shadows_.off_mirror != 0) continue;
+    shadows_.add(other.shadows_);
+    return true;
+  }
+  return false;
+}
+
+// Tests legs whose points of reflection are known.
+void LegTester::test_legs(const End& from, int first, int last, const End& to) {
+  const std::span<const PosedHit> mirrors = chain_of(hits_, first, last);
+  const Vec3* points = image_points_ + first;
   const auto lifted_at = [&](int mirror, const Vec3& toward) {
     return lifted_off_mirrors(mirrors, points, static_cast<size_t>(mirror - first), toward, kSamePlace, geometry_.lift());
   };

@@ -42,6 +42,8 @@ class LegTester {
   static End surface_of(const PosedHit& hit);
   void test_arrival(const End& from, int first, int last);
   void test(const End& from, int first, int last, const End& to);
+  bool test_in_another_order(const End& from, int first, int last, const End& to);
+  void test_legs(const End& from, int first, int last, const End& to);
   Vec3 lifted(const Vec3& point, const Vec3& normal, const Vec3& toward) const;
   Vec3 lifted_end(const End& end, const Vec3& point, const Vec3& toward) const;
   bool is_blocked(const Vec3& from, const Vec3& to, int image);

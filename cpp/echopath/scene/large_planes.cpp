@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "echopath/base/principal_box.h"
+#include "echopath/base/solid_angle.h"
 #include "echopath/em/surface/coherent_share.h"
 #include "echopath/scene/edges/planar_patches.h"
 #include "echopath/scene/mesh/adjacency.h"
@@ -48,8 +51,10 @@ class PlaneMeasure {
     const double longest = box.sizes().maxCoeff();
     const bool is_short = longest < rule_.least_extent;
     const bool is_as_vehicle = longest <= rule_.vehicle_length && depth_along(normal) <= rule_.vehicle_width;
-    if ((is_short || is_as_vehicle) && num_large >= kPlanesOfBody) return false;
-    return whole > 0.0 && large >= (is_short ? rule_.least_area_of_short : rule_.least_area) * whole;
+    const bool may_be_body = (is_short || is_as_vehicle) && num_large >= kPlanesOfBody;
+    const bool is_room = may_be_body && surrounds_antennas();
+    if (may_be_body && !is_room) return false;
+    return whole > 0.0 && large >= (is_short && !is_room ? rule_.least_area_of_short : rule_.least_area) * whole;
   }
 
  private:
@@ -57,6 +62,23 @@ class PlaneMeasure {
     Eigen::AlignedBox3d box;
     for (const Vec3& vertex : vertices_) box.extend(vertex);
     return box;
+  }
+
+  // Returns whether an antenna stands in the box along the mesh's own axes and has more of the mesh around it than half of
+  // all directions, as in a room and in no body that it sees from outside.
+  bool surrounds_antennas() const {
+    const PrincipalBox own = principal_box(vertices_);
+    return std::ranges::any_of(rule_.antennas, [&](const Vec3& antenna) {
+      return own.box.contains(own.coordinates(antenna)) && covered_from(antenna) > 2.0 * std::numbers::pi;
+    });
+  }
+
+  // Returns the solid angle of all triangles, whichever side they show, in sr.
+  double covered_from(const Vec3& eye) const {
+    double covered = 0.0;
+    for (const auto& [a, b, c] : triangles_)
+      covered += std::abs(solid_angle({vertices_[a], vertices_[b], vertices_[c]}, eye));
+    return covered;
   }
 
   // Returns the width in m from which on a plane is large, at a distance in m from the antennas.

@@ -14,7 +14,8 @@ struct LargePlaneRule {
   double least_area = 0.0;      // share of a mesh's area that large planes must make up
   double least_extent = 0.0;    // m, longest side of the box about a wall or a house; what is shorter may be a body
   double least_area_of_short = 0.0;  // the same share of what is shorter
-  // m: what is no longer and no deeper than road vehicles and containers, and has large planes on three sides, is a body.
+  // m: what is no longer and no deeper than road vehicles and containers, and has large planes on three sides, is a body,
+  // unless the antennas stand within it: then it is a room.
   double vehicle_length = 0.0, vehicle_width = 0.0;
 };
 

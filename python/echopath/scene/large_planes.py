@@ -20,10 +20,11 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 80 % of its area, so that
     walls may be as thick as a fifth of their height; what is shorter than 4 m may be an object, as a crate or a table is,
     unless two such planes make up 95 % of it, and so may what has three or more such planes and the size of a road vehicle: 19 m
-    by 2.6 m between the largest of them and what is opposite. The distance is that of the antennas from the farthest corner of
-    the plane, the width four times the area over the length of the rim (the side of a square), windows and other holes counted
-    to the rim. At least a tenth of what it reflects must keep its phase. Smooth meshes, sheets, and what moves or deforms stay
-    as they are, and so do planes that only several meshes make up together.
+    by 2.6 m between the largest of them and what is opposite; but what is around the antennas, in more than half of all
+    directions, is a room. The distance is that of the antennas from the farthest corner of the plane, the width four times
+    the area over the length of the rim (the side of a square), windows and other holes counted to the rim. At least a tenth
+    of what it reflects must keep its phase. Smooth meshes, sheets, and what moves or deforms stay as they are, and so do
+    planes that only several meshes make up together.
     Each flagged plane costs time: paths go over up to two of them on each side of a target.
 
     scene: is changed

@@ -98,6 +98,16 @@ def test_walls_have_a_thickness_and_bodies_are_no_walls(sides, names):
     assert marked(turned, position=(15.0, 4.15, 0.0)) == names  # whichever way it stands
 
 
+@pytest.mark.parametrize("sides", [(6.0, 5.0, 2.5), (3.5, 3.0, 2.4), (12.0, 2.4, 2.6)])  # rooms and a container
+def test_what_would_be_a_body_from_outside_is_a_room_around_the_radar(sides):
+    room = box(*sides)
+    assert marked(room, position=(0.1 * sides[0], 0.2, 0.1), yaw=0.3) == ("plate",)
+    assert marked(room, position=(0.5 * sides[0] + 0.3, 0.0, 0.0)) == ()  # right before it
+    assert marked(room, position=(0.45 * sides[0], 0.5 * sides[1] + 0.3, 0.0), yaw=0.5) == ()  # in a box along the axes
+    open_room = ep.Mesh(room.vertices, room.triangles[2:])  # without the wall at its back
+    assert marked(open_room, position=(0.1 * sides[0], 0.2, 0.1)) == ("plate",)
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_in_scenes_of_this_repository_it_marks_what_people_marked(name):
     with as_file(data_folder("scenes") / f"{name}.toml") as path:

@@ -23,22 +23,22 @@ class Sight(NamedTuple):
     reach: float
 
 
-def best_sight(blocked, free_cells, step: float, boxes) -> Sight | None:
+def best_sight(blocked, free_cells, step: float, boxes, near: float = NEAR) -> Sight | None:
     """Where most things are in sight ahead of a radar, near ones counting most; None where none is.
 
     blocked: [n, m], whether a cell has an obstacle; free_cells: [F, 2] cells with room for a radar; step: m, of a cell
-    boxes: [N, 2, 2] (lowest, highest) cells of the things, fractions of cells count
+    boxes: [N, 2, 2] (lowest, highest) cells of the things, fractions of cells count; near: m, nearer things do not count
     """
     middles = boxes.mean(axis=1)
     margin = AROUND / step
-    near = np.all((free_cells >= middles.min(axis=0) - margin) & (free_cells <= middles.max(axis=0) + margin), axis=1)
-    places = free_cells[near]
+    is_about = np.all((free_cells >= middles.min(axis=0) - margin) & (free_cells <= middles.max(axis=0) + margin), axis=1)
+    places = free_cells[is_about]
     places = places[::max(1, -(-len(places) // MOST_PLACES))]
     if not len(places):
         return None
     ways = middles - (places[:, None] + 0.5)  # [places, things, 2]
     distance = step * np.linalg.norm(ways, axis=2)
-    weight = np.where(_is_seen(blocked, places, boxes) & (distance > NEAR), 1.0 / (1.0 + distance / HALF), 0.0)
+    weight = np.where(_is_seen(blocked, places, boxes) & (distance > near), 1.0 / (1.0 + distance / HALF), 0.0)
     yaws = np.arange(DIRECTIONS) * 2.0 * np.pi / DIRECTIONS - np.pi
     off_axis = np.angle(np.exp(1j * (np.arctan2(ways[..., 1], ways[..., 0])[..., None] - yaws)))  # [places, things, yaws]
     ahead = np.abs(off_axis) <= SECTOR

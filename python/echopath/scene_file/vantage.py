@@ -1,4 +1,4 @@
-"""Where a radar stands well in a scene that has none: before an object, or within a town, in sight of what stands there."""
+"""Where a radar stands well in a scene that has none: before an object, or in a town or a room, in sight of what is there."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -8,6 +8,7 @@ import numpy as np
 from ..scene.boxes import box_of
 from ..scene.found_objects import Things
 from ..scene.scene import Scene
+from .room import sight_in_room
 from .sight import SPACE, Sight, best_sight
 
 TOWN = 30.0          # m, extent from which on the radar stands within the scene
@@ -20,7 +21,7 @@ FARTHEST = 300.0     # m that the radar looks
 
 
 class Vantage(NamedTuple):
-    """position: m; yaw: degrees; reach: m, up to which there is something to see; is_within: a town, not before an object."""
+    """position: m; yaw: degrees; reach: m, up to which there is something to see; is_within: not before an object."""
 
     position: list[float]
     yaw: float
@@ -31,7 +32,8 @@ class Vantage(NamedTuple):
 def vantage(scene: Scene, things: Things | None = None) -> Vantage:
     """Where a radar stands well in a scene.
 
-    Objects of less than 30 m are seen from behind, along +x. In larger scenes it is the place with most things in sight; where
+    Objects of less than 30 m are seen from behind, along +x; but what is closed to all sides at the height of a head, with things
+    and a free place in it, is a room, and seen from within. In larger scenes it is the place with most things in sight; where
     there are none, that nearest to the middle where nothing higher than a kerb is near, and the direction of the longest open
     way.
     things: of `things_of`, None: there are none
@@ -39,6 +41,10 @@ def vantage(scene: Scene, things: Things | None = None) -> Vantage:
     low, high = box_of(scene)
     middle, size = 0.5 * (low + high), float((high - low).max())
     if (high - low)[:2].max() < TOWN:
+        step = float((high - low)[:2].max()) / CELLS
+        if sight := sight_in_room(scene, low, high, step):
+            place = [low[0] + step * (sight.row + 0.5), low[1] + step * (sight.column + 0.5), low[2] + HEIGHT]
+            return Vantage(_rounded(place), float(np.degrees(sight.yaw)), 2.0 * float(np.linalg.norm(high - low)), True)
         distance = max(3.0, 2.0 * size)
         height = min(middle[2], low[2] + HEIGHT)
         return Vantage(_rounded([low[0] - distance, middle[1], height]), 0.0, 2.0 * distance + size, False)

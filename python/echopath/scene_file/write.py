@@ -44,13 +44,13 @@ num_rays = 200000
 max_bounces = 3
 """
 LABELS = """[labels]
-objects = "found"  # what stands in the town{names}, and what is added to the scene
+objects = "found"  # what stands there{names}, and what is added to the scene
 
 """
 NAMED = 12  # things of a town that a comment names
 START_FREQUENCY = 77e9  # Hz
 
-# By whether the radar stands within a town: whether planes are mirrors, and where it stands.
+# By whether the radar stands within a town or a room: whether planes are mirrors, and where it stands.
 _IN_TOWN = {True: ("true  # what is made of planes larger than their Fresnel zone, so that ghosts over them are found",
                    "in the open and looking at what stands there"),
             False: ("false  # true where walls and grounds are to make ghosts: a mirror has no echo but its image",

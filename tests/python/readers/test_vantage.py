@@ -62,3 +62,51 @@ def test_a_radar_that_looks_away_is_told_that_no_path_has_power():
         scene.add(ep.actors.plate(2.0, 2.0), name="plate", material="concrete", position=(ahead, 0.0, 1.0))
         paths = ep.trace(scene, radar, num_rays=20_000)
         assert report.unresolved(ep.unresolved(paths), paths)[0].startswith(told)
+
+
+def room_of(is_one_mesh, *, furniture=True, side=5.0):
+    """A room of side x 4 x 2.5 m about the z axis: a box, or walls with a thickness, and a cupboard and a table in it."""
+    scene = ep.Scene()
+    if is_one_mesh:
+        scene.add(ep.actors.box((side, 4.0, 2.5)), name="room", material="concrete", position=(0.0, 0.0, 1.25))
+    else:
+        for name, size, place in (("floor", (side, 4.0, 0.1), (0.0, 0.0, -0.05)), ("ceiling", (side, 4.0, 0.1), (0.0, 0.0, 2.55)),
+                                  ("left", (side, 0.1, 2.5), (0.0, 2.05, 1.25)), ("right", (side, 0.1, 2.5), (0.0, -2.05, 1.25)),
+                                  ("far", (0.1, 4.2, 2.5), (side / 2 + 0.05, 0.0, 1.25)),
+                                  ("near", (0.1, 4.2, 2.5), (-side / 2 - 0.05, 0.0, 1.25))):
+            scene.add(ep.actors.box(size), name=name, material="concrete", position=place)
+    if furniture:
+        scene.add(ep.actors.box((0.6, 0.8, 1.8)), name="cupboard", material="wood", position=(0.3 * side, -1.4, 0.91))
+        scene.add(ep.actors.box((1.2, 0.8, 0.04)), name="table", material="wood", position=(0.1 * side, 0.9, 0.75))
+    return scene
+
+
+@pytest.mark.parametrize("is_one_mesh", [True, False])
+def test_in_a_room_it_stands_within_and_looks_at_what_stands_there(is_one_mesh):
+    found = vantage(room_of(is_one_mesh))
+    x, y, z = found.position
+    assert found.is_within and abs(x) < 2.4 and abs(y) < 1.9 and 1.0 < z < 2.0 and found.reach > np.hypot(5.0, 4.0)
+    ways = np.array([(1.5, -1.4), (0.5, 0.9)]) - (x, y)
+    off_axis = (np.degrees(np.arctan2(ways[:, 1], ways[:, 0])) - found.yaw + 180.0) % 360.0 - 180.0
+    assert np.abs(off_axis).min() < 50.0
+
+
+@pytest.mark.parametrize("scene", [
+    room_of(True, furniture=False),                                   # a block, for all that is seen of it
+    room_of(True, side=1.8)], ids=["nothing in it", "no wider than a car"])
+def test_what_is_closed_but_no_room_is_looked_at_from_outside(scene):
+    found = vantage(scene)
+    assert not found.is_within and found.position[0] < -3.0
+
+
+@pytest.mark.parametrize("actor", [ep.actors.truck, ep.actors.van, ep.actors.car], ids=["truck", "van", "car"])
+def test_vehicles_are_no_rooms(actor):
+    scene = ep.Scene()
+    scene.add(actor(), name="vehicle")
+    assert not vantage(scene).is_within
+
+
+def test_what_has_a_gap_in_its_wall_is_looked_at_from_outside():
+    scene = room_of(False)
+    scene.remove("near")
+    assert not vantage(scene).is_within

@@ -84,7 +84,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
-    paths: of `trace` with that radar: objects, ghosts and the paths behind each detection
+    paths: of `trace` with that radar, whatever receiver and noise figure it had: objects, ghosts and the paths behind each
+        detection
     parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`; or, with paths, {name:
         selection} as `decompose` takes them. Those named "interference", "rain" or "leakage", here and in labels, are what no
         path makes: a detection of theirs is of no object
@@ -102,7 +103,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
         raise ValueError("labels: cannot be given beside parts")
     _require_other_names(parts, beside)
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
-        raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
+        raise ValueError(f"paths: must be traced with the radar of the spectrum, of any receiver, got another {field}")
     parts = None if parts is None else labelling.maps_of("parts", _signals_of(parts, paths, radar, progress), spectrum, radar)
     beside = labelling.maps_of("beside", beside, spectrum, radar)
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,

@@ -1,4 +1,4 @@
-"""Whether two radars would receive the same."""
+"""Whether two radars have the same echoes before what their receivers make of them."""
 from __future__ import annotations
 
 import numpy as np
@@ -10,8 +10,9 @@ _NUM_TIMES = 5  # at which motions are compared, over the frame
 
 
 def difference(radar, other, start_time: float = 0.0) -> str:
-    """The name of the first field in which two radars differ, "" where they receive the same.
+    """The name of the first field in which two radars differ, "" where the same echoes come to their antennas.
 
+    Noise figure and faults of the receiver may differ: paths and their ideal signals know nothing of them.
     start_time: s, of the frame: motions are compared by where they carry the radar during it.
     """
     if radar is other:
@@ -19,7 +20,7 @@ def difference(radar, other, start_time: float = 0.0) -> str:
     for name in (*WAVEFORM_KINDS, *WAVEFORM_LISTS):
         if getattr(radar.waveform, name) != getattr(other.waveform, name):
             return name
-    for name in ("transmit_power", "multiplexing", "empty_slots", "transmitters", "receivers", "receiver"):
+    for name in ("transmit_power", "multiplexing", "empty_slots", "transmitters", "receivers"):
         if getattr(radar, name) != getattr(other, name):
             return name
     if not np.array_equal(radar.code_phases, other.code_phases):

@@ -56,6 +56,24 @@ def test_labels_tell_noise_behind_the_receiver_too(spheres):
     assert not found.is_noise.any() and set(found.object) == set(TARGETS)
 
 
+@pytest.mark.parametrize("fault", FAULTS)
+def test_paths_serve_every_receiver_of_the_radar(spheres, fault):
+    """They are those of a new trace with that receiver, and so are the detections; parts and labels, too."""
+    radar, paths, _ = spheres
+    other = radar.replace(receiver=ep.Receiver(**FAULTS[fault]), noise_figure_db=radar.noise_figure_db + 3.0)
+    again = ep.trace(paths.scene, other, num_rays=6000, max_bounces=1)
+    assert np.array_equal(again.amplitude, paths.amplitude)
+    spectrum = ep.range_doppler(ep.receive(ep.synthesize(paths), other, seed=1).cube, other)
+    parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
+    found, wanted = (ep.detect(spectrum, other, paths=record, parts=parts) for record in (paths, again))
+    for name in ("cells", "range", "power", "object", "part", "share", "is_noise"):
+        assert np.array_equal(getattr(found, name), getattr(wanted, name), equal_nan=name == "share"), name
+    assert {*TARGETS} <= {*found.object}
+    assert ep.annotate(paths, parts, other).objects == ep.annotate(again, parts, other).objects
+    with pytest.raises(ValueError, match="paths: must be traced with the radar of the spectrum, of any receiver, got another tr"):
+        ep.detect(spectrum, other, paths=ep.trace(paths.scene, other.replace(transmit_power=1.0), num_rays=100))
+
+
 @pytest.mark.parametrize("receiver", [dict(low_pass=4e6), dict(high_pass=[3e6] * 3)])
 def test_filters_do_not_count_as_missing_noise(spheres, receiver):
     radar, paths, _ = spheres

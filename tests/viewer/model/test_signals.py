@@ -95,8 +95,9 @@ def test_parts_for_another_radar_are_refused(frame, change):
         from_paths(None, frame.paths, parts)
 
 
-def test_parts_for_an_equal_radar_are_taken(frame):
-    parts = ep.decompose(frame.paths, radar_like(frame.radar), {"ghost": GHOSTS})
+@pytest.mark.parametrize("change", [{}, {"receiver": ep.Receiver(low_pass=8e6), "noise_figure_db": 15.0}], ids=str)
+def test_parts_for_a_radar_of_the_same_echoes_are_taken(frame, change):
+    parts = ep.decompose(frame.paths, radar_like(frame.radar, **change), {"ghost": GHOSTS})
     assert from_paths(None, frame.paths, parts).parts["parts", "ghost"].mask.any()
 
 

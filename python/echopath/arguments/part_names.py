@@ -1,11 +1,12 @@
-"""Names of the parts of a signal that no path makes, which no part of the paths may take."""
+"""Names of the parts of a signal that no path makes where they stand, which no part of the paths may take."""
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 INTERFERENCE, RAIN, LEAKAGE = "interference", "rain", "leakage"
+RESIDUE = "residue"  # of the echoes of other transmitters, where `demultiplex` cannot tell codes apart
 REST = "other"  # the part of all paths that no other part has
-BESIDE = (INTERFERENCE, RAIN, LEAKAGE)  # of which labels and detections have what stands in maps
+BESIDE = (INTERFERENCE, RAIN, LEAKAGE, RESIDUE)  # of which labels and detections have what stands in maps
 NOISE, OFFSET, CONVERTER = "noise", "offset", "converter"
 OF_RECEIVER = (INTERFERENCE, LEAKAGE, NOISE, OFFSET, CONVERTER)  # of which `receive_parts` adds what there is
 _RESERVED = frozenset((*BESIDE, *OF_RECEIVER))

@@ -37,7 +37,7 @@ class Statistics:
     """What was counted in the frames of a dataset.
 
     frames: that were read; objects: of all of them; ghosts: cells by (class, ghost type); detections: number by what made
-    them: a class, a ghost of one, noise, interference, rain or leakage; drawn: {dotted path: values}, one for each scene
+    them: a class, a ghost of one, noise, interference, rain, leakage or residue; drawn: {dotted path: values}, one for each scene
     """
 
     frames: int = 0

@@ -87,8 +87,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     paths: of `trace` with that radar, whatever receiver and noise figure it had: objects, ghosts and the paths behind each
         detection
     parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`; or, with paths, {name:
-        selection} as `decompose` takes them. Those named "interference", "rain" or "leakage", here and in labels, are what no
-        path makes: a detection of theirs is of no object
+        selection} as `decompose` takes them. Those named "interference", "rain", "leakage" or "residue", here and in labels,
+        are what no path makes there: a detection of theirs is of no object
     labels: Labels of the map instead of parts; without paths their objects and ghosts too
     beside: {name: cube or RangeDoppler} of what no path makes, such as `Frame.beside_spectra`: a detection in whose cell one of
         these has the largest power has its name as part, and is of no object; named otherwise than the parts

@@ -3,13 +3,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arguments.part_names import INTERFERENCE, LEAKAGE
+from ..arguments.part_names import INTERFERENCE, LEAKAGE, RESIDUE
 from .channels import receiver_factors, require_channels, transmitter_factors
 from .filters import NEGATIVE_SHARE, has_filters, response
 from .settings import Receiver
 from .slots import SlotTimes
 
-_WITHOUT_TRANSMITTERS = (INTERFERENCE, LEAKAGE)  # the one has not their errors, the other has them already
+_WITHOUT_TRANSMITTERS = (INTERFERENCE, LEAKAGE, RESIDUE)  # the first has not their errors, the others have them already
 
 
 class EchoGains:

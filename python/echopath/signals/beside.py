@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN
+from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN, RESIDUE
+from ..receiver.channels import transmitter_factors
 from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes
 from ..transmit import demultiplex, signal_shape
@@ -12,9 +13,10 @@ from ..transmit import demultiplex, signal_shape
 
 def cubes_beside(frame) -> dict:
     """{name: [tx, rx, chirp, sample]} in sqrt(W) of what a frame has of it, each transmitter alone, without faults of the
-    receiver."""
+    receiver; what codes leave has the errors of the transmitters."""
     received = {INTERFERENCE: frame.interference_cube, RAIN: frame.rain_cube, LEAKAGE: _leaked(frame.radar)}
-    return {name: demultiplex(cube, frame.radar) for name, cube in received.items() if cube is not None}
+    apart = {name: demultiplex(cube, frame.radar) for name, cube in received.items() if cube is not None}
+    return apart | ({RESIDUE: _residue(frame)} if _leaves_residue(frame) else {})
 
 
 def leakage_map(radar, window, zero_pad: int):
@@ -24,6 +26,19 @@ def leakage_map(radar, window, zero_pad: int):
     """
     leaked = _leaked(radar)
     return None if leaked is None else _core.range_doppler(demultiplex(leaked, radar), radar, window, zero_pad)
+
+
+def _leaves_residue(frame) -> bool:
+    """Whether echoes of other transmitters are left in the signal of each. The signs of "bpm" leave next to nothing, and which
+    cell "ddm" gives to which transmitter depends on all that is there, so that nothing of it is a part."""
+    return frame.radar.multiplexing == "cdm" and len(frame.radar.transmitters) > 1 and frame.coded_cube is not None
+
+
+def _residue(frame):
+    """What `demultiplex` leaves in the signal of each transmitter of the echoes of the others, [tx, rx, chirp, sample]."""
+    factors = None if frame.radar.receiver is None else transmitter_factors(frame.radar.receiver, frame.radar)
+    own = frame.cube if factors is None else factors[:, None, None, None] * frame.cube
+    return demultiplex(frame.coded_cube, frame.radar) - own
 
 
 def _leaked(radar):

@@ -141,6 +141,29 @@ def test_frames_have_labels_detections_and_angles_however_transmitters_send(way)
     assert [one.cells for one in again.objects] == [one.cells for one in labels.objects]
 
 
+@pytest.mark.parametrize("receiver", [None, ep.Receiver(transmitter_gain_db=[0.0, 6.0, -3.0], receiver_gain_db=[2.0] * 4)])
+def test_what_random_codes_leave_of_other_transmitters_has_a_name(receiver):
+    """In the map of transmitter m the echoes of the others are turned by the difference of both codes."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material="metal", smooth=True, position=(4, 0.5, 0))
+    radar = array_radar(num_chirps=64, transmit_power=10.0, receiver=receiver, **WAYS_TO_SEND["cdm"])
+    frame = ep.simulate(scene, radar, num_rays=2000, max_bounces=1, labels=True, detections=True)
+    gains = 10.0 ** (np.array([0.0, 6.0, -3.0] if receiver else [0.0] * NUM_TX) / 20.0)
+    turns = np.exp(1j * (RANDOM_PHASES - RANDOM_PHASES[:, None]))  # [m, n, slot]
+    turns[np.arange(NUM_TX), np.arange(NUM_TX)] = 0.0
+    expected = ep.range_doppler(np.einsum("mnk,n,nrks->mrks", turns, gains, frame.cube), radar).values
+    residue = frame.beside_spectra["residue"].values
+    assert np.max(np.abs(residue - expected)) < ROUNDING * np.max(np.abs(expected))
+    found, labels = frame.detections, frame.labels["parts"]
+    of_ball = found.object == "ball"
+    assert np.count_nonzero(of_ball) == 1 and found.velocity[of_ball] == pytest.approx([0.0], abs=0.3)
+    assert len(found.part) > 8 and set(found.part[~of_ball]) == {"residue"} and not found.is_noise.any()
+    power = np.mean(np.abs(expected) ** 2, axis=(0, 1)) / np.mean(gains ** 2)  # labels are of echoes without errors
+    of_residue = labels.mask & (labels.dominant == labels.part_names.index("residue"))
+    assert of_residue.sum() > 50 and np.all(power[of_residue] > 0.1 * labels.whole[of_residue])
+    assert ep.detect(frame.spectrum, radar, paths=frame.paths).is_noise.sum() > 8  # without the name they are noise
+
+
 def test_parts_of_chirps_that_differ_are_those_of_their_paths_alone():
     radar = array_radar(num_chirps=6, frequency_steps=(0.0, 2e8), bandwidth_steps=(0.0, 0.0, 3e8))
     paths = plates(1.0, -2.0, radar=radar)

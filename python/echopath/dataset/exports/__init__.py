@@ -37,8 +37,8 @@ def exported(dataset: Dataset, folder: str | os.PathLike[str], name: str) -> Ite
 
 
 def are_echoes(found: Detections) -> NDArray[np.bool_]:
-    """Which detections are echoes of the scene, [D]: neither noise nor what comes in beside them, as interference, rain and
-    leakage do."""
+    """Which detections are echoes of the scene, [D]: neither noise nor what comes in beside them, as interference, rain,
+    leakage and residues of codes do."""
     return ~(found.is_noise | np.isin(found.part, part_names.BESIDE))
 
 

@@ -39,7 +39,7 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     (`Detections.centre`), with the radar's axes) and detections: position (distance m, azimuth and elevation rad, in
     the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
     of the first antennas), snr (dB), object_id (place in the scene's objects; 2^64 - 1: the surroundings or noise),
-    existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage), 1 of echoes;
+    existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage, residue), 1 of echoes;
     classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
     a folder traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.

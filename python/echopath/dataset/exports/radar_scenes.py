@@ -65,9 +65,10 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
     dataset: as of `open`, of a template with an array that tells azimuths apart and [detections]; else with keep = "all", or
         its `remade()`: then detections are those of `ep.detect_frame`
     folder: new or empty; it gets the folder data, whole or not at all: after a kill, the same call writes it anew.
-    clutter: what becomes of detections that are no echoes: noise, interference, rain and leakage. "static": they are points of
-        label_id 11 (static) without a track, as RadarScenes, which has no class of its own for them, labels all points that no
-        moving road user makes; "omit": they are left out. `write_osi` has them as CLUTTER of existence_probability 0
+    clutter: what becomes of detections that are no echoes: noise, interference, rain, leakage, residues of codes. "static":
+        points of label_id 11 (static) without a track, as RadarScenes, which has no class of its own for them, labels all
+        points that no moving road user makes; "omit": they are left out. `write_osi` has them as CLUTTER of
+        existence_probability 0
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
     the radar equation with the gains of the first antennas), vr and vr_compensated (m/s, receding positive; the second without
     the radar's own motion), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or

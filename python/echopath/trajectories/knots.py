@@ -12,7 +12,8 @@ import numpy as np
 
 from .. import _core
 
-LONGEST = 1.0          # s between keys
+LONGEST = 1.0          # s between keys, of functions that last no longer than MOST_EVEN of these
+MOST_EVEN = 2**16      # intervals to begin with: of longer functions those are longer by a power of two
 SHORTEST = 2.0**-14    # s: a function that asks for more is not smooth
 CHECKS = 0.5, 0.23, 0.77               # of the way between keys, where the cubic is held against the function
 INSIDE = 1e-6          # of the way between keys: where rates are those of this side of a key
@@ -48,7 +49,8 @@ def _intervals(junctions):
     begin, end = junctions[0], junctions[-1]
     if end - begin > MOST_KEYS * LONGEST:
         raise _too_many_keys()
-    grid = np.arange(np.ceil(begin / LONGEST), np.ceil(end / LONGEST)) * LONGEST
+    longest = LONGEST * 2.0 ** np.ceil(np.log2(max(1.0, (end - begin) / (MOST_EVEN * LONGEST))))
+    grid = np.arange(np.ceil(begin / longest), np.ceil(end / longest)) * longest
     knots = np.unique(np.concatenate([junctions, grid]))
     apart = np.concatenate([[True], np.diff(knots) > 1e-9])      # of two that are one, the earlier
     apart[-1] = True

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.trajectories.knots import curve_through
 from echopath.trajectories.path import SplinePath
 from support.odd_values import is_named, refusals
 
@@ -253,8 +254,38 @@ def test_what_makes_no_sense_is_refused(wrong, words):
         ep.Trajectory(**{"points": [(0, 0), (9, 0)], "speed": 3.0} | wrong)
 
 
+def test_a_million_seconds_need_keys_where_they_turn():
+    """Two lines and an arc at 1 m/s with a wait, against their closed forms."""
+    side, wait = 4e5, 2e5
+    long = ep.Trajectory([(0, 0), (side, 0), (side, side)], speed=1.0, turn_radius=RADIUS, stops=[(1e5, wait)],
+                         acceleration=1.0, deceleration=1.0)
+    arc = side - RADIUS + wait + 1.0  # s, when it begins: brakes and start take a second more than going on
+    angle = 0.5 * np.pi * np.linspace(0.0, 1.0, 201)
+    times = np.concatenate([np.linspace(0.0, 99_999.0, 2003), np.linspace(100_002.0 + wait, arc, 4001), arc + RADIUS * angle,
+                            np.linspace(arc + RADIUS * 0.5 * np.pi, long.end, 4001)])
+    x = np.concatenate([times[:2003], times[2003:6004] - wait - 1.0, side - RADIUS + RADIUS * np.sin(angle), np.full(4001, side)])
+    y = np.concatenate([np.zeros(6004), RADIUS * (1.0 - np.cos(angle)), RADIUS + times[6205:] - times[6205]])
+    poses = np.array([long.at(time) for time in times])
+    assert np.abs(poses[:, :2, 3] - np.stack([x, y], axis=-1)).max() < MICROMETRES
+    bearing = np.concatenate([np.zeros(6004), angle, np.full(4001, 0.5 * np.pi)])
+    assert np.abs(poses[:, :2, 0] - np.stack([np.cos(bearing), np.sin(bearing)], axis=-1)).max() < 4e-6
+    assert len(long.translation.times) < 70_000 and long.end == pytest.approx(1e6 - 2 * RADIUS + RADIUS * 0.5 * np.pi + 1.0)
+
+
+def test_turns_between_keys_that_lie_far_apart_are_met():
+    """Keys of a week begin 16 s apart, of which 6.25 turns a second make whole turns, as 0.5, 0.23 and 0.77 of them do."""
+    rate = 2.0 * np.pi * 6.25
+
+    def wheel(times):
+        return np.cos(rate * times)[:, None], -rate * np.sin(rate * times)[:, None]
+
+    with pytest.raises(ValueError, match="^trajectory: .*too long or too wild"):
+        curve_through(wheel, [0.0, 6e5], 1e-6)
+    assert len(curve_through(wheel, [0.0, 60.0], 1e-6).times) > 60 * 6.25 * 8
+
+
 def test_what_lasts_too_long_is_refused_at_once():
-    """Each second would have a key: of 1e7 s they would fill the memory for minutes."""
+    """At a key a second, as turns need them, 1e7 s would fill the memory for minutes."""
     begin = time.process_time()
     with pytest.raises(ValueError, match="^trajectory: must be followed by at most 2000000 keys"):
         ep.Trajectory([(0, 0), (9, 0)], times=[0, 9e6])

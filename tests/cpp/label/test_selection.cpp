@@ -84,6 +84,41 @@ TEST(Selection, TextReadsLikeTheAlgebra) {
   EXPECT_EQ((a | b | c).text(), "(T .* 'pedestrian' .* R) | (T .{1} R) | (T .{2,} R)");
 }
 
+// Chains in which each step is joined to all before it, from either side; a step that copied them would take minutes.
+TEST(Selection, LongChainsReadAsTheyWereJoined) {
+  constexpr int kLength = 60000;
+  const auto term = [](int number) { return Selection::num_bounces(number % 60); };
+  Selection forth = term(0), back = term(0);
+  std::string forth_text = "(" + term(0).text() + ")", back_text = forth_text;
+  for (int number = 1; number < kLength; ++number) {
+    forth = forth | term(number);
+    forth_text += " | (" + term(number).text() + ")";
+    back = term(number) & back;
+  }
+  for (int number = 1; number < 60; ++number) back_text = "(" + term(number).text() + ") & " + back_text;
+  EXPECT_EQ(forth.text(), forth_text);
+  EXPECT_TRUE(back.text().ends_with(back_text));
+  EXPECT_EQ(Selection(forth_text).text(), forth_text);
+  const Paths paths = make_paths({{}, {{kTorso, false}}});
+  EXPECT_EQ((forth & Selection::num_bounces(1)).matches(paths), (Bits{0, 1}));
+  EXPECT_THROW(forth | Selection(forth_text), std::invalid_argument);  // 120 000 terms
+}
+
+TEST(Selection, WhatStandsInBothOperandsIsTakenOnce) {
+  const Selection a = Selection::num_bounces(1, 1), b = Selection::num_bounces(2, 2), c = Selection::num_bounces(3);
+  EXPECT_EQ((a | a).text(), a.text());
+  EXPECT_EQ(((a | b) | (a | b)).text(), (a | b).text());
+  EXPECT_EQ(((b | a) | (c | b)).text(), (b | a | c).text());
+  EXPECT_EQ(((a & b) | (a & b)).text(), "((T .{1} R) & (T .{2} R)) | ((T .{1} R) & (T .{2} R))");  // two that read alike
+  Selection sum = a;
+  for (int k = 0; k < 40; ++k) sum = (sum | b) | (c | sum);  // 2^40 terms, but that they are three
+  EXPECT_EQ(sum.text(), (a | b | c).text());
+  Selection half = a;
+  for (int k = 0; k < 15; ++k) half = (half | b) | (c | half);
+  EXPECT_EQ(((half & a) & ~half & ((half & b) | half)).text(),  // each counts as more than 30 000 before it is looked at
+            (((a | b | c) & a) & ~(a | b | c) & (((a | b | c) & b) | a | b | c)).text());
+}
+
 TEST(Selection, FirstAndLastAreTheEndsOfAPath) {
   const Paths paths = make_paths(some_paths());
   const auto is_wall = [](const HandMadeHit& hit) { return hit.mesh_id == kWallLeft || hit.mesh_id == kWallRight; };

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -28,35 +29,79 @@ struct Selection::Term {
   int min = 0, max = 0;                        // kNumBounces
   Comparison comparison = Comparison::kAbove;  // kPower
   double watts = 0.0;                          // kPower
-  std::vector<Selection> children = {};        // kAnd, kOr: two or more, kNot: one
-  int64_t size = 1;                            // leaves as often as they are evaluated, though operands are shared
-  int depth = 1;                               // of the tree of terms
+  std::vector<Selection> operands = {};        // kAnd, kOr: two or more, also of the same kind; kNot: one
+  int64_t size = 1;                            // leaves as often as they are evaluated, or more where operands share some
+  int depth = 1;                               // of the tree of terms, in which a chain of & or | is one
 
   static Selection make(Term term) {
-    if (!term.children.empty()) term.size = 0;
-    for (const Selection& child : term.children) {
-      term.size += child.term_->size;
-      term.depth = std::max(term.depth, child.term_->depth + 1);
+    count(term);
+    if (term.size > kMaxTerms) {
+      term.operands = term.children();
+      std::unordered_map<const Term*, int64_t> known;
+      term.size = exact_size(term, known);
     }
     require(term.size <= kMaxTerms, "selection", "must have at most " + std::to_string(kMaxTerms) + " terms", term.size);
     require(term.depth <= kMaxDepth, "selection", "must be nested at most " + std::to_string(kMaxDepth) + " deep",
             term.depth);
-    return Selection(std::make_shared<const Term>(std::move(term)));
+    return Selection(std::shared_ptr<const Term>(new Term(std::move(term)), &release));
   }
 
-  // Takes over children of the same kind, so that a long chain of | is one term and not a deep tree. What stands in both
-  // operands is taken once: s & s is s.
-  static Selection combine(Kind kind, const Selection& a, const Selection& b) {
-    Term term{.kind = kind};
-    std::unordered_set<const Term*> taken;
-    const auto take = [&](const Selection& child) {
-      if (taken.insert(child.term_.get()).second) term.children.push_back(child);
-    };
-    for (const Selection& operand : {a, b}) {
-      if (operand.term_->kind != kind) take(operand);
-      else std::ranges::for_each(operand.term_->children, take);
+  // Writes depth, and as size what it is at most.
+  static void count(Term& term) {
+    if (!term.operands.empty()) term.size = 0;
+    for (const Selection& operand : term.operands) {
+      term.size += operand.term_->size;
+      term.depth = std::max(term.depth, operand.term_->depth + (operand.term_->kind == term.kind ? 0 : 1));
     }
-    return term.children.size() == 1 ? term.children.front() : make(std::move(term));
+  }
+
+  // Returns the size without what stands in several operands of a chain, and remembers it in `known`.
+  static int64_t exact_size(const Term& term, std::unordered_map<const Term*, int64_t>& known) {
+    if (term.operands.empty()) return 1;
+    int64_t& size = known[&term];  // stays where it is
+    if (size > 0) return size;
+    int64_t sum = 0;
+    for (const Selection& child : term.children()) sum += exact_size(*child.term_, known);
+    return size = sum;
+  }
+
+  // Holds the operands as they are, so that each step of a long chain costs the same. s & s is s.
+  static Selection combine(Kind kind, const Selection& a, const Selection& b) {
+    return a.term_ == b.term_ ? a : make({.kind = kind, .operands = {a, b}});
+  }
+
+  // Returns what a chain of the same kind joins, in order, so that a long chain of | is one term and not a deep tree. What
+  // stands in several operands is taken once.
+  std::vector<Selection> children() const {
+    std::vector<Selection> found;
+    std::unordered_set<const Term*> taken;
+    std::vector<const Selection*> left;  // the last one is next
+    const auto open = [&](const Term& term) {
+      for (auto operand = term.operands.rbegin(); operand != term.operands.rend(); ++operand) left.push_back(&*operand);
+    };
+    for (open(*this); !left.empty();) {
+      const Selection& next = *left.back();
+      left.pop_back();
+      if (!taken.insert(next.term_.get()).second) continue;
+      if (next.term_->kind == kind) open(*next.term_);
+      else found.push_back(next);
+    }
+    return found;
+  }
+
+  // Deletes a term and then, one after the other, the operands that it was the last to hold: those of a long chain would
+  // exhaust the stack if each deleted its own.
+  static void release(const Term* term) {
+    thread_local std::vector<const Term*>* of_first_call = nullptr;
+    if (of_first_call) return of_first_call->push_back(term);
+    std::vector<const Term*> waiting = {term};
+    of_first_call = &waiting;
+    while (!waiting.empty()) {
+      const Term* next = waiting.back();
+      waiting.pop_back();
+      delete next;  // calls this function for its operands
+    }
+    of_first_call = nullptr;
   }
 };
 
@@ -104,8 +149,8 @@ Selection operator|(const Selection& a, const Selection& b) {
 
 Selection operator~(const Selection& a) {
   using Term = Selection::Term;
-  if (a.term_->kind == Term::Kind::kNot) return a.term_->children.front();
-  return Term::make({.kind = Term::Kind::kNot, .children = {a}});
+  if (a.term_->kind == Term::Kind::kNot) return a.term_->operands.front();
+  return Term::make({.kind = Term::Kind::kNot, .operands = {a}});
 }
 
 namespace {
@@ -193,17 +238,18 @@ void Selection::narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job*
 }
 
 void Selection::narrow_by_children(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job) const {
+  const std::vector<Selection> children = term_->children();
   if (term_->kind == Term::Kind::kAnd) {  // quick children go first and spare the expressions work
     const auto is_quick = [](const Selection& child) { return child.term_->kind == Term::Kind::kNumBounces; };
     for (const bool quick : {true, false}) {
-      for (const Selection& child : term_->children) {
+      for (const Selection& child : children) {
         if (is_quick(child) == quick) child.narrow(paths, candidates, job);
       }
     }
     return;
   }
   Bits left = candidates;  // those that no child takes; for one child, the complement
-  for (const Selection& child : term_->children) {
+  for (const Selection& child : children) {
     Bits taken = left;
     child.narrow(paths, taken, job);
     clear(left, taken);
@@ -214,7 +260,7 @@ void Selection::narrow_by_children(PathTraits& paths, std::vector<uint8_t>& cand
 
 void Selection::check_globs(const std::vector<std::string>& mesh_names) const {
   if (term_->kind == Term::Kind::kExpression) Automaton(term_->expression, mesh_names);
-  for (const Selection& child : term_->children) child.check_globs(mesh_names);
+  for (const Selection& child : term_->children()) child.check_globs(mesh_names);
 }
 
 std::string Selection::text() const {
@@ -223,9 +269,10 @@ std::string Selection::text() const {
   if (term.kind == Term::Kind::kPower) return power_text(term.comparison, term.watts);
   if (term.kind == Term::Kind::kNumBounces) return num_bounces_text(term.min, term.max);
   std::string joined = term.kind == Term::Kind::kNot ? "~" : "";
-  for (size_t child = 0; child < term.children.size(); ++child) {
+  const std::vector<Selection> children = term.children();
+  for (size_t child = 0; child < children.size(); ++child) {
     if (child > 0) joined += term.kind == Term::Kind::kAnd ? " & " : " | ";
-    const Selection& operand = term.children[child];
+    const Selection& operand = children[child];
     const bool bare = operand.term_->kind == Term::Kind::kNot;
     joined += bare ? operand.text() : std::string("(").append(operand.text()).append(")");
   }

@@ -55,7 +55,8 @@ class Selection {
   enum class Comparison { kBelow, kAtMost, kAbove, kAtLeast };
   static Selection power(Comparison comparison, double watts);
 
-  // What both have is taken once. Raise invalid_argument beyond 100 000 terms, or 100 levels.
+  // What both have is taken once. Each step of a chain costs the same, however long it is. Raise invalid_argument beyond
+  // 100 000 terms, or 100 levels.
   friend Selection operator&(const Selection& a, const Selection& b);
   friend Selection operator|(const Selection& a, const Selection& b);
   friend Selection operator~(const Selection& a);

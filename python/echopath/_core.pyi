@@ -3233,7 +3233,7 @@ def cell_noise_power(radar: Radar, window: typing.Any) -> float:
     """
     Mean power of the receiver's noise in a cell of a range-Doppler map, W.
     """
-def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, progress: typing.Any = None) -> CfarResult:
+def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, noise_shape: collections.abc.Sequence[float] = [], progress: typing.Any = None) -> CfarResult:
     """
     What ep.cfar calls.
     """

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "call/define.h"
 #include "call/run_job.h"
@@ -21,9 +23,11 @@ constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
 
 CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
                    std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
-                   std::optional<int> training_range, double rank, const py::object& progress) {
+                   std::optional<int> training_range, double rank, std::vector<double> noise_shape,
+                   const py::object& progress) {
   const CfarOptions options{
-      kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank};
+      kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank,
+      std::move(noise_shape)};
   return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
 }
 
@@ -155,8 +159,8 @@ void bind_cfar(py::module_& m) {
   m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
         py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
         py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
-        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(),
-        "What ep.cfar calls.");
+        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank,
+        py::arg("noise_shape") = standard.noise_shape, py::arg("progress") = py::none(), "What ep.cfar calls.");
   m.def("check_cfar", &check_cfar, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
         py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
         py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),

@@ -6,6 +6,7 @@ import numpy as np
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RESIDUE
 from .channels import receiver_factors, require_channels, transmitter_factors
 from .filters import NEGATIVE_SHARE, has_filters, response
+from .imbalance import weights_of_imbalance
 from .settings import Receiver
 from .slots import SlotTimes
 
@@ -48,8 +49,7 @@ def _filter_gains(receiver: Receiver, waveform, ranges) -> np.ndarray:
 
 def _kept(receiver: Receiver, waveform) -> float:
     """What is left of an echo beside its image: `unbalanced`."""
-    turn = 10.0 ** (receiver.iq_gain_db / 20.0) * np.exp(1j * receiver.iq_phase)
-    return 1.0 if waveform.real else 0.5 * float(np.abs(1.0 + turn))
+    return 1.0 if waveform.real else float(np.abs(weights_of_imbalance(receiver)[0]))
 
 
 def _mean_of_receivers(receiver: Receiver, radar, start_time: float) -> np.ndarray:

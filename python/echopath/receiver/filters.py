@@ -46,7 +46,7 @@ def filtered(cube: np.ndarray, waveform, receiver: Receiver, models: np.ndarray)
     models: `models_of` the cube, or of that of which it is a part
     """
     chirps = cube.reshape(-1, cube.shape[-1])
-    past = _length_of_past(waveform, receiver)
+    past = length_of_past(waveform, receiver)
     gain = response(receiver, beat_frequencies(waveform, chirps.shape[1] + past))
     if waveform.real and len(gain) % 2 == 0:
         gain[len(gain) // 2] = abs(gain[len(gain) // 2])
@@ -59,7 +59,7 @@ def filtered(cube: np.ndarray, waveform, receiver: Receiver, models: np.ndarray)
     return made.reshape(cube.shape)
 
 
-def _length_of_past(waveform, receiver: Receiver) -> int:
+def length_of_past(waveform, receiver: Receiver) -> int:
     """Samples in which the past fades and the filters settle, more than a chirp has where corners are low."""
     slowest = [*receiver.high_pass]  # Hz, what poles decay by over 2 pi
     if receiver.low_pass is not None:

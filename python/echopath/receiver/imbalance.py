@@ -23,14 +23,19 @@ def compressed(cube: np.ndarray, gain: np.ndarray, radar) -> np.ndarray:
     return as_samples(analytic(cube, radar.waveform.real) * gain, radar.waveform.real)
 
 
+def weights_of_imbalance(receiver: Receiver) -> tuple[complex, complex]:
+    """(a, b) of a x + b x*, what the branches make of a signal x: I stays as it is, Q = g (Q cos p + I sin p), so that
+    a = (1 + g e^{jp}) / 2 and b = (1 - g e^{-jp}) / 2."""
+    turn = 10.0 ** (receiver.iq_gain_db / 20.0) * np.exp(1j * receiver.iq_phase)
+    return 0.5 * (1.0 + turn), 0.5 * (1.0 - np.conj(turn))
+
+
 def unbalanced(cube: np.ndarray, waveform, receiver: Receiver) -> np.ndarray:
-    """I stays as it is, Q = g (Q cos p + I sin p): a x + b x* with a = (1 + g e^{jp}) / 2 and b = (1 - g e^{-jp}) / 2.
-    Samples of real signals have one branch."""
-    gain = 10.0 ** (receiver.iq_gain_db / 20.0)
-    if waveform.real or (gain == 1.0 and receiver.iq_phase == 0.0):
+    """A cube with the imbalance of the branches. Samples of real signals have one branch."""
+    own, image = weights_of_imbalance(receiver)
+    if waveform.real or image == 0.0:
         return cube
-    turn = gain * np.exp(1j * receiver.iq_phase)
-    return 0.5 * (1.0 + turn) * cube + 0.5 * (1.0 - np.conj(turn)) * np.conj(cube)
+    return own * cube + image * np.conj(cube)
 
 
 def with_offset(cube: np.ndarray, waveform, receiver: Receiver) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real, refused
 from ..arguments.settings import SignalSettings
+from ..receiver.noise_shape import noise_shape
 from ..transmit.code import is_coded, signal_shape
 
 CfarMethod = Literal["ca", "os"]
@@ -58,8 +59,10 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
 
     A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
     right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
-    channels. Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    channels. Behind the filters of `radar.receiver` cells compare by their power over that of the noise at their range, which
+    follows from the filters, the imbalance of the branches and, for what the converter adds, the quietest ranges of the map.
+    Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar, as its receiver gives it
     radar: that of the spectrum
     method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
     false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
@@ -76,4 +79,4 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     """
     return _core.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                       guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
-                      progress=progress)
+                      noise_shape=noise_shape(spectrum, radar), progress=progress)

@@ -96,6 +96,29 @@ TEST(Cfar, FindsWhatALoopOverAllTrainingCellsFinds) {
   }
 }
 
+// A map whose ranges are 1, 2, 4 or 8 times as large finds the same as the map without: such factors leave no rounding.
+TEST(Cfar, NoiseOfAKnownShapeIsComparedAsIfItWereAlikeAtAllRanges) {
+  const Radar radar = radar_of();
+  const RangeDoppler map = random_map(radar, 3);
+  RangeDoppler shaped = map;
+  std::vector<double> noise_shape(map.range.size());
+  for (size_t r = 0; r < noise_shape.size(); ++r) noise_shape[r] = std::exp2(2.0 * static_cast<double>(r * r % 4));
+  for (size_t i = 0; i < map.values.size(); ++i) shaped.values[i] *= std::sqrt(noise_shape[i % noise_shape.size()]);
+  for (const CfarMethod method : {CfarMethod::kCellAveraging, CfarMethod::kOrderedStatistic}) {
+    CfarOptions options = small_options(method);
+    const CfarResult wanted = cfar(map, radar, options);
+    EXPECT_NE(cfar(shaped, radar, options).cells, wanted.cells);
+    options.noise_shape = noise_shape;
+    const CfarResult found = cfar(shaped, radar, options);
+    ASSERT_EQ(found.cells, wanted.cells);
+    for (size_t i = 0; i < found.cells.size(); ++i) {
+      const auto [v, r] = found.cells[i];
+      EXPECT_EQ(found.noise[i], wanted.noise[i] * noise_shape[r]);
+      EXPECT_EQ(found.power[v * found.num_ranges + r], wanted.power[v * found.num_ranges + r] * noise_shape[r]);
+    }
+  }
+}
+
 TEST(Cfar, VelocityIsACircle) {
   const Radar radar = radar_of(1);
   const RangeDoppler map = random_map(radar, 2);
@@ -174,7 +197,10 @@ TEST(Cfar, BadInputNamesTheArgument) {
       {"guard_range", with([](CfarOptions& o) { o.guard_range = 0; })},
       {"guard_range", with([](CfarOptions& o) { o.guard_range = -1; })},
       {"training_velocity", with([](CfarOptions& o) { o.training_velocity = 7; })},
-      {"training_range", with([](CfarOptions& o) { o.training_range = o.training_velocity = 0; })}};
+      {"training_range", with([](CfarOptions& o) { o.training_range = o.training_velocity = 0; })},
+      {"noise_shape", with([](CfarOptions& o) { o.noise_shape = {1.0}; })},
+      {"noise_shape",
+       with([](CfarOptions& o) { o.noise_shape = std::vector<double>(39, 1.0), o.noise_shape.push_back(0.0); })}};
   for (const auto& [name, options] : cases) {
     test::expect_error<std::invalid_argument>([&] { cfar(map, radar, options); }, {name});
   }

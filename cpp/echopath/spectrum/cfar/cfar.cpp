@@ -43,7 +43,9 @@ struct Found {
 
 class Detector {
  public:
-  Detector(const CfarResult& result, TrainingPower& training) : result_(result), training_(training) {}
+  // `power` [V, R] is the result's where noise is alike in all cells.
+  Detector(const CfarResult& result, const std::vector<double>& power, const TrainingPower& training)
+      : result_(result), power_(power), training_(training) {}
 
   // Returns the cells of a row above their thresholds.
   std::vector<Found> row(int64_t velocity) const {
@@ -57,7 +59,7 @@ class Detector {
   }
 
   std::vector<Found> averaged(int64_t velocity) const {
-    const double* power = result_.power.data() + velocity * result_.num_ranges;
+    const double* power = power_.data() + velocity * result_.num_ranges;
     const double share = 1.0 / static_cast<double>(result_.design.cells.num_training());
     std::vector<double> sum(result_.num_ranges);
     training_.sums(velocity, sum.data());
@@ -69,7 +71,7 @@ class Detector {
   }
 
   std::vector<Found> ordered(int64_t velocity) const {
-    const double* power = result_.power.data() + velocity * result_.num_ranges;
+    const double* power = power_.data() + velocity * result_.num_ranges;
     const int64_t order = result_.design.order();
     std::vector<Found> found;
     for (int64_t r = 0; r < result_.num_ranges; ++r) {
@@ -80,22 +82,39 @@ class Detector {
   }
 
   const CfarResult& result_;
+  const std::vector<double>& power_;
   const TrainingPower& training_;
 };
 
-void detect(CfarResult& result, Job* job) {
-  TrainingPower training(result.power, result.num_velocities, result.num_ranges, result.design.cells);
+// Returns the powers of rows of ranges, each over that of the noise at its range.
+std::vector<double> over_noise(std::vector<double> power, const std::vector<double>& noise_shape) {
+  for (size_t cell = 0; cell < power.size(); ++cell) power[cell] /= noise_shape[cell % noise_shape.size()];
+  return power;
+}
+
+void require_noise_shape(const std::vector<double>& noise_shape, int64_t num_ranges) {
+  require(std::ssize(noise_shape) == num_ranges, "noise_shape",
+          "must have a value for each range, " + std::to_string(num_ranges), noise_shape.size());
+  for (const double level : noise_shape)
+    require(std::isfinite(level) && level > 0.0, "noise_shape", "must have finite values above 0", level);
+}
+
+void detect(CfarResult& result, const std::vector<double>& noise_shape, Job* job) {
+  const bool is_shaped = !noise_shape.empty();
+  const std::vector<double> shaped = is_shaped ? over_noise(result.power, noise_shape) : std::vector<double>();
+  const std::vector<double>& power = is_shaped ? shaped : result.power;
+  TrainingPower training(power, result.num_velocities, result.num_ranges, result.design.cells);
   if (result.design.method == CfarMethod::kCellAveraging) {
     parallel_for(result.num_velocities, [&](int64_t v) { training.prepare_row(v); });
   }
-  const Detector detector(result, training);
+  const Detector detector(result, power, training);
   std::vector<std::vector<Found>> rows(result.num_velocities);
   if (job) job->start(result.num_velocities);
   parallel_for(result.num_velocities, [&](int64_t v) { rows[v] = detector.row(v); }, job);
   for (int64_t v = 0; v < result.num_velocities; ++v) {
     for (const Found& found : rows[v]) {
       result.cells.push_back({v, found.range});
-      result.noise.push_back(found.noise);
+      result.noise.push_back(found.noise * (is_shaped ? noise_shape[found.range] : 1.0));
     }
   }
 }
@@ -133,7 +152,8 @@ CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& 
   result.power = mean_power(map, job);
   for (const double power : result.power)
     require(std::isfinite(power), "spectrum", "must have values whose power is finite", power);
-  detect(result, job);
+  if (!options.noise_shape.empty()) require_noise_shape(options.noise_shape, result.num_ranges);
+  detect(result, options.noise_shape, job);
   return result;
 }
 

@@ -19,6 +19,8 @@ struct CfarOptions {
   double false_alarm_rate = 1e-6;  // of each cell
   std::optional<int> guard_velocity, guard_range, training_velocity, training_range;
   double rank = 0.75;  // kOrderedStatistic: share of the training cells up to the statistic
+  // [R] mean power of the noise at each range, in any unit, as the filters of a receiver shape it; empty: alike at all.
+  std::vector<double> noise_shape = {};
 };
 
 struct CfarResult {
@@ -34,9 +36,9 @@ struct CfarResult {
 // false-alarm rate (Finn, Johnson 1968: cell averaging; Rohling 1983: ordered statistic). The velocity axis wraps around; at
 // the ends of the range axis training cells are taken from the other side. A target within the training cells of its
 // neighbours raises their thresholds, for the ordered statistic less.
-// Model: noise is alike in all cells and independent between channels. The threshold allows for the correlation that window
-// and zero padding make (cfar_factor.h). For real samples it does not hold within the main lobe of range 0, where the image
-// leaks.
+// Model: noise is independent between channels and alike in all cells, or has the noise shape, by which the power of each
+// cell is divided before it is compared with others. The threshold allows for the correlation that window and zero padding
+// make (cfar_factor.h). For real samples it does not hold within the main lobe of range 0, where the image leaks.
 // Cost per cell: CA takes as many additions as the window has rows, and log2 of its columns; OS counts about a quarter of
 // its training cells. Runs in parallel over velocities; the result does not depend on the number of threads.
 // The thresholds are computed once for each design (the last 8 are kept), at a cost that is cubic in the number of cells of

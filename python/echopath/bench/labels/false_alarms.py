@@ -24,14 +24,17 @@ class NoiseMap:
     receivers: int = 1
     transmitters: int = 1
     real: bool = False
+    low_pass: float | None = None  # Hz, of the filter of the receiver
 
     def __str__(self) -> str:
         kind = (", real" if self.real else "") + (", TDM" if self.transmitters > 1 else "")
+        kind += "" if self.low_pass is None else f", {1e-6 * self.low_pass:g} MHz"
         return f"{self.window}, padded {self.zero_pad}, {self.receivers * self.transmitters} channels{kind}"
 
 
 MAPS = (NoiseMap("rect"), NoiseMap("hann"), NoiseMap("hann", zero_pad=2), NoiseMap("hann", receivers=4),
-        NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True))
+        NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True),
+        NoiseMap("hann", receivers=4, low_pass=8e6))
 
 
 def measure_false_alarms(num_cells: int = 10_000_000, *, maps=MAPS, rates=RATES) -> list[dict]:
@@ -73,7 +76,7 @@ def _measure(num_cells: int, of_map: NoiseMap, rates) -> list[dict]:
 
 def _noise(radar, of_map: NoiseMap, seed: int):
     shape = (of_map.transmitters, of_map.receivers, NUM_CHIRPS, NUM_SAMPLES)
-    cube = ep.add_noise(np.zeros(shape, complex), radar, seed=seed)
+    cube = ep.receive(np.zeros(shape, complex), radar, seed=seed).cube
     return ep.range_doppler(cube, radar, window=of_map.window, zero_pad=of_map.zero_pad)
 
 
@@ -88,4 +91,5 @@ def _radar(of_map: NoiseMap) -> ep.Radar:
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=NUM_SAMPLES, sampling_rate=20e6,
                                 num_chirps=NUM_CHIRPS, chirp_interval=60e-6, real=of_map.real)
     return ep.Radar(waveform, transmitters=[ep.Antenna((0.0, 0.002 * index, 0.0)) for index in range(of_map.transmitters)],
-                    receivers=[ep.Antenna((0.0, 0.002 * index, 0.0)) for index in range(of_map.receivers)])
+                    receivers=[ep.Antenna((0.0, 0.002 * index, 0.0)) for index in range(of_map.receivers)],
+                    receiver=None if of_map.low_pass is None else ep.Receiver(low_pass=of_map.low_pass))

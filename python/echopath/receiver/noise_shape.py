@@ -1,0 +1,82 @@
+"""How the noise behind a receiver's filters lies over the ranges of a map."""
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from .. import _core
+from ..spectra.windows import of_range, samples_of
+from .filters import beat_frequencies, has_filters, length_of_past, response
+from .imbalance import weights_of_imbalance
+
+_BLOCKS = 16       # of ranges; of the quarter of which filters leave least, the quietest tells the noise behind them
+_ROUNDING = 1e-12  # of the largest power, below which there is nothing but rounding
+_MOST_SAMPLES = 1 << 20  # of responses that are transformed at once
+
+
+def noise_shape(spectrum, radar) -> np.ndarray:
+    """Mean power [R] of the noise at each range of a map over that without filters; [0] where it is alike at all.
+
+    Model: thermal noise behind filters and imbalance, seen through the window; and white noise behind the filters, as of
+    quantisation, by which cells exceed it where filters leave little. That level is taken from the map, as automatic gain
+    changes it from frame to frame; it is all of the noise where that has not passed the filters.
+    spectrum: RangeDoppler as the receiver gives it; radar: that of the spectrum
+    """
+    if radar.receiver is None or not has_filters(radar.receiver):
+        return np.zeros(0)
+    circle = _filtered_power(radar.receiver, radar.waveform, of_range(spectrum.window), spectrum.zero_pad)
+    if not radar.waveform.real:
+        own, image = np.abs(weights_of_imbalance(radar.receiver)) ** 2
+        circle = own * circle + image * np.roll(circle[::-1], 1)
+    thermal = circle[:len(spectrum.range)]
+    share, white = _shares(spectrum, radar, thermal)
+    return share * thermal + white
+
+
+@lru_cache(maxsize=8)
+def _filtered_power(receiver, waveform, window, zero_pad: int) -> np.ndarray:
+    """Mean power [zero_pad S] that the filters leave of white noise of unit power in each cell of the transform of a chirp.
+
+    Model: the samples of a chirp are independent, and `past_of` foretells next to nothing from them, so that the powers of the
+    filters' responses to each of them add up. They are transformed to twice the samples, whose transform back is the correlation
+    of the noise behind the window, at most a chirp long: padding only looks at it more closely.
+    """
+    count = waveform.num_samples
+    gain = response(receiver, beat_frequencies(waveform, count + length_of_past(waveform, receiver)))
+    impulse = np.fft.ifft(gain)
+    taper = samples_of(window, count)
+    power = np.zeros(2 * count)
+    at_once = max(1, _MOST_SAMPLES // (2 * count))
+    for first in range(0, count, at_once):
+        late = np.arange(count) - np.arange(first, min(first + at_once, count))[:, None]  # of each sample after that of the noise
+        power += np.sum(np.abs(np.fft.fft(taper * impulse[late % len(impulse)], 2 * count)) ** 2, axis=0)
+    correlation = np.fft.ifft(power) / np.sum(taper ** 2)
+    lags = np.arange(1 - count, count)
+    folded = np.zeros(count * zero_pad, complex)
+    np.add.at(folded, lags % len(folded), correlation[lags])
+    shape = np.fft.fft(folded).real
+    return np.maximum(shape, _ROUNDING * shape.max())
+
+
+def _shares(spectrum, radar, thermal) -> tuple[float, float]:
+    """(share, white): the noise is `share` times what filters leave of thermal noise and `white`, both over thermal noise before
+    them. The share is 1 but for noise that has not passed the filters.
+
+    thermal: [R], what the filters leave. Levels are medians over velocities, which echoes in fewer than half of the cells leave.
+    """
+    power = np.asarray(_core.mean_power(spectrum)) / _core.cell_noise_power(radar, spectrum.window)
+    level = np.median(power, axis=0) / _median_over_mean(spectrum.values.shape[0] * spectrum.values.shape[1])
+    blocks = np.array_split(np.arange(len(level)), min(_BLOCKS, len(level)))
+    faint = sorted(blocks, key=lambda block: np.median(thermal[block]))[:max(1, len(blocks) // 4)]
+    quietest = min(faint, key=lambda block: np.median(level[block]))
+    white = max(0.0, float(np.median(level[quietest] - thermal[quietest])))
+    is_passed = thermal >= 0.5 * thermal.max()
+    share = float(np.median((level[is_passed] - white) / thermal[is_passed]))
+    return (min(max(share, 0.0), 1.0) if white > 0.0 else 1.0), white
+
+
+def _median_over_mean(num_channels: int) -> float:
+    """Of the mean power over channels of independent noise: its gamma law by the cube of a normal one (Wilson, Hilferty 1931),
+    to 1.4 % of one channel, better of more."""
+    return (1.0 - 1.0 / (9.0 * num_channels)) ** 3

@@ -123,7 +123,7 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
     const double missing = std::min(share_of_edges(kind, still_changes, most, lasting) * most, most_of_edges);
     edges += missing;
-    edges_below += smoothness * missing;
+    edges_below += size > kind.rims_at_most ? squared(size) : smoothness * missing;
   }
   return {std::sqrt(of_one_error(squared(above.size()), finer) + points + edges + surface),
           std::sqrt(of_one_error(squared(below.size()), finer) + edges_below + surface)};

@@ -146,24 +146,32 @@ FacetedBody::FacetedBody(std::vector<Vec3> vertices, const std::vector<Triangle>
   patches_ = planar_patches(vertices_, triangles, flat_tolerance(box.diagonal().norm()));
   for (size_t patch = 0; patch < patches_.size(); ++patch) {
     for (const uint32_t triangle : patches_[patch]) patch_of_[triangle] = static_cast<uint32_t>(patch);
+    planes_.push_back(plane_of(patches_[patch]));
   }
   if (is_closed) outside_ = volume_of(vertices_, triangles) < 0.0 ? -1.0 : 1.0;
 }
 
 std::vector<RimWaves> FacetedBody::waves(const AntennaPair& antennas, double wavenumber) const {
   std::vector<RimWaves> found;
-  for (uint32_t index = 0; index < patches_.size(); ++index) {
-    const Plane at = plane(index);
-    const double from = at.height(antennas.from), to = at.height(antennas.to);
+  for (size_t index = 0; index < patches_.size(); ++index) {
+    const double from = planes_[index].height(antennas.from), to = planes_[index].height(antennas.to);
     const bool is_met = from * to > 0.0 && outside_ * from >= 0.0;
-    found.push_back(is_met ? waves_of(patches_[index], at, antennas, wavenumber) : RimWaves{});
+    found.push_back(is_met ? waves_of(patches_[index], planes_[index], antennas, wavenumber) : RimWaves{});
   }
   return found;
 }
 
-Plane FacetedBody::plane(uint32_t index) const {
-  const auto [a, b, c] = corners(patches_[index].front());
-  return {a, (b - a).cross(c - a).normalized()};
+// Takes the plane of the largest triangle: others may be slivers, which tell none.
+Plane FacetedBody::plane_of(const std::vector<uint32_t>& patch) const {
+  Vec3 point = Vec3::Zero(), largest = Vec3::Zero();
+  for (const uint32_t triangle : patch) {
+    const auto [a, b, c] = corners(triangle);
+    const Vec3 area = (b - a).cross(c - a);
+    if (area.squaredNorm() <= largest.squaredNorm()) continue;
+    largest = area;
+    point = a;
+  }
+  return {point, largest.normalized()};
 }
 
 Vec3 FacetedBody::point_at(uint32_t triangle, double u, double v) const {

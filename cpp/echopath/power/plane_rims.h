@@ -36,9 +36,8 @@ class FacetedBody {
   FacetedBody(std::vector<Vec3> vertices, const std::vector<Triangle>& triangles, bool is_closed);
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
-  size_t num_planes() const { return patches_.size(); }
   uint32_t plane_at(uint32_t triangle) const { return patch_of_[triangle]; }
-  Plane plane(uint32_t index) const;
+  const Plane& plane(uint32_t index) const { return planes_[index]; }
   Vec3 point_at(uint32_t triangle, double u, double v) const;  // m, at barycentric coordinates
   // Returns the waves of each plane, as if mirrored in full; planes that do not face both antennas have none.
   std::vector<RimWaves> waves(const AntennaPair& antennas, double wavenumber) const;
@@ -46,6 +45,7 @@ class FacetedBody {
  private:
   RimWaves waves_of(const std::vector<uint32_t>& patch, const Plane& plane, const AntennaPair& antennas,
                     double wavenumber) const;
+  Plane plane_of(const std::vector<uint32_t>& patch) const;
   std::array<Vec3, 3> corners(uint32_t triangle) const;
   bool is_rim(uint32_t triangle, size_t side) const;
 
@@ -53,6 +53,7 @@ class FacetedBody {
   const std::vector<Triangle>& triangles_;
   std::vector<std::array<uint32_t, 3>> neighbours_;
   std::vector<std::vector<uint32_t>> patches_;
+  std::vector<Plane> planes_;       // of the patches
   std::vector<uint32_t> patch_of_;  // [F]
   double outside_ = 0.0;            // 1 or -1: the side of closed bodies on which the normals are; 0: there is no inside
 };

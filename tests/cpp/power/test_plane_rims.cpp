@@ -121,6 +121,14 @@ TEST(PlaneRims, AreNotKnownWhereThePlaneReflects) {
   EXPECT_FALSE(std::isinf(rims_at_most(body.waves(beside, kWavenumber), {})));
 }
 
+TEST(PlaneRims, AreThoseOfThePlaneWhereItsFirstTriangleIsASliver) {
+  Plate plate = test_plane_rims::plate(Transform(Eigen::Translation3d(1.0, 0.5, 5.0)));
+  const double whole = rims_at_most(FacetedBody(plate.vertices, plate.triangles, false).waves({}, kWavenumber), {});
+  plate.triangles.insert(plate.triangles.begin(), {0, 1, 1});
+  const double found = rims_at_most(FacetedBody(plate.vertices, plate.triangles, false).waves({}, kWavenumber), {});
+  EXPECT_GE(found, whole);
+}
+
 TEST(PlaneRims, OfAPlaneBetweenTheAntennasAreNone) {
   const Plate plate = test_plane_rims::plate(Transform(Eigen::Translation3d(1.0, 0.0, 5.0)));
   const FacetedBody body(plate.vertices, plate.triangles, false);

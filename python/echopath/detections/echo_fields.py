@@ -9,7 +9,7 @@ from .. import _core
 from ..base.antennas import look_of
 from ..base.chirps import chirps_duration
 from ..base.progress import with_progress
-from ..paths.cells import OUTSIDE, chirp_times, path_cells, turning_of
+from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity
 from ..transmit.signals import synthesize_slots
@@ -115,7 +115,7 @@ class EchoFields:
         first channel."""
         paths, spectrum = self._paths, self._spectrum
         waveform, pad = paths.radar.waveform, spectrum.zero_pad
-        cells = path_cells(paths, spectrum)
+        cells = cells_of(paths, spectrum)
         inside = np.flatnonzero(cells.range_index != OUTSIDE)
         number = cells.velocity_index[inside].astype(np.int64) * len(spectrum.range) + cells.range_index[inside]
         order = np.argsort(number, kind="stable")

@@ -7,7 +7,9 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
+from ..base.callers import warn_user
 from ..base.made_by import made_by
+from ..transmit.signals import chirp_of, step_names
 
 TURNING_STEP = 0.125  # chirps, over which the phase of an amplitude is followed: by less than half a turn
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
@@ -25,6 +27,7 @@ class PathCells:
     range: [P] m, where the map shows it: half the length and the shift that the velocity makes (range-Doppler coupling)
     velocity: [P] m/s, half the rate of the length as the phase tells it, receding positive; not folded into the axis of the map
     range_index, velocity_index: [P] i32, nearest cell of the map, velocities folded; both -1 for paths outside of it
+    Where the chirps of the transmitter differ, range and indices are those that chirps without steps would have (`path_cells`).
     """
 
     length: np.ndarray
@@ -53,32 +56,50 @@ def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0,
     Model: the beat frequency and the slow-time phase of cpp/echopath/signal/kernels/carrier.h at the middle of the frame, with
     the rate of the phase of the path's amplitude: where a point of reflection slides over a turning or curved surface, the
     phase follows that point, and the length the piece of surface that the ray has hit. A path whose velocity changes during
-    the frame, and the window's main lobe, spread its power over neighbouring cells.
+    the frame, and the window's main lobe, spread its power over neighbouring cells. Of steps in frequency and bandwidth that
+    repeat with the transmitters, each has its own. Where the chirps of the transmitter itself differ by such steps, as those of
+    a radar that hops, the echo of a path is in cells of all velocities: range and indices are those that chirps without steps
+    would have, and `detect` tells the paths of cells (`Detections.paths`).
     paths: of `trace`, P of them; spectrum: RangeDoppler, any map of the radar that traced them, for its axes
     tx, rx: indices of the channel's antennas
-    Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there.
+    Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there. Warns
+    (RuntimeWarning) where the chirps of the transmitter differ.
     """
     row_of_channel(paths, tx, rx)
+    chirp = chirp_of(paths.radar, tx)
+    if chirp is None:
+        steps = " and ".join(step_names(paths.radar))
+        warn_user(f"paths: chirps of transmitter {tx} of their radar differ ({steps}), so that each echo is in cells of all "
+                  "velocities: velocity_index is that which chirps without steps would have. Detections tell the paths "
+                  "of their cells: ep.detect(spectrum, radar, paths=paths).paths(i)")
+    return cells_of(paths, spectrum, tx, rx, chirp)
+
+
+def cells_of(paths: _core.Paths, spectrum: _core.RangeDoppler, tx: int = 0, rx: int = 0,
+             chirp: _core.ChirpSequence | None = None) -> PathCells:
+    """The PathCells of `path_cells` where all chirps are alike; chirp: that waveform without steps, None: the radar's without
+    its steps."""
+    waveform = paths.radar.waveform if chirp is None else chirp
     before, length, after = _lengths(paths, tx, rx)
     turning = turning_of(paths, chirp_times(paths, tx)[1], tx, rx)
     cells = PathCells(length, *(np.empty(len(length), kind) for kind in (float, float, np.int32, np.int32)))
     for first in range(0, len(length), _BLOCK):
         some = slice(first, first + _BLOCK)
-        places = _places(length[some], after[some] - before[some], turning[some], paths.radar, spectrum)
+        places = _places(length[some], after[some] - before[some], turning[some], waveform, paths.radar, spectrum)
         for name, values in zip(_PLACES, places, strict=True):
             getattr(cells, name)[some] = values
     return cells
 
 
-def _places(length, longer, turning, radar, spectrum) -> tuple:
+def _places(length, longer, turning, chirp, radar, spectrum) -> tuple:
     """_PLACES, [P] each, of paths of some length in m that becomes `longer` by so many m during a chirp, and whose amplitudes
-    turn back by so many Hz."""
+    turn back by so many Hz; chirp: waveform of the chirps. The axes of maps are those of the radar's without steps."""
     waveform = radar.waveform
     delay = length / _core.speed_of_light
-    carrier = waveform.start_frequency + waveform.slope * (waveform.window_centre - delay)
+    carrier = chirp.start_frequency + chirp.slope * (chirp.window_centre - delay)
     rate = longer / waveform.chirp_duration + _core.speed_of_light / carrier * turning
     doppler = carrier * rate / _core.speed_of_light  # Hz, slow time
-    beat = waveform.slope * delay + doppler          # Hz, fast time
+    beat = chirp.slope * delay + doppler             # Hz, fast time
     range_index = _range_index(beat, waveform, spectrum.range)
     velocity_index = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, radar)
     velocity_index[range_index == OUTSIDE] = OUTSIDE

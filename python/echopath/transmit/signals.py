@@ -9,10 +9,23 @@ from .. import _core
 from ..arguments.motions import require_frame
 from .code import code_of, code_signal, is_coded, num_frame_slots, slots_radar
 
+STEPS = "frequency_steps", "bandwidth_steps"
+
 
 def has_steps(radar: _core.Radar) -> bool:
     """Whether slots differ in start frequency or bandwidth."""
-    return bool(np.any(radar.waveform.frequency_steps) or np.any(radar.waveform.bandwidth_steps))
+    return bool(step_names(radar))
+
+
+def step_names(radar: _core.Radar) -> list[str]:
+    """Names of what of the waveform makes slots differ in start frequency or bandwidth."""
+    return [name for name in STEPS if np.any(getattr(radar.waveform, name))]
+
+
+def chirp_of(radar: _core.Radar, tx: int) -> _core.ChirpSequence | None:
+    """The waveform of all chirps of a transmitter, without steps; None where these differ in start frequency or bandwidth."""
+    kinds = [plain.waveform for plain, senders, _ in _kinds_of_chirp(radar) if tx in senders]
+    return kinds[0] if len(kinds) == 1 else None
 
 
 def synthesize_slots(paths: _core.Paths, radar: _core.Radar, **settings) -> np.ndarray:
@@ -56,7 +69,7 @@ def _kinds_of_chirp(radar: _core.Radar) -> Iterator[tuple]:
     waveform, num_tx = radar.waveform, len(radar.transmitters)
     chirps = np.arange(waveform.num_chirps) * radar.num_slots
     slots = chirps + (0 if is_coded(radar) else np.arange(num_tx)[:, None]) + np.zeros((num_tx, 1), int)
-    kinds = np.stack([repeated(steps, slots) for steps in (waveform.frequency_steps, waveform.bandwidth_steps)], axis=-1)
+    kinds = np.stack([repeated(getattr(waveform, steps), slots) for steps in STEPS], axis=-1)
     for kind in np.unique(kinds.reshape(-1, 2), axis=0):
         plain = waveform.replace(start_frequency=waveform.start_frequency + kind[0],
                                  bandwidth=waveform.bandwidth + kind[1], frequency_steps=(), bandwidth_steps=())

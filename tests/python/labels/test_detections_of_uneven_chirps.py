@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.detections.uneven_fields import echo_fields
+from echopath.paths.cells import cells_of
 from support.scenes.small_spheres import TARGETS, radar_with, scene_of
 from support.shapes import lambert
 
@@ -27,7 +28,7 @@ def test_the_field_of_a_single_path_is_that_of_its_signal_at_all_velocities(slot
     radar = uneven(radar_with(receivers=2, transmitters=2), slots)
     paths = ep.trace(scene_of(TARGETS), radar, num_rays=2000, max_bounces=1, start_time=0.01)
     spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar, window, zero_pad)
-    echoes, nearest_cell = echo_fields(paths, spectrum), ep.path_cells(paths, spectrum)
+    echoes, nearest_cell = echo_fields(paths, spectrum), cells_of(paths, spectrum)
     for chosen in (np.argmax(np.where(paths.mesh_id[paths.offsets] == number, np.abs(paths.amplitude), 0.0))
                    for number in range(len(TARGETS))):
         alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == chosen), radar, method="direct")

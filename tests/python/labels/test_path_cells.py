@@ -32,9 +32,26 @@ def traced(radar):
 
 @pytest.mark.parametrize("real, num_transmitters, zero_pad", [(False, 1, 1), (True, 1, 2), (False, 2, 1)])
 def test_the_map_of_a_path_peaks_in_its_cell(real, num_transmitters, zero_pad):
-    radar = radar_of(real, num_transmitters)
+    assert_peaks_in_cells(radar_of(real, num_transmitters), zero_pad)
+
+
+def test_steps_that_repeat_with_the_transmitters_are_those_of_the_map():
+    """By the start frequency the fastest path lies five cells of velocity aside, by the slope 10 cells of range at 25 m."""
+    radar = with_slots(radar_of(False, 2), frequency_steps=(0.0, 2e9), bandwidth_steps=(0.0, -6e7))
+    assert_peaks_in_cells(radar, 1, carrier_ratio=1.0 + (2e9 - 3e7) / radar.waveform.centre_frequency)
+
+
+def with_slots(radar, **slots):
+    return radar.replace(waveform=radar.waveform.replace(**slots))
+
+
+def assert_peaks_in_cells(radar, zero_pad: int, carrier_ratio: float = 1.0):
+    """The map of each path alone, of the last channel, has its peak in the cell of the path.
+
+    carrier_ratio: of the last transmitter's carrier to that of the waveform
+    """
     paths = traced(radar)
-    tx, rx = num_transmitters - 1, 1
+    tx, rx = len(radar.transmitters) - 1, 1
     chosen = np.random.default_rng(1).choice(paths.num_paths, 60, replace=False)
     empty = ep.range_doppler(np.zeros(cube_shape(radar), complex), radar, zero_pad=zero_pad)
     cells = ep.path_cells(paths, empty, tx=tx, rx=rx)
@@ -46,7 +63,7 @@ def test_the_map_of_a_path_peaks_in_its_cell(real, num_transmitters, zero_pad):
             assert power.max() == 0.0 and cells.velocity_index[path] == -1
             continue
         peak = np.unravel_index(power.argmax(), power.shape)
-        assert is_nearest(cells, path, peak, empty), (cells.range[path], cells.velocity[path], peak)
+        assert is_nearest(cells, path, peak, empty, carrier_ratio), (cells.range[path], cells.velocity[path], peak)
     assert 0 < num_outside < len(chosen) / 2
 
 
@@ -61,15 +78,34 @@ def power_of_one(paths, path: int, radar, zero_pad: int):
     return np.abs(ep.range_doppler(cube, radar, window="hann", zero_pad=zero_pad).values) ** 2
 
 
-def is_nearest(cells, path: int, peak, spectrum) -> bool:
+def is_nearest(cells, path: int, peak, spectrum, carrier_ratio: float) -> bool:
     """The cell is that of the peak, or its neighbour where the path lies at the edge between them."""
     at = (cells.velocity_index[path], cells.range_index[path])
     if at == peak:
         return True
     step = spectrum.range[1] - spectrum.range[0], spectrum.velocity[1] - spectrum.velocity[0]
     edge = [abs(abs((value / width) % 1.0) - 0.5) < NEAR_AN_EDGE
-            for value, width in zip((cells.velocity[path], cells.range[path]), step[::-1])]
+            for value, width in zip((carrier_ratio * cells.velocity[path], cells.range[path]), step[::-1])]
     return all(abs(a - b) <= near for a, b, near in zip(at, peak, edge))
+
+
+@pytest.mark.parametrize("steps", ["frequency_steps", "bandwidth_steps"])
+def test_chirps_of_a_transmitter_that_differ_are_told_and_lie_where_even_ones_do(steps):
+    even = radar_of(False, 2)
+    radar = with_slots(even, **{steps: (0.0, 0.0, 1e7)})
+    empty = ep.range_doppler(np.zeros(cube_shape(radar), complex), radar)
+    with pytest.warns(RuntimeWarning, match=f"transmitter 1 of their radar differ .{steps}.*cells of all velocities"):
+        cells = ep.path_cells(traced(radar), empty, tx=1)
+    expected = ep.path_cells(traced(even), empty, tx=1)
+    assert np.array_equal(cells.velocity_index, expected.velocity_index)
+    assert np.array_equal(cells.range_index, expected.range_index)
+
+
+def test_detections_of_chirps_that_differ_say_nothing_of_it(recwarn):
+    radar = with_slots(radar_of(False, 1), frequency_steps=(0.0, 1e7, 4e6))
+    paths = traced(radar)
+    ep.detect(ep.range_doppler(ep.synthesize(paths), radar), radar, paths=paths)
+    assert not [str(one.message) for one in recwarn if "cells of all velocities" in str(one.message)]
 
 
 def test_ranges_and_velocities_are_those_of_the_plates():

@@ -60,7 +60,9 @@ class FrameRun:
         require_names(self.partitions)
         has_rain_echoes(scene, trace.effects)  # raises
         require_interferers(scene, radar, trace.effects, (trace.start_time, trace.start_time + radar.frame_duration))
-        self.map_settings, self._advised = {"window": signal.window, "zero_pad": signal.zero_pad}, set()
+        self.map_settings = {"window": signal.window, "zero_pad": signal.zero_pad}
+        self._advised: set[str] = set()   # names of checks, and
+        self._silences: set[str] = set()  # reasons why nothing is heard, that were told of a frame
         self.label_settings = as_label_settings(labels)
         self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self.map_settings,
                                        self.angle_settings)
@@ -87,7 +89,7 @@ class FrameRun:
             probe = _core.SignalProbe(seed=self.trace.seed) if self.guard and not has_steps(self.radar) else None
             work = labelling_of(self._request, paths, self.partitions, settings) if self._request else None
             cubes, whole, owners = self._cubes(paths, work, settings, probe)
-        warn_of_silence(paths, self.radar, whole)
+        warn_of_silence(paths, self.radar, whole, self._silences)
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
         frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)

@@ -68,7 +68,7 @@ class Sequence(Row[Frame]):
     times: starts of the frames, [K] in s
     Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames that its object is in. Warns
     (RuntimeWarning) of trajectories that begin or end within the frames, at some speed, and of scenes of which nothing that has
-    a lifetime is there. A frame raises and warns as that of `simulate` does.
+    a lifetime is there. A frame raises and warns as that of `simulate` does; why nothing is heard is told once.
     """
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,

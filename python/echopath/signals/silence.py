@@ -8,16 +8,24 @@ from ..base.counts import counted
 from ..base.rotations import matrices
 
 
-def warn_of_silence(paths, radar, cube: np.ndarray) -> None:
+def warn_of_silence(paths, radar, cube: np.ndarray, told: set[str] | None = None) -> None:
     """Warns where paths were found and nothing is heard, of all reasons that hold.
 
     paths: _core.Paths; radar: that hears them; cube: sqrt(W), their signal
+    told: reasons that were told already, of which alone nothing is said again; new ones are added
     """
-    if paths.num_paths and not cube.any():
-        warn_user(f"no signal of {counted(paths.num_paths, 'path')}: {'; '.join(_reasons(paths, radar))}")
+    told = set() if told is None else told
+    if not paths.num_paths or cube.any():
+        return
+    reasons = _reasons(paths, radar)
+    if told.issuperset(reasons):
+        return
+    told.update(reasons)
+    warn_user(f"no signal of {counted(paths.num_paths, 'path')}: {'; '.join(who + why for why, who in reasons.items())}")
 
 
-def _reasons(paths, radar) -> list[str]:
+def _reasons(paths, radar) -> dict[str, str]:
+    """{reason: the paths that it holds for, as the words before it}"""
     time = paths.frame.trace_time
     last = radar.waveform.max_range
     ends = (_first_place(antennas, radar, paths.radar, time) for antennas in (radar.transmitters, radar.receivers))
@@ -25,10 +33,10 @@ def _reasons(paths, radar) -> list[str]:
     unseen = ~_antennas_see(paths, radar, time)
     said = [(beyond, f"beyond the last range of the waveform, {last:.4g} m"),
             (unseen & ~beyond, "where the antennas have no gain: they look elsewhere")]
-    reasons = [f"{_how_many(lie)} {where}" for lie, where in said if lie.any()]
+    reasons = {where: f"{_how_many(lie)} " for lie, where in said if lie.any()}
     if not (beyond | unseen).all():
-        reasons.append("rays too few for the coherent echo of a surface found none of it: ep.unresolved(paths) says which "
-                       "objects need more, ep.received_power(paths) how much there may be")
+        reasons["rays too few for the coherent echo of a surface found none of it: ep.unresolved(paths) says which "
+                "objects need more, ep.received_power(paths) how much there may be"] = ""
     return reasons
 
 

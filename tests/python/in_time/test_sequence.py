@@ -2,6 +2,7 @@
 import gc
 import inspect
 import pickle
+import warnings
 import weakref
 
 import numpy as np
@@ -148,3 +149,17 @@ def test_every_keyword_of_simulate_is_one_of_a_sequence():
     known, simulated = inspect.signature(ep.Sequence).parameters, inspect.signature(ep.simulate).parameters
     assert set(simulated) - set(known) == {"progress"}
     assert all(known[name].default == simulated[name].default for name in set(simulated) - {"progress"})
+
+
+def test_why_nothing_is_heard_is_told_once():
+    """A ball that goes away beyond the last range, met by other numbers of rays in some frames."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(1.0), name="ball", material="metal", position=(50.0, 0.0, 1.0),
+              motion=ep.LinearMotion(velocity=(10.0, 30.0, 0.0)))
+    radar = ep.Radar(ep.ChirpSequence(num_samples=256, num_chirps=8), transmitters=[ep.Antenna()], position=(0, 0, 1),
+                     receivers=[ep.Antenna((0, 0.01, 0))])
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        numbers = {frame.paths.num_paths for frame in ep.Sequence(scene, radar, frames=3, interval=1.0, num_rays=2000)}
+    told = [str(one.message) for one in said if "no signal of" in str(one.message)]
+    assert len(numbers) > 1 and len(told) == 1 and "beyond the last range" in told[0]

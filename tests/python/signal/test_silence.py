@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.paths.subset import subset
+from echopath.signals.silence import warn_of_silence
 
 TOLD = r"^no signal of [0-9,]+ paths: rays too few for the coherent echo of a surface found none of it: ep.unresolved"
 
@@ -69,3 +70,15 @@ def test_the_reason_is_that_of_the_paths(pyramid, places, some, told):
         paths = subset(paths, np.arange(paths.num_paths)[some])
     with pytest.warns(RuntimeWarning, match=f"^no signal of {told}$"):
         assert not ep.synthesize(paths, blind).any()
+
+
+def test_only_reasons_that_were_not_told_are(pyramid):
+    pattern, told = ep.CosinePower(exponent=4.0), set()
+    blind = pyramid[1].replace(transmitters=[ep.Antenna(pattern=pattern)], receivers=[ep.Antenna(pattern=pattern)])
+    far, behind, both = (ep.trace(plates(*places), pyramid[1], num_rays=5000) for places in ([FAR], [BEHIND], [BEHIND, FAR]))
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        for paths in (far, far, behind, both):
+            warn_of_silence(paths, blind, np.zeros(1), told)
+    assert ["beyond the last range" in str(one.message) for one in said] == [True, False]
+    assert [NO_GAIN in str(one.message) for one in said] == [False, True]

@@ -87,3 +87,22 @@ def known_material(material) -> tuple:
     if not isinstance(material, _core.Material):
         raise refused(TypeError, "material", "a Material or a name of one", material)
     return material, materials.name_of(material)
+
+
+def known_with(name: str, **fields) -> _core.Material:
+    """The material of a name with other fields. Raises KeyError, and ValueError naming the field: for mirrors of layers, which
+    there are none, with the name of the material that is alike and has none."""
+    try:
+        return materials[name].replace(**fields)
+    except ValueError as error:
+        whole = _without_layers(name) if fields.get("mirror") else ""
+        if not whole:
+            raise
+        raise ValueError(f"{error}; '{whole}' is a material without layers for such surfaces, instead of '{name}'") from None
+
+
+def _without_layers(name: str) -> str:
+    """The material without layers of which one with layers has its name, "glass" of "glass_pane"; "" where there is none."""
+    stem = name.rpartition("_")[0]
+    is_whole = stem in materials and materials[name].layers and not materials[stem].layers
+    return stem if is_whole else ""

@@ -11,7 +11,7 @@ from pydantic import create_model
 
 from .. import _core, actors
 from ..readers import load_model
-from ..scene.materials import material_fields, materials
+from ..scene.materials import known_with, material_fields, materials
 from ..scene.scene import Scene
 from ..weather import Weather
 from .errors import blamed, validated
@@ -41,7 +41,7 @@ def _material(value, key: str):
         given = value.model_dump(exclude_unset=True)
         base = given.pop("base", None)
         given = material_fields(given)
-        return materials[base].replace(**given) if base is not None else _core.Material(**given)
+        return known_with(base, **given) if base is not None else _core.Material(**given)
 
 
 def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):

@@ -56,6 +56,9 @@ FAULTS = [
     (RADAR + mesh_object("material = {scatering = 0.3}"),
      "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),
     (RADAR + mesh_object("material = {scattering = 1.3}"), "objects[0].material.scattering: must be at most 1"),
+    (RADAR + mesh_object("material = {base = 'plasterboard_wall', mirror = true}"),
+     "objects[0].material: mirror: must be False where a material has layers: flagged mirrors let nothing pass, got 1; "
+     "'plasterboard' is a material without layers for such surfaces, instead of 'plasterboard_wall'"),
     (RADAR + mesh_object("material = {cross_polarization = 0.6}"),
      "objects[0].material.cross_polarization: must be at most 0.5"),
     (RADAR + mesh_object(""), "objects[0]"),
@@ -125,3 +128,12 @@ def test_a_missing_scene_file_is_a_file_error(tmp_path):
 def test_a_missing_mesh_file_is_a_file_error(write):
     with pytest.raises(ep.FileError, match="quid.obj"):
         ep.load_scene(write(mesh_object('material = "metal"').replace("quad.obj", "quid.obj")))
+
+
+def test_a_mirror_of_layers_without_a_whole_material_of_its_name_gets_no_name_instead(write):
+    """Nor does another fault of a material that is to be a mirror, and the name that the message gives is taken."""
+    for name, fault in (("curtain", "mirror = true"), ("plasterboard", "mirror = true, reflectivity = 0.5")):
+        told = fault_of(write(mesh_object(f"material = {{base = '{name}', {fault}}}")))
+        assert "objects[0].material: " in told and "instead" not in told
+    scene = ep.load_scene(write(mesh_object("material = {base = 'plasterboard', mirror = true}"))).scene
+    assert scene.meshes[0].material.mirror

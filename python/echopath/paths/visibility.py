@@ -9,6 +9,7 @@ from ..arguments.checks import Progress, checked, count, optional, real
 from ..arguments.motions import require_motion
 from ..arguments.objects import Objects, named_globs, objects_rule
 from ..base.made_by import made_by
+from ..scene.lifetimes import scene_at
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
 LEAST_HIDDEN = 0.005  # share of an object from which what hides it is named
@@ -105,15 +106,18 @@ def visibility(scene: _core.Scene, radar: _core.Radar, objects: Objects = None, 
     lines only: what an object sends over mirrors is a matter of its paths (`families`).
     scene: what is looked at; radar: whose antennas look, each end from their mean position
     objects: as in `families`
-    time: s, of scene and radar; None: the middle of a frame that starts at 0
+    time: s, of scene and radar; None: the middle of a frame that starts at 0. What has a lifetime that does not hold it
+        (`SceneNode.lifetime`) is neither looked at nor hides anything, and mesh IDs count what is there
     num_directions: on each object, about; the error of a share is 4e-4 rms for half hidden plates and 4096, and falls with
         the power -0.75; where what is met does not change, one in 16 is looked at
     progress: callable (stage, fraction), True for bars, or None
     Returns a list of ObjectVisibility, in the order of the objects; the same for any number of threads. Raises ValueError
     for bad names, globs that take no mesh and motions that do not cover the time.
     """
-    require_motion("radar", radar, (radar.middle_of_frame() if time is None else time,))
-    return _as_objects(_core.visibility(scene, radar, named_globs(objects), time, num_directions, progress))
+    time = radar.middle_of_frame() if time is None else time
+    require_motion("radar", radar, (time,))
+    there = scene_at(scene, time)
+    return _as_objects(_core.visibility(there, radar, named_globs(objects), time, num_directions, progress))
 
 
 def visibility_in_trace(paths, radar, objects=None, *, num_directions=DIRECTIONS, progress=None) -> list:

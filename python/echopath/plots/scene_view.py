@@ -11,6 +11,7 @@ from ..arguments.checks import an
 from ..arguments.objects import Objects, named_globs
 from ..base.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
+from ..scene.lifetimes import scene_in_frame
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 
@@ -59,6 +60,7 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
                title: str = "The scene, and the strongest rays to each object") -> Figure:
     """A scene with its strongest rays.
 
+    scene: whose objects are drawn, but for those with a lifetime that does not cover the frame of the paths
     paths: of `trace`; num_rays: drawn at most, half of them the strongest of each object, half the strongest of all that hit
         anything but mirrors (of all, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
@@ -68,6 +70,7 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
     """
     an(_core.Scene)("scene", scene)
     an(_core.Paths)("paths", paths)
+    scene = scene_in_frame(scene, paths.radar, paths.frame.start_time)  # whose mesh IDs are those of the paths
     time = paths.frame.trace_time if time is None else time
     power = paths.power if power is None else power
     names = _names_of_meshes(scene, objects)

@@ -34,7 +34,8 @@ def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None)
     as `mark_mirrors` would flag. Names with *, ? or [ are left out, since globs cannot take them alone.
 
     scene: of `Scene` or `load_scene`; radar: with its antennas in the scene
-    time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0
+    time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0.
+        What is absent then (`SceneNode.lifetime`) surrounds nothing, but is named: other frames may have it
     Returns {name: glob}, to be given as `objects` of `families`, `annotate`, `simulate` and others: names of children of the
     root as they are, of others the last part of their path where no other object has it, else the whole path. Raises TypeError
     or ValueError naming the argument.

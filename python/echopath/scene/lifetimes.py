@@ -1,4 +1,4 @@
-"""What of a scene is there in a frame."""
+"""What of a scene is there in a frame, and at a time."""
 from __future__ import annotations
 
 from .. import _core
@@ -12,10 +12,19 @@ _ROUNDING = 1e-9  # relative, of a lifetime that is the duration of a frame by a
 def scene_in_frame(scene: _core.Scene, radar: _core.Radar, start_time: float) -> _core.Scene:
     """The scene of a frame that starts at a time in s: a copy in which objects are not visible whose lifetimes do not cover the
     frame wholly; the scene itself where none has a lifetime."""
+    return _scene_within(scene, start_time, start_time + radar.frame_duration)
+
+
+def scene_at(scene: _core.Scene, time: float) -> _core.Scene:
+    """Likewise the scene at a time in s, without objects whose lifetimes do not hold it."""
+    return _scene_within(scene, time, time)
+
+
+def _scene_within(scene, begin: float, end: float):
     if not scene._has_lifetimes:
         return scene
     there = Scene(scene)
-    there._hide_absent(start_time, start_time + radar.frame_duration)
+    there._hide_absent(begin, end)
     return there
 
 

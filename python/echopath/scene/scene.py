@@ -134,6 +134,7 @@ class Scene(_core.Scene):
     def to_pyvista(self, time: float = 0.0):
         """The meshes at `time` in s as a pyvista.MultiBlock by their full names, in the order of their IDs; points in m.
 
+        What has a lifetime that does not hold that time (`SceneNode.lifetime`) is left out, and IDs count what is there.
         Field data of a block: mesh_id; of its material material (name, "" without one), conductor and mirror (0 or 1),
         permittivity (real, imaginary), conductivity (S/m), reflectivity, roughness_height (m), scattering and
         cross_polarization, those that it has. Needs pyvista, raises ModuleNotFoundError without it.

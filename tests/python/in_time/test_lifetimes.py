@@ -207,6 +207,40 @@ def test_live_scenes_show_what_is_there(tmp_path):
     assert "late" in {mesh.name.split("/")[0] for mesh in live.paths().scene.meshes}
 
 
+def screen_before_a_plate() -> ep.Scene:
+    """A screen, which comes first, hides a plate wholly for 1 s."""
+    scene = ep.Scene()
+    for name, distance, side in (("screen", 10.0, 4.0), ("plate", 20.0, 2.0)):
+        scene.add(ep.actors.plate(side, side), name=name, material=ROUGH, position=(distance, 0.0, 0.0), yaw=np.pi)
+    scene["screen"].lifetime = 0.0, 1.0
+    return scene
+
+
+@pytest.mark.parametrize("time, shares", [(0.5, {"screen": 1.0, "plate": 0.0}), (1.0, {"screen": 1.0, "plate": 0.0}),
+                                          (1.5, {"plate": 1.0})])
+def test_what_is_absent_hides_nothing_and_is_not_looked_at(time, shares):
+    scene = screen_before_a_plate()
+    seen = ep.visibility(scene, make_radar(), time=time, num_directions=256)
+    assert {one.name: one.visible_share for one in seen} == shares
+    assert {one.name: one.mesh_ids for one in seen} == {name: (number,) for number, name in enumerate(shares)}
+    named = ep.visibility(scene, make_radar(), ["screen", "plate"], time=time, num_directions=256)
+    assert [one.name for one in named] == list(shares) and scene["screen"].visible
+
+
+def test_objects_are_found_whenever_they_are_there():
+    """A scene file looks for them at the first frame, and labels all."""
+    assert ep.find_objects(screen_before_a_plate(), make_radar(), time=9.0) == {"screen": "screen", "plate": "plate"}
+
+
+@pytest.mark.parametrize("start, names", [(0.5, {"screen", "plate"}), (1.5, {"plate"})])
+def test_pictures_show_what_is_there_in_the_frame_of_the_rays(start, names):
+    scene = screen_before_a_plate()
+    paths = ep.trace(scene, make_radar(), start_time=start, num_rays=500)
+    for shown in (scene, paths.scene):
+        figure = ep.plots.plot_scene(shown, paths)
+        assert {text.get_text().strip() for text in figure.axes[1].texts} & {"screen", "plate"} == names
+
+
 def test_lifetimes_travel_and_follow_the_motion(tmp_path):
     scene = street(tmp_path / "fcd.xml")
     for again in (scene.copy(), pickle.loads(pickle.dumps(scene)), ep.Scene(scene)):

@@ -41,3 +41,12 @@ def test_materials_are_field_data(scene):
 def test_blocks_go_back_into_a_scene(scene):
     for mesh in scene.meshes:
         assert ep.mesh_from(scene.to_pyvista()[mesh.name]).area == pytest.approx(mesh.mesh.area, rel=1e-12)
+
+
+def test_what_is_absent_has_no_block():
+    scene = ep.Scene()
+    for name in ("guest", "host"):
+        scene.add(ep.actors.plate(1.0, 1.0), name=name, material="metal")
+    scene["guest"].lifetime = 1.0, 3.0
+    assert [scene.to_pyvista(time).keys() for time in (0.0, TIME)] == [["host"], ["guest", "host"]]
+    assert list(scene.to_pyvista()["host"].field_data["mesh_id"]) == [0]

@@ -9,6 +9,7 @@ import pyvista as pv
 import echopath as ep
 from echopath.base.callers import warn_user
 from echopath.base.origin import mark_png, origin_texts
+from echopath.scene.lifetimes import scene_in_frame
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
 from .off_screen import ASKED, lacking, needs_renderer, renderer
@@ -90,9 +91,10 @@ def _draw_plainly(scene, paths, selection, num_rays: int, screenshot) -> None:
 
 def _session_of(scene, paths) -> Session:
     """A session without signals: of the maps only the axes."""
-    if scene is not None and len(scene.meshes) != len(paths.scene.meshes):
+    there = None if scene is None else scene_in_frame(scene, paths.radar, paths.frame.start_time)
+    if there is not None and len(there.meshes) != len(paths.scene.meshes):
         raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
-                         f"got one with {len(scene.meshes)}")
+                         f"got one with {len(there.meshes)}")
     radar = paths.radar
     shape = len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples
     cube = np.zeros(shape, complex)

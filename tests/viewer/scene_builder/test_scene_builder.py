@@ -155,6 +155,23 @@ def test_plot_rays_draws_what_is_asked_for(frame):
     plotter.close()
 
 
+@pytest.mark.filterwarnings("ignore:'guest' is absent")
+def test_plot_rays_takes_the_scene_that_was_traced_without_what_was_absent():
+    scene = ep.Scene()
+    for name, distance in (("guest", 10.0), ("host", 20.0)):
+        scene.add(ep.actors.plate(2.0, 2.0), name=name, material="concrete", position=(distance, 0.0, 0.0), yaw=np.pi)
+    scene["guest"].lifetime = 0.0, 1.0
+    radar = ep.Radar(ep.ChirpSequence(num_chirps=2), transmitters=[ep.Antenna()], receivers=[ep.Antenna((0.0, 0.01, 0.0))])
+    paths = ep.trace(scene, radar, num_rays=500, start_time=2.0)
+    keywords = dict(off_screen=True, window_size=SIZE, return_plotter=True)
+    plotter = ep.plot_rays(scene, paths, **keywords)
+    assert "mesh 0" in plotter.actors and "mesh 1" not in plotter.actors
+    plotter.close()
+    scene["guest"].lifetime = None
+    with pytest.raises(ValueError, match="scene: must be the one that was traced, with 1 meshes, got one with 2"):
+        ep.plot_rays(scene, paths, **keywords)
+
+
 @pytest.mark.parametrize("keywords, error, word", [
     ({"colour_by": "mesh"}, TypeError, "color_by"), ({"color_by": "mood"}, ValueError, "color_by"),
     ({"cmap": "rainbows", "color_by": "power"}, ValueError, "cmap"), ({"view": "back"}, ValueError, "view"),

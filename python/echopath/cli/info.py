@@ -8,6 +8,7 @@ import numpy as np
 import echopath as ep
 
 from .. import dataset
+from ..arguments.names import first_names
 from ..base.counts import counted
 from ..base.decibels import in_dbm
 from ..dataset.folder import TEMPLATE as DATASET_FILE
@@ -22,6 +23,7 @@ from ..readers.load import READ_RULES, READERS, is_foreign, read_model
 from ..readers.options import ReadOptions
 from ..receiver.converter import step_text
 from ..receiver.settings import receiver_text
+from ..scene.lifetimes import scene_in_frame
 from ..scene_file import load_scene
 from ..scene_file.load import parse
 from ..sequence.folder import NAME as SEQUENCE_FILE
@@ -84,7 +86,7 @@ def _describe_sequence(stored) -> list[str]:
     lines = [str(stored.path), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
              report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
              report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
-    return [*lines, *_describe_scene(stored.scene, float(stored.times[0])), *_describe_radar(stored.radar)]
+    return [*lines, *_describe_scene(stored.scene, stored.radar, float(stored.times[0])), *_describe_radar(stored.radar)]
 
 
 def _describe_dataset(opened) -> list[str]:
@@ -118,10 +120,10 @@ def _rays_of(trace) -> str:
 
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
-    trace_time = scene_file.radar.middle_of_frame(trace.start_time)
-    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace_time),
-             *_describe_radar(scene_file.radar),
-             *report.folded_velocities(scene_file.scene, scene_file.radar, trace_time),
+    scene, radar = scene_file.scene, scene_file.radar
+    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene, radar, trace.start_time), *_describe_radar(radar),
+             *report.folded_velocities(scene_in_frame(scene, radar, trace.start_time), radar,
+                                       radar.middle_of_frame(trace.start_time)),
              "trace", report.line("rays", _rays_of(trace)), report.line("bounces at most", str(trace.max_bounces))]
     if trace.batches is not None:
         lines.append(report.line("batches", str(trace.batches)))
@@ -134,12 +136,25 @@ def _describe_scene_file(scene_file) -> list[str]:
     return lines
 
 
-def _describe_scene(scene, time: float) -> list[str]:
+def _describe_scene(scene, radar, start_time: float) -> list[str]:
+    """What is in a scene, and which surfaces lie on each other in a frame that starts at a time in s."""
+    there = scene_in_frame(scene, radar, start_time)
     bodies = _bodies(scene)
     lines = ["scene", report.line("meshes", str(len(scene.meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
     lines += [report.line(f"  {name}", _body(scene, meshes)) for name, meshes in list(bodies.items())[:report.MAX_LISTED]]
     lines += more_line(len(bodies), report.MAX_LISTED)
-    return [*lines, report.line("weather", weather_text(weather_of(scene))), *report.overlaps_or_none(scene, time)]
+    return [*lines, *_comings(scene, there, start_time), report.line("weather", weather_text(weather_of(scene))),
+            *report.overlaps_or_none(there, radar.middle_of_frame(start_time))]
+
+
+def _comings(scene, there, start_time: float) -> list[str]:
+    """Which objects have lifetimes, and which of them are absent from the frame; nothing where none has one."""
+    names = {index: f"'{node.name}'" for index, node in enumerate(scene.nodes) if node.lifetime is not None}
+    if not names:
+        return []
+    absent = [name for index, name in names.items() if not there._takes_part(index)]
+    of_frame = f"{first_names(absent)} absent" if absent else "all there"
+    return report.wrapped("come and go", f"{first_names(list(names.values()))}; in the frame at {start_time:g} s: {of_frame}")
 
 
 def _bodies(scene) -> dict[str, list]:
@@ -215,7 +230,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
     missing = left_out(path)
     frame = load_frame(path)
     chosen = [line for selection in selections for line in _describe_selection(frame, selection)]
-    lines = [str(path), *_describe_scene(frame.scene, frame.paths.frame.trace_time), *_describe_radar(frame.radar),
+    lines = [str(path), *_describe_scene(frame.scene, frame.radar, frame.paths.frame.start_time), *_describe_radar(frame.radar),
              *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time), "record",
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is not None:

@@ -1,11 +1,15 @@
 """What of a scene is there in a frame, and at a time."""
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 from .. import _core
 from ..arguments.names import first_names
 from ..base.callers import warn_user
 from .scene import Scene
 
+ALWAYS = -math.inf, math.inf  # s, the lifetime of what has none
 _ROUNDING = 1e-9  # relative, of a lifetime that is the duration of a frame by another sum
 
 
@@ -28,11 +32,25 @@ def _scene_within(scene, begin: float, end: float):
     return there
 
 
+def lifetime_in_tree(nodes: Sequence[_core.Node], index: int) -> tuple[float, float]:
+    """When a node and all above it are there, (begin, end) in s."""
+    begin, end = ALWAYS
+    while index >= 0:
+        first, last = nodes[index].lifetime or ALWAYS
+        begin, end, index = max(begin, first), min(end, last), nodes[index].parent
+    return begin, end
+
+
 def warn_of_absence(scene: _core.Scene, radar: _core.Radar, begin: float, end: float) -> None:
-    """Warns (RuntimeWarning) where objects have lifetimes and none of these covers a frame of a run, from begin to end in s."""
+    """Warns (RuntimeWarning) where visible objects have lifetimes and none of these lasts as long as a frame within a run, from
+    begin to end in s."""
     if not scene._has_lifetimes:
         return
-    lifetimes = {f"'{node.name}'": node.lifetime for node in scene.nodes if node.lifetime is not None}
+    nodes = scene.nodes
+    lifetimes = {f"'{node.name}'": lifetime_in_tree(nodes, index) for index, node in enumerate(nodes)
+                 if node.lifetime is not None and scene._takes_part(index)}
+    if not lifetimes:
+        return
     shortest = radar.frame_duration * (1.0 - _ROUNDING)
     if any(min(end, last) - max(begin, first) >= shortest for first, last in lifetimes.values()):
         return

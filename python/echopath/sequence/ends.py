@@ -1,7 +1,6 @@
 """Ways that begin or end while frames in time go on."""
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -9,10 +8,10 @@ import numpy as np
 from .. import _core
 from ..arguments.names import first_names
 from ..base.callers import warn_user
+from ..scene.lifetimes import ALWAYS, lifetime_in_tree
 
 SLOWEST = 0.1   # m/s, at an end of a way: what is slower has come to rest
 STEP = 1e-3     # s, within which speeds at the ends are told
-ALWAYS = -math.inf, math.inf  # s, the lifetime of what has none
 
 
 def warn_of_ends(scene: _core.Scene, radar: _core.Radar, begin: float, end: float) -> None:
@@ -43,16 +42,7 @@ def _ways(scene: _core.Scene, radar: _core.Radar) -> Iterator[tuple[str, _core.M
             index = nodes[index].parent
         if moved >= 0 and moved not in told:
             told.add(moved)
-            yield f"'{nodes[moved].name}'", nodes[moved].motion, _lifetime_of(nodes, moved)
-
-
-def _lifetime_of(nodes, index: int) -> tuple[float, float]:
-    """When a node and all above it are there, s."""
-    begin, end = ALWAYS
-    while index >= 0:
-        first, last = nodes[index].lifetime or ALWAYS
-        begin, end, index = max(begin, first), min(end, last), nodes[index].parent
-    return begin, end
+            yield f"'{nodes[moved].name}'", nodes[moved].motion, lifetime_in_tree(nodes, moved)
 
 
 def _breaks_off(motion: _core.Motion, begin: float, end: float) -> bool:

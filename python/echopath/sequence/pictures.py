@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arguments.checks import Progress
 from ..base.progress import with_progress
+from ..scene.lifetimes import scene_in_frame
 from ..signals.beside import leakage_map
 from ..signals.measures import static_speed
 from .movers import movers_at, own_speed
@@ -54,9 +55,9 @@ def _driving(frames: Frames, times) -> Driving:
     """What the maps of a radar that moves do not tell: how fast it was, and where what moves in the world was."""
     from ..plots import Driving
 
-    scene, middles = frames.scene, [frames.radar.middle_of_frame(time) for time in times]
-    return Driving(np.array([own_speed(frames.radar, time) for time in middles]),
-                   [movers_at(scene, frames.radar, time) for time in middles])
+    scene, radar, middles = frames.scene, frames.radar, [frames.radar.middle_of_frame(time) for time in times]
+    return Driving(np.array([own_speed(radar, time) for time in middles]),
+                   [movers_at(scene_in_frame(scene, radar, start), radar, middle) for start, middle in zip(times, middles)])
 
 
 def write_film_of(drive: Drive, path, interval: float, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:

@@ -15,6 +15,7 @@ from ..base.antennas import polarization_of
 from ..paths.absent import NO_MESH
 from ..paths.resolution import Interval
 from ..paths.surface_points import SurfacePoints, surface_points
+from ..scene.lifetimes import scene_in_frame
 from .traces import trace
 
 NUM_POINTS = 256  # of an object's surface that are looked at
@@ -60,10 +61,12 @@ def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0,
     of it may be missed. Edges are those of all bodies that keep their shape, as of perfect conductors; the part of the shadow
     is that of any body. Waves around two edges, and what the objects' own shadows let pass, are left out; levels are good to
     some 3 dB where an object is much smaller than its distance from the corner, and `resolved`.
-    scene, radar: of the frame; time: s; num_rays: for the level of each object alone
+    scene, radar: of the frame, without what is absent from it (`SceneNode.lifetime`); time: s, of its middle
+    num_rays: for the level of each object alone
     progress: callable (stage, fraction), True for bars, or None
     Returns a list of AroundCorner, of objects with hidden points. Raises ValueError for motions that do not cover the time.
     """
+    scene = scene_in_frame(scene, radar, start_with_middle(radar, time))
     found = [_told(scene, radar, hidden, time, num_rays, progress)
              for hidden in hidden_objects(scene, radar, time, progress)]
     return sorted(found, key=lambda one: -one.power)

@@ -8,6 +8,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli import main
+from echopath.sequence.pictures import drive_of
 from support.files.scene_text import ANTENNAS, WAVEFORM
 from support.frames_in_time import make_radar
 
@@ -254,3 +255,54 @@ def test_lifetimes_travel_and_follow_the_motion(tmp_path):
         with pytest.raises(ValueError, match=r"lifetime: must be \(begin, end\) in s, ascending, or None, got"):
             scene["late"].lifetime = wrong
     assert ep.Lane([(0, 0), (9, 0)]).trajectory(speed=3.0, outside="absent", goes_on=1.0).lifetime == (-1.0, 4.0)
+
+
+def parked(lifetime) -> ep.Scene:
+    """A van before a plate, which drives off when its lifetime begins, on a way that is known then alone."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(14.0, 0.0, 0.0), yaw=np.pi)
+    scene.add(ep.actors.box((2.0, 3.0, 3.0)), name="van", material="metal", position=(7.0, 0.0, 0.0),
+              motion=ep.KeyframeMotion(lifetime, translations=[(0.0, 0.0, 0.0), (0.0, 9.0, 0.0)]))
+    scene["van"].lifetime = lifetime
+    return scene
+
+
+def test_what_is_absent_hides_nothing():
+    scene, radar = parked((1.0, 2.0)), make_radar()
+    (plate,) = ep.visibility(scene, radar, time=0.5)
+    assert (plate.name, plate.visible_share) == ("plate", 1.0)
+    assert [one.visible_share for one in ep.visibility(scene, radar, ["plate", "van"], time=1.01)] == [0.0, 1.0]
+    assert ep.around_corners(scene, radar, time=0.5, num_rays=500) == []
+    assert [one.name for one in ep.around_corners(scene, radar, time=1.01, num_rays=500)] == ["plate"]
+
+
+def test_a_film_of_a_radar_that_drives_knows_what_moved_in_each_frame():
+    drive_ahead = ep.LinearMotion((1.0, 0.0, 0.0))
+    sequence = ep.Sequence(parked((1.0, 2.0)), make_radar().replace(motion=drive_ahead), frames=4, interval=0.5, num_rays=500,
+                           guard=False)
+    assert [len(rows) for rows in drive_of(sequence).driving.movers] == [0, 0, 1, 1]
+
+
+def test_other_radars_are_heard_without_a_word_of_what_is_absent(recwarn):
+    radar = make_radar()
+    scene = parked((0.4, 2.0))
+    scene.interferers = [ep.Interferer(radar=radar.replace(position=(20.0, 0.0, 0.0), yaw=np.pi))]
+    assert all("interference" in frame.beside_spectra for frame in drive(scene, frames=2))
+    scene["van"].visible = False
+    ep.trace(scene, radar, num_rays=500)
+    assert not [str(warning.message) for warning in recwarn if "absent" in str(warning.message)]
+
+
+def test_info_tells_who_comes_and_goes_and_no_overlaps_of_those_that_are_absent(tmp_path, capsys):
+    """Two cars depart from one place, one behind the other."""
+    (tmp_path / "fcd.xml").write_text(fcd().replace('x="11.0" y="0.0"', 'x="9.0" y="-4.0"'))
+    parts = "\n".join(f'[[objects]]\nname = "{name}"\nactor = "box"\nparameters = {{size = [4, 2, 2]}}\ntrajectory = "fcd.xml"\n'
+                      f'id = "{name}"\nmaterial = "metal"\n'
+                      for name in ("early", "late"))
+    path = tmp_path / "street.toml"
+    path.write_text(WAVEFORM + ANTENNAS + parts + "\n[trace]\nnum_rays = 500\n")
+    assert ep.load_scene(path).scene.coplanar_overlaps(time=0.0)
+    assert main(["info", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "'early', 'late'; in the frame at 0 s: 'late' absent" in told
+    assert "surfaces on each other            none" in told

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...scene.lifetimes import ALWAYS
 from ...scene.scene import Scene
 from ..h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .deformation import read_deformation, write_deformation
@@ -11,7 +12,6 @@ from .kept_meshes import KeptMeshes
 from .motion import read_motion, write_motion
 
 NONE = -1  # index that means "has none"
-ALWAYS = -np.inf, np.inf  # s, the lifetime of what has none
 
 
 class _Pool:

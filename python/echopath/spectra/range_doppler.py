@@ -77,6 +77,7 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     Returns a CfarResult. Raises TypeError or ValueError naming the argument, also for windows of more than 2000 cells,
     counted without padding.
     """
-    return _core.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
-                      guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
-                      noise_shape=noise_shape(spectrum, radar), progress=progress)
+    settings = {"method": method, "false_alarm_rate": false_alarm_rate, "rank": rank, "guard_velocity": guard_velocity,
+                "guard_range": guard_range, "training_velocity": training_velocity, "training_range": training_range}
+    _core.check_cfar(spectrum, radar, **settings)  # `noise_shape` takes for granted that map and radar fit
+    return _core.cfar(spectrum, radar, **settings, noise_shape=noise_shape(spectrum, radar), progress=progress)

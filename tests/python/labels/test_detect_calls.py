@@ -123,9 +123,10 @@ def test_a_map_without_noise_is_told_of_by_what_its_receiver_has(spheres, adc, t
 
 
 @pytest.mark.parametrize("other", [{"chirp_interval": 60e-6}, {"num_samples": 128}, {"num_chirps": 32}])
-def test_a_map_of_other_chirps_is_refused(spheres, other):
+@pytest.mark.parametrize("receiver", [None, ep.Receiver(low_pass=2e6)])
+def test_a_map_of_other_chirps_is_refused(spheres, other, receiver):
     with pytest.raises(ValueError, match="spectrum: must have been made with the chirps of this radar"):
-        ep.detect(spheres[2], radar_with(**other))
+        ep.detect(spheres[2], radar_with(**other).replace(receiver=receiver))
 
 
 def test_a_map_whose_power_is_not_finite_is_refused():

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import Session
+from echopath_viewer.model import Session, from_paths
 from echopath_viewer.model.frames.carried import session_like
 from echopath_viewer.model.frames.overview import Glance, glance_at, level_image, track_values, tracks_of
 from echopath_viewer.model.frames.simulated_frames import SimulatedFrames
 from echopath_viewer.model.frames.time_line import time_line_of
 from echopath_viewer.model.view_state import state_of
+from support.frames_in_time import make_radar, make_scene
 
 NUM_FRAMES = 3
 
@@ -215,3 +216,15 @@ def test_frames_of_a_dataset_that_are_remade_have_their_rays(tmp_path):
     shown, wanted = line.read(0), remade[0].frame
     assert len(line) == 1 and shown.paths.num_paths == wanted.paths.num_paths > 0 and shown.note == ""
     assert np.array_equal(shown.cube, wanted.cube) and shown.paths.frame.start_time == pytest.approx(0.05)
+
+
+def test_scenes_with_lifetimes_show_what_is_there(tmp_path):
+    """The scene that was traced may be given with the paths, although it has more meshes than took part."""
+    scene, radar = make_scene(), make_radar()
+    scene.add(ep.actors.plate(1.0, 1.0), name="guest", material="metal", position=(8.0, 2.0, 0.0), yaw=np.pi)
+    scene["guest"].lifetime = 0.05, 1.0
+    for time, wanted in ((0.0, ["plate"]), (0.1, ["plate", "guest"])):
+        session = Session(from_paths(scene, ep.trace(scene, radar, num_rays=200, start_time=time)))
+        assert session.mesh_names == wanted
+    stored = ep.Sequence(scene, radar, frames=2, interval=0.1, num_rays=200, guard=False).save(tmp_path / "maps", keep="maps")
+    assert [Session(time_line_of(stored.path).read(place)).mesh_names for place in range(2)] == [["plate"], ["plate", "guest"]]

@@ -6,6 +6,7 @@ import numpy as np
 import echopath as ep
 from echopath import _core
 from echopath.frame_file.frame import without_lists
+from echopath.scene.lifetimes import scene_in_frame
 
 from .inputs import ViewInput, whole_part
 from ..maps.layers import Known
@@ -53,8 +54,9 @@ def with_values(spectrum, values):
 
 def no_paths(scene, radar, start_time: float, seed: int):
     """Paths of a frame without one."""
+    there = scene_in_frame(scene, radar, start_time)
     # The core's own: that one ray is too few need not be said.
-    traced = _core.trace(scene, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
+    traced = _core.trace(there, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
     return traced.select(np.zeros(traced.num_paths, bool))
 
 

@@ -69,7 +69,7 @@ class PointFinder {
       }
     }
     std::erase_if(points, [&](SurfacePoint& point) {
-      point.on.mesh_id = range.mesh_id;
+      point.on.mesh_id = range.mesh_id;  // instead of the number, by which the random numbers went
       point.stratum = stratum;
       return !directions.contains((point.position - settings_.transmitter).normalized());
     });

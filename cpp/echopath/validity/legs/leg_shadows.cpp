@@ -14,11 +14,6 @@ constexpr double kOnMirrorRelative = 1e-5;
 constexpr double kOneImage = 2e-5;  // m: images as near to each other are one; .03 rad at 77 GHz
 constexpr int kMostInTurn = 4;      // mirrors of a chain that are tried in other orders
 
-Vec3 image_over(std::span<const PosedHit> mirrors, Vec3 point) {
-  for (const Plane& plane : mirrors) point = plane.image(point);
-  return point;
-}
-
 }  // namespace
 
 // Describes an end of a chain of legs: an antenna, or a point of a surface with a normal and, where it is curved, the point

@@ -9,6 +9,7 @@ import echopath as ep
 from echopath.base.files import file_state
 from echopath.frame_file import KeptMeshes, read_frame
 from echopath.paths.subset import part_of_path
+from echopath.scene.lifetimes import scene_in_frame
 from echopath.signals.same_radar import difference
 
 from .kept_orders import KeptOrders, read_kept
@@ -81,9 +82,10 @@ def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate=
     window, zero_pad: of the maps; evaluate, retrace, keyframes: of the signals, as in `synthesize`
     Raises ValueError for another scene and for parts of another radar.
     """
-    if scene is not None and len(scene.meshes) != len(paths.scene.meshes):
+    there = None if scene is None else scene_in_frame(scene, paths.radar, paths.frame.start_time)
+    if there is not None and len(there.meshes) != len(paths.scene.meshes):
         raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
-                         f"got one with {len(scene.meshes)}")
+                         f"got one with {len(there.meshes)}")
     signals = Signals(paths, {"window": window, "zero_pad": zero_pad}, evaluate, retrace, keyframes)
     made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, signals)]
     cube = signals.whole()

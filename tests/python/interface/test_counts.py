@@ -9,6 +9,7 @@ from echopath.cli.dataset import _forecast_line as forecast_line
 from echopath.cli.info import _describe_scene
 from echopath.dataset import Forecast
 from echopath.tracing.lost_rays import unaimed
+from support.radars import build_radar
 
 
 def test_a_count_is_said_in_few_ways_none_of_which_says_too_much():
@@ -34,6 +35,6 @@ def test_effects_tell_of_one_object_as_of_one(count, words):
 def test_lines_about_one_thing_say_it_as_one():
     scene = ep.Scene()
     scene.add(ep.Mesh([(5, 0, 0), (5, 1, 0), (5, 0, 1)], [(0, 1, 2)]), name="one", material="metal")
-    assert any(line.endswith(" 1 triangle, metal") for line in _describe_scene(scene, 0.0))
+    assert any(line.endswith(" 1 triangle, metal") for line in _describe_scene(scene, build_radar(), 0.0))
     assert repr(scene["one"]).endswith(", 1 mesh)")
     assert forecast_line(Forecast(frames=1, seconds=60.0, bytes=2 ** 20)).startswith("1 frame to be made")

@@ -67,7 +67,10 @@ struct Selection::Term {
 
   // Holds the operands as they are, so that each step of a long chain costs the same. s & s is s.
   static Selection combine(Kind kind, const Selection& a, const Selection& b) {
-    return a.term_ == b.term_ ? a : make({.kind = kind, .operands = {a, b}});
+    if (a.term_ == b.term_) return a;
+    Term term{.kind = kind};
+    term.operands = {a, b};
+    return make(std::move(term));
   }
 
   // Returns what a chain of the same kind joins, in order, so that a long chain of | is one term and not a deep tree. What

@@ -41,7 +41,7 @@ void ask(const Queries& queries, const QueryLog::Ray* rays, bool is_shadow) {
     valid.lanes[lane] = rays[lane].far > 0 ? -1 : 0;
   }
   if (is_shadow) queries.occluded(valid, packet.ray);
-  else queries.intersect(valid, packet);
+  else queries.intersect(valid, packet, PacketWay::kTogether);
 }
 
 }  // namespace
@@ -54,9 +54,9 @@ class QueryRecorder::RecordedQueries final : public EmbreeScene::Queries {
     write_down(QueryLog::Kind::kClosest, query.ray);
     asked_.intersect(query);
   }
-  void intersect(const ValidLanes& valid, RTCRayHit16& packet) const override {
+  void intersect(const ValidLanes& valid, RTCRayHit16& packet, PacketWay way) const override {
     log_.add(QueryLog::Kind::kClosestPacket, rays_of(packet.ray, valid));
-    asked_.intersect(valid, packet);
+    asked_.intersect(valid, packet, way);
   }
   void occluded(RTCRay& ray) const override {
     write_down(QueryLog::Kind::kShadow, ray);

@@ -135,3 +135,39 @@ def test_what_is_looked_at_again_is_the_same_and_frees_its_geometry():
     del other
     gc.collect()
     assert not list(_KEPT)
+
+
+def distance_to_triangles(point, corners):
+    """m, from a point to the nearest of triangles, corners [F, 3, 3]: by Fermat's condition, on a face, an edge or a corner."""
+    lines = corners - point
+    least = np.linalg.norm(lines, axis=2).min()
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        along = lines[:, b] - lines[:, a]
+        at = -np.sum(lines[:, a] * along, axis=1) / np.sum(along * along, axis=1)
+        feet = lines[:, a] + at[:, None] * along
+        least = min([least, *np.linalg.norm(feet[(at > 0) & (at < 1)], axis=1)])
+    for a, b, c in lines:
+        weights = np.linalg.lstsq(np.stack([b - a, c - a], axis=1), -a, rcond=None)[0]
+        if weights.min() > 0 and weights.sum() < 1:
+            least = min(least, np.linalg.norm(a + weights[0] * (b - a) + weights[1] * (c - a)))
+    return least
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_distances_are_those_of_the_nearest_triangles(seed):
+    """Triangles of all sizes in any order, stretched and turned, near one end and away from the other."""
+    rng = np.random.default_rng(seed)
+    sizes = 10.0 ** rng.uniform(-2.0, 0.3, size=(300, 1, 1))
+    corners = rng.uniform(-3.0, 3.0, size=(300, 1, 3)) + sizes * rng.normal(size=(300, 3, 3))
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    linear = turn * np.sign(np.linalg.det(turn)) @ np.diag(rng.uniform(0.3, 3.0, size=3))
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = linear, (15.0, -4.0, 1.0)
+    scene = ep.Scene()
+    scene.add(ep.Mesh(corners.reshape(-1, 3), np.arange(900).reshape(300, 3)), name="rubble", material="metal", transform=pose)
+    ends = [(0.0, 0.0, 1.0), rng.uniform(-6.0, 6.0, size=3)]
+    radar = build_radar([ep.Antenna(ends[0])], [ep.Antenna(ends[1])], num_samples=16, sampling_rate=1e6, num_chirps=2)
+    seen, = ep.visibility(scene, radar, num_directions=64)
+    placed = corners @ linear.T + pose[:3, 3]
+    expected = [distance_to_triangles(np.asarray(end), placed) for end in ends]
+    assert [seen.transmitter.distance, seen.receiver.distance] == pytest.approx(expected, rel=1e-9)

@@ -1,18 +1,14 @@
 #include "echopath/label/objects/nearest_point.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
-
-#include "echopath/base/lanes/scalar_math.h"
-#include "echopath/base/lanes/simd.h"
-#include "echopath/base/packed.h"
 
 namespace echopath {
 namespace {
+
+constexpr double kRounding = 1e-9;  // relative to a length, more than that of posed vertices
 
 double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
@@ -26,25 +22,6 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
   return is_above ? std::abs(normal.dot(point - a)) : least;
 }
 
-// Writes the squares of the distances of vertices, and the least of them.
-ECHOPATH_INLINE void square_distances(const double* vertices, size_t count, VectorOf<double> from, double* squares,
-                                      double* least) {
-  ECHOPATH_SIDE_BY_SIDE
-  for (size_t i = 0; i < count; ++i) {
-    const double x = vertices[3 * i] - from.x, y = vertices[3 * i + 1] - from.y, z = vertices[3 * i + 2] - from.z;
-    squares[i] = x * x + y * y + z * z;
-  }
-  constexpr size_t kAtOnce = 8;
-  double of_lanes[kAtOnce];
-  std::fill_n(of_lanes, kAtOnce, std::numeric_limits<double>::infinity());
-  size_t i = 0;
-  for (; i + kAtOnce <= count; i += kAtOnce) {
-    for (size_t k = 0; k < kAtOnce; ++k) of_lanes[k] = ScalarMath::smaller(of_lanes[k], squares[i + k]);
-  }
-  for (; i < count; ++i) of_lanes[0] = ScalarMath::smaller(of_lanes[0], squares[i]);
-  *least = *std::min_element(of_lanes, of_lanes + kAtOnce);
-}
-
 // Returns whether a point is nearer than `least` (m) to the box about a triangle, which most triangles need not be asked
 // more about.
 bool is_box_nearer(const Vec3& point, const std::array<Vec3, 3>& corners, double least) {
@@ -53,23 +30,78 @@ bool is_box_nearer(const Vec3& point, const std::array<Vec3, 3>& corners, double
   return below.cwiseMax(above).cwiseMax(0.0).squaredNorm() < least * least;
 }
 
-ECHOPATH_INLINE void mark_below(const double* values, size_t count, double limit, uint8_t* is_below) {
-  ECHOPATH_SIDE_BY_SIDE
-  for (size_t i = 0; i < count; ++i) is_below[i] = values[i] <= limit ? 1 : 0;
+// Returns a factor by which a map lengthens nothing more: a bound of its largest singular value, which a rotation meets.
+double largest_stretch(const Mat3& linear) {
+  return std::sqrt((linear.transpose() * linear).cwiseAbs().rowwise().sum().maxCoeff());
 }
 
-double largest_stretch(const Mat3& linear) { return Eigen::JacobiSVD<Mat3>(linear).singularValues()[0]; }
+// Looks for the nearest point of a mesh run by run, by the boxes in the frame of the mesh, or of a deformed one by those in
+// the geometry.
+class RunsOfMesh {
+ public:
+  RunsOfMesh(const Node& node, const PosedScene& pose, const EmbreeScene& geometry, uint32_t mesh)
+      : geometry_(geometry), mesh_(mesh), num_triangles_(static_cast<uint32_t>(node.mesh->triangles().size())) {
+    if (node.deformation) {
+      own_boxes_ = find_boxes_of_runs(geometry.vertices(mesh), node.mesh->triangles());
+      return;
+    }
+    boxes_ = &node.mesh->boxes_of_runs();
+    to_mesh_ = pose.linear(mesh).inverse();
+    place_ = pose.world_translation(mesh) - geometry.origin();
+    shortest_ = 1.0 / largest_stretch(to_mesh_);
+    longest_ = largest_stretch(pose.linear(mesh));
+  }
+
+  RunsOfMesh(const RunsOfMesh&) = delete;
+  RunsOfMesh& operator=(const RunsOfMesh&) = delete;
+
+  // Returns the distance in m of the mesh from a point if it is less than `limit`, else that. A run that is nowhere nearer
+  // than the farthest corner of another one is not looked at, nor one that is nowhere nearer than what was found in those
+  // that begin before it.
+  double distance_below(double limit, const Vec3& point) const {
+    double least = limit;
+    for (const auto& [begin, run] : nearest_runs(limit, to_mesh_ * (point - place_))) {
+      if (begin >= least) break;
+      const uint32_t end = std::min((run + 1) * kRunLength, num_triangles_);
+      for (uint32_t i = run * kRunLength; i < end; ++i) {
+        const std::array<Vec3, 3> corners = geometry_.corners(mesh_, i);
+        if (is_box_nearer(point, corners, least)) least = std::min(least, distance_to_triangle(point, corners));
+      }
+    }
+    return least;
+  }
+
+ private:
+  // Returns the runs that may be nearer than `limit`, and how far away they begin at least, m, in this order.
+  std::vector<std::pair<double, uint32_t>> nearest_runs(double limit, const Vec3& point) const {
+    std::vector<std::pair<double, uint32_t>> runs;
+    double nearest_end = limit;
+    for (uint32_t run = 0; run < boxes_->size(); ++run) {
+      const Eigen::AlignedBox3d& box = (*boxes_)[run];
+      const double begin = box.exteriorDistance(point) * shortest_ * (1.0 - kRounding);
+      if (begin >= nearest_end) continue;
+      const Vec3 farthest = (point - box.min()).cwiseAbs().cwiseMax((point - box.max()).cwiseAbs());
+      nearest_end = std::min(nearest_end, farthest.norm() * longest_ * (1.0 + kRounding));
+      runs.emplace_back(begin, run);
+    }
+    std::erase_if(runs, [&](const auto& run) { return run.first > nearest_end; });
+    std::ranges::sort(runs);
+    return runs;
+  }
+
+  const EmbreeScene& geometry_;
+  uint32_t mesh_, num_triangles_;
+  std::vector<Eigen::AlignedBox3d> own_boxes_;  // of a deformed mesh
+  const std::vector<Eigen::AlignedBox3d>* boxes_ = &own_boxes_;
+  Mat3 to_mesh_ = Mat3::Identity();        // takes lines of the geometry to those of the boxes
+  Vec3 place_ = Vec3::Zero();              // m, of the origin of the boxes in the geometry
+  double shortest_ = 1.0, longest_ = 1.0;  // lengths in the geometry of what is 1 m long among the boxes
+};
 
 }  // namespace
 
 NearestPoints::NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry)
     : scene_(scene), geometry_(geometry), pose_(pose) {}
-
-double NearestPoints::longest_edge(uint32_t mesh_id) const {
-  const Node& node = scene_.node_of(mesh_id);
-  if (node.deformation) return longest_edge_of(geometry_.vertices(mesh_id), node.mesh->triangles());
-  return node.mesh->longest_edge() * largest_stretch(pose_.linear(mesh_id));
-}
 
 std::array<double, 2> NearestPoints::distances(const Points& points, std::span<const uint32_t> mesh_ids) const {
   std::vector<std::pair<double, uint32_t>> by_box;
@@ -79,37 +111,11 @@ std::array<double, 2> NearestPoints::distances(const Points& points, std::span<c
   least.fill(std::numeric_limits<double>::infinity());
   const double apart = (points[1] - points[0]).norm();
   for (const auto& [distance, id] : by_box) {
-    if (distance < std::max(least[0], least[1] + apart)) look_at_mesh(points, id, least);
+    if (distance >= std::max(least[0], least[1] + apart)) break;
+    const RunsOfMesh runs(scene_.node_of(id), pose_, geometry_, id);
+    for (size_t k = 0; k < points.size(); ++k) least[k] = runs.distance_below(least[k], points[k]);
   }
   return least;
-}
-
-// No point of a triangle is farther from its next corner than its longest edge over the root of 3. The vertex that is
-// nearest to the first point bounds both distances, before any triangle is looked at.
-void NearestPoints::look_at_mesh(const Points& points, uint32_t mesh, std::array<double, 2>& least) const {
-  const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
-  const double apart = (points[1] - points[0]).norm();
-  std::vector<double> squares(vertices.size());
-  double nearest_square = 0.0;
-  run_simd<&square_distances>(vertices.front().data(), vertices.size(), unpacked(points[0]), squares.data(),
-                              &nearest_square);
-  const double nearest = std::sqrt(nearest_square);
-  least[0] = std::min(least[0], nearest);
-  least[1] = std::min(least[1], nearest + apart);
-  const double reach = std::max(least[0], least[1] + apart) + longest_edge(mesh) / std::numbers::sqrt3;
-  std::vector<uint8_t> is_near(vertices.size());
-  run_simd<&mark_below>(static_cast<const double*>(squares.data()), squares.size(), reach * reach * (1.0 + 1e-9),
-                        is_near.data());
-  const std::vector<Triangle>& triangles = scene_.node_of(mesh).mesh->triangles();
-  for (uint32_t i = 0; i < triangles.size(); ++i) {
-    const auto& [a, b, c] = triangles[i];
-    if ((is_near[a] | is_near[b] | is_near[c]) == 0) continue;
-    const std::array<Vec3, 3> corners = geometry_.corners(mesh, i);
-    for (size_t k = 0; k < 2; ++k) {
-      if (is_box_nearer(points[k], corners, least[k]))
-        least[k] = std::min(least[k], distance_to_triangle(points[k], corners));
-    }
-  }
 }
 
 }  // namespace echopath

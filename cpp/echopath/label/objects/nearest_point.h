@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// Finds the nearest point of objects. The longest edges of posed meshes tell which triangles need not be looked at, and
-// these are most of them.
+// Finds the nearest point of objects. The boxes about runs of triangles tell which of these need not be looked at, and they
+// are most of them.
 class NearestPoints {
  public:
   // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose.
@@ -19,9 +19,6 @@ class NearestPoints {
   std::array<double, 2> distances(const Points& points, std::span<const uint32_t> mesh_ids) const;
 
  private:
-  void look_at_mesh(const Points& points, uint32_t mesh, std::array<double, 2>& least) const;
-  double longest_edge(uint32_t mesh_id) const;  // m
-
   const Scene& scene_;
   const EmbreeScene& geometry_;
   const PosedScene& pose_;

@@ -124,15 +124,6 @@ bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangl
 
 }  // namespace
 
-double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  double longest = 0.0;
-  for (const auto& [a, b, c] : triangles) {
-    longest = std::max({longest, (vertices[a] - vertices[b]).squaredNorm(), (vertices[b] - vertices[c]).squaredNorm(),
-                        (vertices[c] - vertices[a]).squaredNorm()});
-  }
-  return std::sqrt(longest);
-}
-
 struct Mesh::KeptEdges {
   std::once_flag found;
   std::vector<SharpEdge> edges;
@@ -205,7 +196,7 @@ void Mesh::measure() {
   area_ = surface_area(vertices_, triangles_);
   is_flat_ = lie_in_a_plane(vertices_, triangles_);
   for (const Vec3& vertex : vertices_) box_.extend(vertex);
-  longest_edge_ = longest_edge_of(vertices_, triangles_);
+  boxes_of_runs_ = find_boxes_of_runs(vertices_, triangles_);
 }
 
 const std::vector<SharpEdge>& Mesh::sharp_edges() const {

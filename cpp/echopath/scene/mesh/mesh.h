@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "echopath/base/geometry.h"
+#include "echopath/scene/mesh/triangle_runs.h"
 
 namespace echopath {
 
 using Triangle = std::array<uint32_t, 3>;
-
-// Returns the length in m of the longest edge of some triangles.
-double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
 
 struct SharpEdge;  // scene/edges/sharp_edges.h
 
@@ -48,7 +46,7 @@ class Mesh {
   double area() const { return area_; }                    // m^2
   bool is_flat() const { return is_flat_; }                // all vertices in one plane, to 1e-6 of the extent
   const Eigen::AlignedBox3d& box() const { return box_; }  // m, of the vertices
-  double longest_edge() const { return longest_edge_; }    // m
+  const std::vector<Eigen::AlignedBox3d>& boxes_of_runs() const { return boxes_of_runs_; }  // m
   // Returns the edges that find_sharp_edges finds; it looks for them at the first call and is thread-safe.
   const std::vector<SharpEdge>& sharp_edges() const;
 
@@ -70,8 +68,9 @@ class Mesh {
   std::vector<uint32_t> original_triangle_, original_vertex_;
   int64_t num_input_vertices_ = 0, num_removed_triangles_ = 0, num_duplicated_vertices_ = 0;
   bool is_closed_ = false, is_flat_ = false;
-  double area_ = 0.0, longest_edge_ = 0.0;  // m^2 and m
-  Eigen::AlignedBox3d box_;                 // m
+  double area_ = 0.0;        // m^2
+  Eigen::AlignedBox3d box_;  // m
+  std::vector<Eigen::AlignedBox3d> boxes_of_runs_;
   MeshPtr whole_;
   std::vector<uint32_t> whole_triangle_, whole_vertex_;
   struct KeptEdges;

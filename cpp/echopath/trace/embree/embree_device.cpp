@@ -35,10 +35,10 @@ EmbreeScene::Device::~Device() {
 #if RTC_VERSION_MAJOR >= 4
 void EmbreeScene::Device::intersect(RTCRayHit& query) const { rtcIntersect1(scene, &query); }
 
-void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet) const {
+void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet, PacketWay way) const {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  if (way == PacketWay::kTogether) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   rtcIntersect16(valid.lanes, scene, &packet, &arguments);
 }
 
@@ -54,10 +54,10 @@ void EmbreeScene::Device::intersect(RTCRayHit& query) const {
   rtcIntersect1(scene, &context, &query);
 }
 
-void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet) const {
+void EmbreeScene::Device::intersect(const ValidLanes& valid, RTCRayHit16& packet, PacketWay way) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (way == PacketWay::kTogether) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(valid.lanes, scene, &context, &packet);
 }
 

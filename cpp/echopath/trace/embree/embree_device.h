@@ -72,13 +72,17 @@ struct alignas(64) ValidLanes {
   int lanes[kPacketSize];
 };
 
+// Tells whether the rays of a packet go through the tree of triangles together or each by itself, which is a tenth faster
+// where each of them meets other triangles than the rest, as a small bundle does on a fine mesh.
+enum class PacketWay { kTogether, kApart };
+
 // Asks Embree, one ray or a packet at a time. It writes the closest hits of rays into the query; it marks an occluded ray
 // with a far end of -infinity. Thread-safe.
 class EmbreeScene::Queries {
  public:
   virtual ~Queries() = default;
   virtual void intersect(RTCRayHit& query) const = 0;
-  virtual void intersect(const ValidLanes& valid, RTCRayHit16& packet) const = 0;
+  virtual void intersect(const ValidLanes& valid, RTCRayHit16& packet, PacketWay way) const = 0;
   virtual void occluded(RTCRay& ray) const = 0;
   virtual void occluded(const ValidLanes& valid, RTCRay16& rays) const = 0;
 };
@@ -104,7 +108,7 @@ struct EmbreeScene::Device final : EmbreeScene::Queries {
   void build(const EmbreeMeshes& meshes, Job* job);
 
   void intersect(RTCRayHit& query) const override;
-  void intersect(const ValidLanes& valid, RTCRayHit16& packet) const override;
+  void intersect(const ValidLanes& valid, RTCRayHit16& packet, PacketWay way) const override;
   void occluded(RTCRay& ray) const override;
   void occluded(const ValidLanes& valid, RTCRay16& rays) const override;
 

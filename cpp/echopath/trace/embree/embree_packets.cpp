@@ -128,7 +128,7 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
     queries.ray.tnear[lane] = static_cast<float>(std::max(0.0, (*begins)[lane] - moved));
   }
   forget_hits(queries.hit);
-  queries_->intersect(valid, queries);
+  queries_->intersect(valid, queries, PacketWay::kTogether);
   take(queries.hit, out.met);
   name_hits(out.met);
   if (std::ranges::none_of(out.met, is_met)) return out.verdicts.fill(Verdict::kMiss);
@@ -160,7 +160,7 @@ void EmbreeScene::intersect_meshes(const Vec3& from, const LaneVectors& directio
     queries.ray.mask[lane] = mask;
   }
   forget_hits(queries.hit);
-  queries_->intersect(valid, queries);
+  queries_->intersect(valid, queries, PacketWay::kApart);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const bool is_met = valid.lanes[lane] != 0 && queries.hit.geomID[lane] != kNothing;
     out.mesh_id[lane] = is_met ? named(queries.hit.geomID[lane], queries.hit.primID[lane], 0.0f, 0.0f).mesh_id : kNothing;

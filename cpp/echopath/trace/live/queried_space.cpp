@@ -101,8 +101,8 @@ class QueryWatch::Queries final : public EmbreeScene::Queries {
     add(query.ray, query.ray.tfar);
   }
 
-  void intersect(const ValidLanes& valid, RTCRayHit16& packet) const override {
-    asked_.intersect(valid, packet);
+  void intersect(const ValidLanes& valid, RTCRayHit16& packet, PacketWay way) const override {
+    asked_.intersect(valid, packet, way);
     for (int lane = 0; watched && lane < kPacketSize; ++lane) {
       if (valid.lanes[lane]) add(ray_of(packet.ray, lane), packet.ray.tfar[lane]);
     }

@@ -11,8 +11,9 @@ from ..base.chirps import chirps_duration
 from ..base.progress import with_progress
 from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
 from ..paths.subset import subset
-from ..spectra.windows import of_range, of_velocity
+from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
+from .histories import UNSTEADY, Histories, length_and_field, off_parabola, phase_of
 from .response import MAX_SWEEP, Response
 
 SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
@@ -32,9 +33,10 @@ class EchoFields:
     """The field that each path gives to each cell of a map of its radar, by its state in the middle of the frame.
 
     Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
-    the velocity of `path_cells` and its change over the frame for the first antennas. Cells are asked for together
-    (`evaluate`). Those paths of a cell are left out that together hold less than a millionth of its power, as far as the windows
-    bound what each may give.
+    the velocity of `path_cells` and its change over the frame for the first antennas; of echoes whose phase is no parabola over
+    the frame, as of blades and wheels, the field of the first antennas in each chirp. Cells are asked for together
+    (`evaluate`). Those paths of a cell are left out that together hold less than a millionth of its power, as far as the
+    windows bound what each may give.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
     """
 
@@ -68,6 +70,7 @@ class EchoFields:
         """Evaluates the paths of cells [N, 2] together, which takes little more than one does; progress: as in `detect`."""
         asked = [_key(cell) for cell in cells if _key(cell) not in self._echoes_of_cell]
         if asked:
+            self._follow(asked)
             held = [self._holding(cell) for cell in with_progress(asked, len(asked), progress, "paths of cells")]
             keep = np.unique(np.concatenate(held))
             echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()})
@@ -106,8 +109,64 @@ class EchoFields:
         (velocity, distance), pad = _key(cell), self._spectrum.zero_pad
         along = self._velocity_response((velocity - echoes["velocity"][some]) / pad, echoes["sweep"][some])
         onward = np.outer(self._velocity_response.centres, echoes["travel"][some])
+        rows = self._histories.rows(echoes["index"][some])
+        followed = np.flatnonzero(rows >= 0)
+        along[:, followed], onward[:, followed] = self._along_histories(rows[followed], velocity)
         place = (distance - echoes["range"][some]) / pad - onward
         return lambda shift: np.sum(along * self._range_response(place - shift), axis=0)
+
+    def _along_histories(self, rows, velocity: int) -> tuple:
+        """What a cell of velocity has of echoes that are followed from chirp to chirp, and bins of range by which they are
+        farther away than in the middle of the frame, [segments, N] each."""
+        segments = len(self._velocity_response.centres)
+        first = [part[0] for part in np.array_split(np.arange(len(self._chirp_weights)), segments)]
+        tone = self._chirp_weights * np.exp(-2j * np.pi * self._cell_turns(velocity))
+        along = np.add.reduceat(self._histories.fields(rows) * tone.astype(np.complex64), first, axis=1)
+        counts = np.diff([*first, len(tone)])
+        farther = np.add.reduceat(self._histories.farther(rows), first, axis=1) / counts
+        return along.T, 0.5 * farther.T / self._paths.radar.waveform.range_resolution
+
+    def _cell_turns(self, velocity: int) -> np.ndarray:
+        """Turns [C] of the tone of a cell of velocity in each chirp, from the middle of the frame on."""
+        count = self._paths.radar.waveform.num_chirps
+        bins = (velocity - len(self._spectrum.velocity) // 2) / self._spectrum.zero_pad
+        return bins * (np.arange(count) - 0.5 * (count - 1)) / count
+
+    @cached_property
+    def _chirp_weights(self) -> np.ndarray:
+        """Weights [C] of the chirps in a cell, sum 1."""
+        samples = samples_of(of_velocity(self._spectrum.window), self._paths.radar.waveform.num_chirps)
+        return samples / samples.sum()
+
+    @cached_property
+    def _histories(self) -> Histories:
+        radar = self._paths.radar
+        times = [radar.chirp_time(0, chirp) for chirp in range(radar.waveform.num_chirps)]
+        return Histories(self._paths, self._paths.frame.start_time + np.array(times))
+
+    def _follow(self, cells) -> None:
+        """Follows the echoes that may hold cells [(velocity, range)] and whose phase is no parabola, the strongest first."""
+        near = np.unique(np.concatenate([self._unsteady_near(distance) for distance in {distance for _, distance in cells}]))
+        strength = np.abs(self._echoes["first"][near])
+        self._histories.follow(self._echoes["index"][near[np.argsort(-strength, kind="stable")]])
+        rows = self._histories.rows(self._echoes["index"][near])
+        followed, rows = near[rows >= 0], rows[rows >= 0]
+        self._power[followed] = np.maximum(self._power[followed], self._histories.largest(rows) ** 2)
+
+    def _unsteady_near(self, distance: int) -> np.ndarray:
+        """Places in the echoes of those whose phase is no parabola, within reach of a cell of range, ascending."""
+        return self._unsteady[np.abs(self._echoes["range"][self._unsteady] - distance) <= self._far + 1.0]
+
+    @cached_property
+    def _unsteady(self) -> np.ndarray:
+        """Places in the echoes of those whose phase is no parabola, ascending."""
+        return np.flatnonzero(self._echoes["unsteady"])
+
+    @property
+    def _far(self) -> float:
+        """Cells of range beyond which an echo gives nothing."""
+        reach = self._range_response.reach + 0.5 * self._largest("travel") + self._largest_shift
+        return reach * self._spectrum.zero_pad
 
     @cached_property
     def _echoes(self) -> dict:
@@ -123,13 +182,16 @@ class EchoFields:
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
         bin_width = 2.0 * waveform.max_velocity(paths.radar.num_slots) / waveform.num_chirps
         first = _lengths_and_fields(paths, 0, [0])[1][0, index]
+        off, away = (values[index] for values in off_parabola(paths, cells.length))
         power = np.abs(first) ** 2
         sweep = np.where(power > FADED * power.max(initial=0.0), _speed_change(paths, cells.length)[index] / bin_width, 0.0)
         range_step = waveform.range_resolution / pad
+        travel = cells.velocity[index] * chirps_duration(paths.radar) / (range_step * pad)
+        unsteady = (off > UNSTEADY) | (np.abs(sweep) > MAX_SWEEP)
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
-                "sweep": sweep, "first": first, "length": cells.length[index],
-                "travel": cells.velocity[index] * chirps_duration(paths.radar) / (range_step * pad)}
+                "sweep": sweep, "first": first, "length": cells.length[index], "unsteady": unsteady,
+                "travel": np.where(unsteady, away / waveform.range_resolution, travel)}
 
     @cached_property
     def _power(self) -> np.ndarray:
@@ -151,9 +213,10 @@ class EchoFields:
     def _bounds(self, some, cell) -> np.ndarray:
         """The largest power in W that some echoes may give to a cell in a channel, [N]."""
         (velocity, distance), pad = cell, self._spectrum.zero_pad
-        echoes = {name: self._echoes[name][some] for name in ("velocity", "range", "sweep", "travel")}
+        echoes = {name: self._echoes[name][some] for name in ("velocity", "range", "sweep", "travel", "unsteady")}
         travel, sweep = np.abs(echoes["travel"]), np.minimum(np.abs(echoes["sweep"]), MAX_SWEEP)
         along = self._velocity_response.bound((velocity - echoes["velocity"]) / pad, travel + sweep)
+        along = np.where(echoes["unsteady"], 1.0, along)
         across = self._range_response.bound((distance - echoes["range"]) / pad, travel + 2.0 * self._largest_shift)
         return self._power[some] * (along * across) ** 2
 
@@ -169,7 +232,19 @@ class EchoFields:
             length, start = _lengths_and_fields(paths, int(tx), self.channels[rows, 1].tolist())
             shift[rows] = 0.5 * (length[:, column] - echoes["length"]) / self._paths.radar.waveform.range_resolution
             field[rows] = start[:, column]
+            self._scale_followed(field, rows, echoes, length[:, column])
         return echoes | {"shift": shift, "field": field}
+
+    def _scale_followed(self, field, channels, echoes: dict, length) -> None:
+        """Makes the fields [C, N] of echoes that are followed what their histories are to be multiplied by in some channels,
+        where they have a length [channels, N]: the largest field, and what differs from the first antennas."""
+        rows = self._histories.rows(echoes["index"])
+        some = np.flatnonzero(rows >= 0)
+        waveform, first, largest = self._paths.radar.waveform, echoes["first"][some], self._histories.largest(rows[some])
+        visible = np.abs(first) > np.sqrt(FADED) * largest
+        by_way = phase_of(length[:, some], waveform) * np.conj(phase_of(echoes["length"][some], waveform))
+        beside_first = np.divide(field[np.ix_(channels, some)], first, out=by_way, where=visible)
+        field[np.ix_(channels, some)] = largest * beside_first
 
     @cached_property
     def _apart(self) -> np.ndarray:
@@ -221,11 +296,12 @@ class EchoFields:
         num_velocities, num_ranges = len(self._spectrum.velocity), len(self._spectrum.range)
         pad = self._spectrum.zero_pad
         slow = min(int(self._velocity_response.reach * pad), num_velocities // 2)
-        far = int((self._range_response.reach + 0.5 * self._largest("travel") + self._largest_shift) * pad)
+        far = int(self._far)
         rows = np.unique(np.arange(velocity - slow, velocity + slow + 1) % num_velocities) * num_ranges
         first = np.searchsorted(number, rows + max(distance - far, 0))
         last = np.searchsorted(number, rows + min(distance + far, num_ranges - 1), side="right")
-        return np.concatenate([np.arange(*pair) for pair in zip(first, last)])
+        near = np.concatenate([np.arange(*pair) for pair in zip(first, last)])
+        return np.union1d(near, self._unsteady_near(distance)) if len(self._unsteady) else near
 
 
 def _key(cell) -> tuple:
@@ -255,8 +331,4 @@ def _speed_change(paths, length):
 
 def _lengths_and_fields(paths, tx: int, receivers: list) -> tuple:
     """Length [R, P] in m and signal, complex [R, P] in sqrt(W), of each path in the middle of the frame and of the chirp."""
-    waveform, middle = paths.radar.waveform, chirp_times(paths, tx)[1]
-    length, amplitude = paths._echoes_at_receivers(middle, tx, receivers)
-    delay = length / _core.speed_of_light
-    cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2
-    return length, np.conj(amplitude) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+    return length_and_field(paths, chirp_times(paths, tx)[1], tx, receivers)

@@ -16,7 +16,7 @@ ECHOES_AT_ONCE = 1 << 12   # whose phases in all chirps are in memory
 SEGMENTS_PER_BIN = 32      # of range that an echo goes on by: steps of the response up to 2 % of the peak
 MAX_SEGMENTS = 64
 ROUNDING = 1e-9            # of the wait for the next chirp
-_OF_PATHS = ("velocity", "range", "sweep", "travel", "length")
+_OF_PATHS = ("velocity", "range", "sweep", "travel", "length", "index")
 
 
 def echo_fields(paths, spectrum) -> EchoFields:
@@ -101,7 +101,7 @@ class UnevenEchoFields(EchoFields):
         for first in range(0, len(some), ECHOES_AT_ONCE):
             piece = slice(first, first + ECHOES_AT_ONCE)
             few = {name: values[some[piece]] for name, values in echoes.items() if name in _OF_PATHS}
-            tones = np.exp(2j * np.pi * (self._turns(chirps, few) - self._cell_turns(cell[0]))) * chirps.weights[:, None]
+            tones = self._tones(chirps, few) * (np.exp(-2j * np.pi * self._cell_turns(cell[0])) * chirps.weights)[:, None]
             along[:, piece] = _sums(tones, group)
             across[:, piece] = _sums(self._bins_beside(chirps, few, cell[1]), group) / np.bincount(group)[:, None]
         return lambda shift: np.sum(along * self._range_response(across - shift), axis=0)
@@ -109,27 +109,33 @@ class UnevenEchoFields(EchoFields):
     def _bins_beside(self, chirps: _Chirps, echoes: dict, distance: int) -> np.ndarray:
         """Bins [C, N] from the echoes to a cell of range."""
         ranges = np.outer(chirps.slope_ratio, echoes["range"])
-        return (distance - ranges) / self._spectrum.zero_pad - np.outer(chirps.late / self._duration, echoes["travel"])
+        onward = np.outer(chirps.late / self._duration, echoes["travel"])
+        followed, rows = self._followed(echoes)
+        onward[:, followed] = 0.5 * self._histories.farther(rows).T / self._paths.radar.waveform.range_resolution
+        return (distance - ranges) / self._spectrum.zero_pad - onward
 
     @cached_property
     def _duration(self) -> float:
         return chirps_duration(self._paths.radar)
 
-    def _cell_turns(self, velocity: int) -> np.ndarray:
-        """Turns [C, 1] of the tone of a cell of velocity, from the middle of the frame on."""
-        count = self._paths.radar.waveform.num_chirps
-        bins = (velocity - len(self._spectrum.velocity) // 2) / self._spectrum.zero_pad
-        return (bins * (np.arange(count) - 0.5 * (count - 1)) / count)[:, None]
+    def _followed(self, echoes: dict) -> tuple:
+        """Places of the echoes that are followed from chirp to chirp, and their rows in the histories, [F] each."""
+        rows = self._histories.rows(echoes["index"])
+        return np.flatnonzero(rows >= 0), rows[rows >= 0]
 
-    def _turns(self, chirps: _Chirps, echoes: dict) -> np.ndarray:
-        """Turns [C, N] by which echoes differ from their fields in the middle of the frame."""
-        waveform, pad = self._paths.radar.waveform, self._spectrum.zero_pad
+    def _tones(self, chirps: _Chirps, echoes: dict) -> np.ndarray:
+        """What the chirps have of echoes beside their fields, [C, N]: those in the middle of the frame, or the largest ones of
+        echoes that are followed."""
         place = chirps.late[:, None] / self._duration
-        doppler = (echoes["velocity"] - len(self._spectrum.velocity) // 2) / pad  # turns in the frame
+        doppler = (echoes["velocity"] - len(self._spectrum.velocity) // 2) / self._spectrum.zero_pad  # turns in the frame
         delay = echoes["length"] / _core.speed_of_light
-        now = delay + doppler * place / waveform.centre_frequency
-        steps = chirps.carrier_step[:, None] * now - 0.5 * waveform.slope * (chirps.slope_ratio[:, None] - 1.0) * delay ** 2
-        return doppler * place + 0.5 * echoes["sweep"] * place ** 2 + steps
+        now = delay + doppler * place / self._paths.radar.waveform.centre_frequency
+        tones = np.exp(2j * np.pi * (doppler * place + 0.5 * echoes["sweep"] * place ** 2))
+        followed, rows = self._followed(echoes)
+        now[:, followed] = delay[followed] + self._histories.farther(rows).T / _core.speed_of_light
+        tones[:, followed] = self._histories.fields(rows).T
+        steps = 0.5 * self._paths.radar.waveform.slope * (chirps.slope_ratio[:, None] - 1.0) * delay ** 2
+        return tones * np.exp(2j * np.pi * (chirps.carrier_step[:, None] * now - steps))
 
     def _group_of(self, chirps: _Chirps) -> np.ndarray:
         """Number [C] of the group in which an echo stays at one place of range: the same segment of the frame and bandwidth."""

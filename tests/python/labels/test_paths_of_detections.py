@@ -8,6 +8,7 @@ import echopath as ep
 from echopath.detections import echo_fields
 from echopath.detections.echo_fields import EchoFields
 from echopath.detections.response import Response
+from echopath.detections.uneven_fields import echo_fields as fields_of
 from echopath.spectra.windows import samples_of
 from support.scenes.small_spheres import TARGETS, WAVELENGTH, at, nearest, radar_with, scene_of
 from support.shapes import lambert
@@ -224,3 +225,41 @@ def test_detections_do_not_depend_on_the_number_of_threads(movers):
         ep.set_num_threads(0)
     for name in ("range", "velocity", "azimuth", "power", "noise", "object"):
         np.testing.assert_array_equal(getattr(found[0], name), getattr(found[1], name))
+
+
+@pytest.fixture(scope="module", params=[{}, {"extra_idle": [0.0, 7e-6, 3e-6]}, {"frequency_steps": [0.0, 30e6, 11e6]}],
+                ids=["even", "staggered", "hopping"])
+def rotor(request):
+    """(radar, paths, signal) of a drone whose rotors turn once during the frame."""
+    chirps = ep.ChirpSequence(start_frequency=24e9, bandwidth=0.25e9, num_samples=64, sampling_rate=5e6, num_chirps=512,
+                              chirp_interval=20e-6, **request.param)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 2))], receivers=[ep.Antenna((0, 0.006, 2)), ep.Antenna((0, 0, 2))],
+                     transmit_power=20.0)
+    scene = ep.Scene()
+    scene.add(ep.actors.drone(), name="drone", position=(12, 0, 6))
+    paths = ep.trace(scene, radar, num_rays=800)
+    return radar, paths, ep.synthesize(paths, radar)
+
+
+def test_blades_that_turn_during_the_frame_make_the_cells_of_their_signal(rotor):
+    """Fields of paths in cells over 40 dB, against the map of their signal; a parabola of the phase put half of them 3 dB off."""
+    radar, paths, cube = rotor
+    spectrum = ep.range_doppler(cube, radar)
+    power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
+    cells = np.argwhere(power > 1e-4 * power.max())[::7]
+    fields = fields_of(paths, spectrum)
+    fields.evaluate(cells)
+    made = np.array([np.mean(np.abs(fields.fields(cell)[1].sum(axis=1)) ** 2) for cell in cells])
+    ratio_db = 10.0 * np.log10(made / power[tuple(cells.T)])
+    assert len(cells) > 50 and np.mean(np.abs(ratio_db) < 3.0) > 0.95 and abs(np.median(ratio_db)) < 0.2
+
+
+def test_detections_of_blades_are_no_noise(rotor):
+    radar, paths, cube = rotor
+    noisy = ep.range_doppler(ep.add_noise(cube, radar, seed=4), radar)
+    found = ep.detect(noisy, radar, paths=paths)
+    echoes, cells = (np.mean(np.abs(one.values) ** 2, axis=(0, 1))[tuple(found.cells.T)]
+                     for one in (ep.range_doppler(cube, radar), noisy))
+    made_by_echoes = echoes > 0.7 * cells
+    assert np.sum(made_by_echoes) > 8 and not found.is_noise[made_by_echoes].any()
+    assert set(found.object[made_by_echoes]) == {"drone"}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps, mean_power
 from ..presentation.xarray_maps import axis, words_of, xarray_module
-from .classes import CODES, ClassName, classes_of
+from .classes import CODES
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Dataset as XarrayDataset
@@ -25,13 +25,16 @@ _SCENES = 64  # whose classes are remembered
 def lazy_arrays(dataset: Dataset) -> XarrayDataset:
     """See `Dataset.to_xarray`."""
     xarray = xarray_module()
+    from .maps_array import MapsArray  # late: a class of xarray's, which is not always installed
+
     first: Any = dataset[0].frame
     axes: Any = first.spectrum if isinstance(first, Frame) else first
     velocity, range_ = np.asarray(axes.velocity), np.asarray(axes.range)
     shape = (len(dataset), len(velocity), len(range_))
 
     def maps(read: Callable[[DatasetFrame], NDArray[Any]], dtype: str, attributes: dict[str, Any]) -> Any:
-        return ("frame", "velocity", "range"), _lazy(dataset, read, shape, dtype), attributes
+        lazy = xarray.core.indexing.LazilyIndexedArray(MapsArray(dataset, read, shape, dtype))
+        return ("frame", "velocity", "range"), lazy, attributes
 
     variables: dict[str, Any] = {}
     words: dict[str, Any] = {}
@@ -64,8 +67,11 @@ class _Kinds:
     """Classes of the owners of cells, as indices of KINDS, -1: nothing's."""
 
     def __init__(self, dataset: Dataset):
-        self._template = dataset.template
-        self._classes = lru_cache(_SCENES)(self._of_scene)  # threads read frames of several scenes at a time
+        self._dataset = dataset
+        self._classes = lru_cache(_SCENES)(dataset.classes)  # threads read frames of several scenes at a time
+
+    def __reduce__(self) -> tuple[type[_Kinds], tuple[Dataset]]:
+        return _Kinds, (self._dataset,)  # what is remembered stays behind
 
     def of(self, one: DatasetFrame) -> NDArray[np.int8]:
         known = self._classes(one.scene)
@@ -76,34 +82,3 @@ class _Kinds:
             codes = np.array([KINDS.index(known.get(name, "static")) for name in names], np.int8)
             kinds[owners >= 0] = codes[owners[owners >= 0]]
         return kinds
-
-    def _of_scene(self, scene: int) -> dict[str, ClassName]:
-        return classes_of(self._template.draw(scene).table["objects"], self._template.settings.classes)
-
-
-def _lazy(dataset: Dataset, read: Callable[[DatasetFrame], NDArray[Any]], whole: tuple[int, ...], kind: str) -> Any:
-    """An array that xarray indexes without reading more than the frames it asks for."""
-    from xarray.backends import BackendArray
-    from xarray.core import indexing
-
-    class Maps(BackendArray):
-        shape, dtype = whole, np.dtype(kind)
-
-        def __getitem__(self, key: Any) -> Any:
-            return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
-
-        def _read(self, key: tuple[Any, ...]) -> NDArray[Any]:
-            places = np.arange(self.shape[0])[key[0]]
-            if not np.ndim(places):
-                return np.asarray(self._one(int(places))[key[1:]])
-            empty = np.empty((0, *self.shape[1:]), self.dtype)[(slice(None), *key[1:])]
-            return np.stack([self._one(int(place))[key[1:]] for place in places]) if len(places) else empty
-
-        def _one(self, place: int) -> NDArray[Any]:
-            values = read(dataset[place])
-            if values.shape != self.shape[1:]:
-                raise ValueError(f"dataset: must have maps of one size, got {self.shape[1:]} and {values.shape} in frame "
-                                 f"{dataset.numbers[place]}")
-            return values
-
-    return indexing.LazilyIndexedArray(Maps())

@@ -175,9 +175,33 @@ def _what_differs(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     if scenes < before:
         return f"it has {counted(before, 'scene')}"
     for name in sorted(mine.keys() | there.keys()):
-        if mine.get(name) != there.get(name):
-            return f"[{name}] differs"
-    for name in sorted(own.keys() | other.keys()):
-        if own.get(name) != other.get(name):
-            return f"dataset.{name} is {shown(other.get(name))} there"
-    return ""
+        if difference := _first_difference(name, there.get(name), mine.get(name)):
+            return difference
+    return _first_difference("dataset", other, own)
+
+
+def _first_difference(path: str, theirs: Any, ours: Any) -> str:
+    """The first dotted path at which two values differ and what is there, in words; "" where they are alike."""
+    if theirs == ours:
+        return ""
+    if isinstance(theirs, dict) and isinstance(ours, dict):
+        pairs = [(f"{path}.{name}", theirs.get(name), ours.get(name)) for name in sorted(theirs.keys() | ours.keys())]
+    elif isinstance(theirs, list) and isinstance(ours, list) and len(theirs) == len(ours):
+        pairs = [(_entry(path, number, one), one, our) for number, (one, our) in enumerate(zip(theirs, ours))]
+    elif theirs is None:
+        return f"{path} is not given there"
+    elif _is_tables(theirs):
+        return f"{path} has {counted(len(theirs), 'table')} there"
+    else:
+        return f"{path} is {shown(theirs)} there"
+    return next(words for pair in pairs if (words := _first_difference(*pair)))
+
+
+def _entry(path: str, number: int, value: Any) -> str:
+    """Path of an entry of a list: by its name where it has one, as that of what is drawn."""
+    name = value.get("name") if isinstance(value, dict) else None
+    return f"{path}.{name}" if isinstance(name, str) else f"{path}[{number}]"
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and any(isinstance(one, dict) for one in value)

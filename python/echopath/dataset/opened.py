@@ -2,14 +2,18 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .. import _core
-from ..arguments.checks import anything, checked, optional, refused
+from ..arguments.checks import anything, array, checked, optional, refused
 from ..arguments.checks import path as folder_rule
 from ..base.counts import counted
 from ..frame.frame import Frame
@@ -18,12 +22,15 @@ from ..sequence import StoredSequence, load_sequence
 from ..sequence.keep import Keep
 from .address import is_address
 from .arrays import lazy_arrays
+from .classes import ClassName, classes_of
 from .folder import DRAWN, open_template, read_record, scene_folder
 from .sources import Files, Remade, Source
 from .template import Template
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Dataset as XarrayDataset
+
+_PLACES = array("[N]", kind="whole")
 
 
 class DatasetFrame(NamedTuple):
@@ -43,7 +50,8 @@ class DatasetFrame(NamedTuple):
 class Dataset:
     """The frames of a dataset that are done, made by `ep.dataset.open`: `len(dataset)`, `dataset[i]`, `for one in dataset`.
 
-    Each is read when it is asked for, and kept by nobody; a slice is a Dataset.
+    Each is read when it is asked for, and kept by nobody; a slice is a Dataset, and so is `dataset[places]` of a list or an
+    array of places, as of a shuffled batch.
     folder: Path; template: Template of it; numbers: of the frames, in their order here
     source: what reads or makes them, None: the files
     """
@@ -78,17 +86,26 @@ class Dataset:
     @overload
     def __getitem__(self, place: int) -> DatasetFrame: ...
     @overload
-    def __getitem__(self, place: slice) -> Dataset: ...
+    def __getitem__(self, place: slice | Sequence[int] | NDArray[np.integer[Any]]) -> Dataset: ...
 
-    def __getitem__(self, place: int | slice) -> DatasetFrame | Dataset:
-        """The DatasetFrame at a place, or a Dataset of a slice. Raises IndexError, ep.FileError for a damaged file."""
+    def __getitem__(self, place: int | slice | Sequence[int] | NDArray[np.integer[Any]]) -> DatasetFrame | Dataset:
+        """The DatasetFrame at a place, or a Dataset of a slice or of places [N].
+
+        Raises IndexError, TypeError naming `place` for what is neither, ep.FileError for a damaged file.
+        """
         if isinstance(place, slice):
             return self._with(self.numbers[place])
-        if not -len(self) <= place < len(self):
-            raise IndexError(f"a dataset of {len(self)} frames has no frame {place}")
-        number = self.numbers[place]
+        if isinstance(place, (list, tuple, np.ndarray)) and np.ndim(place):
+            return self._with([self._number(one) for one in _PLACES("place", place).tolist()])
+        number = self._number(_place(place))
         scene, at = divmod(number, self.template.settings.frames)
         return DatasetFrame(number, scene, at, self.template.split_of(scene), self._source.frame(scene, at))
+
+    def _number(self, place: int) -> int:
+        """Of the frame at a place."""
+        if not -len(self) <= place < len(self):
+            raise IndexError(f"a dataset of {len(self)} frames has no frame {place}")
+        return self.numbers[place]
 
     def __iter__(self) -> Iterator[DatasetFrame]:
         return (self[place] for place in range(len(self)))
@@ -132,6 +149,14 @@ class Dataset:
             raise _core.FileError(f"{path}: must hold an object of JSON, {{path: value}}")
         return values
 
+    def classes(self, scene: int) -> dict[str, ClassName]:
+        """{name of an object: class} of a scene, as the template's `classes` say, else by actors, "static" for all else.
+
+        The names are those of truth, labels and detections. Raises IndexError for a scene that the template has not.
+        """
+        self._check_scene(scene)
+        return classes_of(self.template.draw(scene).table["objects"], self.template.settings.classes)
+
     def _check_scene(self, scene: int) -> None:
         if not 0 <= scene < self.template.settings.scenes:
             raise IndexError(f"scene: must be from 0 to {self.template.settings.scenes - 1}, got {scene}")
@@ -157,6 +182,14 @@ def dataset_rule(argument: str, value: Any) -> Dataset:
     if not isinstance(value, Dataset):
         raise refused(TypeError, argument, "a Dataset of ep.dataset.open", value)
     return value
+
+
+def _place(value: Any) -> int:
+    """A whole number. Raises TypeError naming `place` for anything else."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise refused(TypeError, "place", "a whole number, a slice or places [N]", value) from None
 
 
 @checked(folder=folder_rule)

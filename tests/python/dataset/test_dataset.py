@@ -42,6 +42,44 @@ def test_all_frames_are_there_and_open(small_dataset):
         opened.split("val")
 
 
+def test_batches_of_places_are_datasets(small_dataset):
+    opened = dataset.open(small_dataset[1])
+    for places in ([5, 0, -1], np.array([5, 0, -1]), (5, 0, -1)):
+        batch = opened[places]
+        assert batch.numbers == [opened.numbers[place] for place in places] and [one.number for one in batch] == batch.numbers
+    assert len(opened[[]]) == 0 and opened[np.int64(3)].number == opened.numbers[3]
+    for wrong, error in (([99], IndexError), (99, IndexError), ([1.5], TypeError), ("a", TypeError), (1.5, TypeError)):
+        with pytest.raises(error, match="place: must be|has no frame 99"):
+            opened[wrong]
+
+
+def test_classes_of_objects_are_told_by_their_names(tmp_path):
+    """Two copies of an actor, what the template's classes name, and what is no road user."""
+    objects = """
+[[objects]]
+name = "rider"
+count = 2
+actor = "cyclist"
+position = [{uniform = [5.0, 6.0]}, 0.0, 0.0]
+[[objects]]
+name = "box"
+actor = "box"
+parameters = {size = [1.0, 1.0, 1.0]}
+material = "metal"
+"""
+    head = HEAD.replace('keep = "labels"', 'keep = "labels"\nclasses = {"box*" = "truck"}')
+    folder = tmp_path / "out"
+    make(written(tmp_path, head.replace("scenes = 6", "scenes = 1") + objects + SCENE), folder)
+    opened = dataset.open(folder)
+    known = opened.classes(0)
+    assert {name: known[name] for name in ("rider_1", "rider_2", "box")} == {"rider_1": "cyclist", "rider_2": "cyclist",
+                                                                              "box": "truck"}
+    assert set(known.values()) == {"cyclist", "truck", "static"}
+    assert {one.name for one in opened[0].frame.labels["parts"].objects} <= set(known)
+    with pytest.raises(IndexError, match="scene: must be from 0 to 0, got 1"):
+        opened.classes(1)
+
+
 def test_frames_are_those_of_the_drawn_scene(small_dataset):
     path, folder = small_dataset
     assert dataset.open(folder)[7].frame.start_time == 0.05
@@ -161,8 +199,11 @@ def test_a_dataset_grows_and_is_not_mixed_with_another(small_dataset, tmp_path):
     assert json.loads((tmp_path / "out" / "origin.json").read_text()) == {"template": str(larger)}
     grown, at_once = (bytes_of(one) for one in (tmp_path / "out", folder))
     assert grown.keys() == at_once.keys() and {name for name in grown if grown[name] != at_once[name]} == {"origin.json"}
+    other = written(tmp_path, HEAD.replace("seed = ", "seed = 1") + SCENE)
+    with pytest.raises(ValueError, match=r"folder: must be new, or of this template \(dataset.seed is \d+ there\)"):
+        make(other, tmp_path / "out")
     other = written(tmp_path, HEAD + SCENE.replace("num_rays = 400", "num_rays = 500"))
-    with pytest.raises(ValueError, match=r"folder: must be new, or of this template \(\[trace\] differs\)"):
+    with pytest.raises(ValueError, match=r"folder: must be new, or of this template \(trace.num_rays is 400 there\)"):
         make(other, tmp_path / "out")
     assert bytes_of(tmp_path / "out") == grown
 

@@ -1,4 +1,5 @@
 """Maps of datasets as arrays, which threads may read."""
+import pickle
 import threading
 from types import SimpleNamespace
 
@@ -13,9 +14,7 @@ from support.files.small_dataset import HEAD, SCENE, make, written
 
 def test_classes_of_cells_are_those_of_their_scene_in_every_thread():
     """Two scenes whose objects of one name differ in class, of which the second is read while the first is."""
-    drawn = {scene: SimpleNamespace(table={"objects": [{"name": "user", "actor": actor}]})
-             for scene, actor in enumerate(("car", "pedestrian"))}
-    kinds = _Kinds(SimpleNamespace(template=SimpleNamespace(draw=drawn.get, settings=SimpleNamespace(classes={}))))
+    kinds = _Kinds(SimpleNamespace(classes=lambda scene: {"user": ("car", "pedestrian")[scene]}))
 
     def frame(scene: int, labels) -> SimpleNamespace:
         return SimpleNamespace(scene=scene, frame=SimpleNamespace(labels={"parts": labels}))
@@ -55,3 +54,6 @@ def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monk
     names = arrays.kind_names.values
     assert {str(names[index]) for index in np.unique(arrays.kind[2]) if index >= 0} == {"static"}
     assert list(arrays.split.values) == [one.split for one in opened] and list(arrays.scene.values) == [0, 0, 1, 1, 2, 2]
+    travelled = pickle.loads(pickle.dumps(opened.to_xarray()))  # as to the workers of a loader that spawns them
+    for name in ("power", "cell", "kind"):
+        np.testing.assert_array_equal(travelled[name].values, arrays[name].values)

@@ -130,7 +130,7 @@ def test_an_address_gets_the_same_files_and_what_is_damaged_is_made_again(cluste
     assert [one.scene for one in made_by(cluster, path, address) if not one.was_there] == [3]
     assert bytes_of(tmp_path / "out") == same
     (tmp_path / "other.toml").write_text(TEMPLATE.replace("num_rays = 400", "num_rays = 500"))
-    with pytest.raises(ValueError, match=r"folder: must be new, or of this template \(\[trace\] differs\)"):
+    with pytest.raises(ValueError, match=r"folder: must be new, or of this template \(trace.num_rays is 400 there\)"):
         made_by(cluster, tmp_path / "other.toml", address)
 
 

@@ -1,6 +1,7 @@
 """A first experiment as a user types it: mypy --strict is content with it, and it sees its ball (test_stubs.py)."""
 import copy
 import math
+from typing import assert_type
 
 import numpy as np
 
@@ -22,6 +23,7 @@ radar = ep.Radar(waveform, transmitters=[ep.Antenna((0.0, 0.0, 1.0), pattern=pat
                  receivers=[ep.Antenna((0, 0.01 * k, 1)) for k in range(4)])
 same: bool = radar.waveform == copy.deepcopy(waveform) and hash(slow) != hash(waveform)
 
+brick: ep.Material = assert_type(ep.materials["brick"], ep.Material).replace(mirror=True)
 concrete = ep.Material(permittivity=5.31 - 0.27j, roughness_height=1e-3)
 wet = concrete.replace(permittivity=20 - 5j)
 mesh = ep.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.array([[0, 1, 2]]))

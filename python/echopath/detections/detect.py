@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -69,8 +69,8 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
            training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
-           angles: Mapping[str, object] | None = None, paths: _core.Paths | None = None, parts: Mapping | None = None,
-           labels: Labels | None = None, beside: Mapping | None = None, objects: Objects = None,
+           angles: Mapping[str, object] | None = None, paths: _core.Paths | None = None, parts: Mapping[Any, Any] | None = None,
+           labels: Labels | None = None, beside: Mapping[Any, Any] | None = None, objects: Objects = None,
            noise_margin_db: float | None = None, progress: Progress = None) -> Detections:
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.
 

@@ -94,7 +94,7 @@ class Frame:
     evaluate: str = SignalSettings.evaluate
     retrace: str = SignalSettings.retrace
     keyframes: int = SignalSettings.keyframes
-    effect_choices: tuple = ()
+    effect_choices: tuple[tuple[str, bool | str], ...] = ()
     labels: dict[str, Labels] = dataclasses.field(default_factory=dict)
     detections: Detections | Any = None
     kept_truth: Truth | None = None

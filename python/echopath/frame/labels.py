@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from ..arguments.checks import Progress, an, anything, checked
 from ..arguments.objects import Objects
@@ -17,7 +18,7 @@ from .frame import Frame
 
 
 @checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=an(Frame), parts=anything)
-def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane = LabelSettings.plane,
+def annotate_frame(frame: Frame, parts: Mapping[str, Any] | None = None, *, plane: Plane = LabelSettings.plane,
                    objects: Objects = LabelSettings.objects, noise: bool = LabelSettings.noise,
                    noise_margin_db: float = LabelSettings.noise_margin_db,
                    dynamic_range_db: float | None = LabelSettings.dynamic_range_db, errors: bool = LabelSettings.errors,

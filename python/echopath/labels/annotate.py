@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -28,10 +29,11 @@ _PARTS, _FAMILIES = "parts", "families"
 
 @checked({"settings": LabelSettings, "signal": SignalSettings}, **LabelSettings.RULES, **SignalSettings.RULES,
          radar=optional(an(_core.Radar)), parts=anything, angles=anything)
-def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Radar | None = None, *,
+def annotate(paths: _core.Paths, parts: Mapping[Any, Any] | None = None, radar: _core.Radar | None = None, *,
              objects: Objects = LabelSettings.objects, plane: Plane = LabelSettings.plane,
-             window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, angles: Mapping | None = None,
-             noise: bool = LabelSettings.noise, noise_margin_db: float = LabelSettings.noise_margin_db,
+             window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+             angles: Mapping[str, Any] | None = None, noise: bool = LabelSettings.noise,
+             noise_margin_db: float = LabelSettings.noise_margin_db,
              dynamic_range_db: float | None = LabelSettings.dynamic_range_db, errors: bool = LabelSettings.errors,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,

@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..arguments.checks import Rule, array, count, flag, optional, real, refused
+from ..arguments.checks import ArrayLike, Rule, array, count, flag, optional, real, refused
 from ..arguments.settings import Settings, settings_class
 
 Row = tuple[float, ...]
@@ -81,7 +81,7 @@ class PhaseNoise(Settings):
         if max(self.levels) > HIGHEST_LEVEL:
             raise refused(ValueError, "levels", f"at most {HIGHEST_LEVEL:g} dBc/Hz", self.levels)
 
-    def density(self, offset) -> np.ndarray:
+    def density(self, offset: ArrayLike) -> np.ndarray:
         """Power relative to the carrier's in 1 Hz.
 
         offset: Hz, a number or an array of either sign
@@ -179,7 +179,7 @@ class Receiver(Settings):
         if any(corner <= 0.0 for corner in self.high_pass):
             raise refused(ValueError, "high_pass", "Hz above 0", self.high_pass)
 
-    def plain(self) -> dict:
+    def plain(self) -> dict[str, Any]:
         """{keyword: value} of what is not the default, values of its values likewise: for files."""
         return _plain(self)
 

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 from .. import _core
@@ -10,16 +10,16 @@ from ..arguments.checks import refused
 from ..base.data_folder import data_folder
 
 
-class MaterialLibrary(Mapping):
+class MaterialLibrary(Mapping[str, _core.Material]):
     """Read-only mapping: name -> Material at 77 GHz, from data/materials/*.toml.
 
     Raises KeyError naming the nearest right names.
     """
 
-    def __getitem__(self, name: str):
+    def __getitem__(self, name: str) -> _core.Material:
         return self._entry(name)[0]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._entries)
 
     def __len__(self) -> int:
@@ -29,14 +29,14 @@ class MaterialLibrary(Mapping):
         """Where the values of a material come from. Raises KeyError."""
         return self._entry(name)[1]
 
-    def name_of(self, material) -> str:
+    def name_of(self, material: object) -> str:
         """The name under which this very object is in the library, "" for any other."""
         return next((name for name, (known, _) in self._entries.items() if known is material), "")
 
     def __repr__(self) -> str:
         return f"materials({', '.join(self)})"
 
-    def _entry(self, name: str):
+    def _entry(self, name: str) -> tuple[_core.Material, str]:
         try:
             return self._entries[name]
         except (KeyError, TypeError):
@@ -45,7 +45,7 @@ class MaterialLibrary(Mapping):
             raise KeyError(f"unknown material {name!r}, the nearest known ones are {nearest}") from None
 
     @cached_property
-    def _entries(self) -> dict:
+    def _entries(self) -> dict[str, tuple[_core.Material, str]]:
         files = sorted((file for file in data_folder("materials").iterdir() if file.name.endswith(".toml")),
                        key=lambda file: file.name)
         return {file.name.removesuffix(".toml"): _read(file) for file in files}

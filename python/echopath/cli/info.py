@@ -86,7 +86,8 @@ def _describe_sequence(stored) -> list[str]:
     lines = [str(stored.path), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
              report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
              report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
-    return [*lines, *_describe_scene(stored.scene, stored.radar, float(stored.times[0])), *_describe_radar(stored.radar)]
+    return [*lines, *_describe_scene(stored.scene, stored.radar, float(stored.times[0])),
+            *_describe_radar(stored.radar, float(stored.times[0]))]
 
 
 def _describe_dataset(opened) -> list[str]:
@@ -121,7 +122,8 @@ def _rays_of(trace) -> str:
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
     scene, radar = scene_file.scene, scene_file.radar
-    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene, radar, trace.start_time), *_describe_radar(radar),
+    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene, radar, trace.start_time),
+             *_describe_radar(radar, trace.start_time),
              *report.folded_velocities(scene_in_frame(scene, radar, trace.start_time), radar,
                                        radar.middle_of_frame(trace.start_time)),
              "trace", report.line("rays", _rays_of(trace)), report.line("bounces at most", str(trace.max_bounces))]
@@ -133,7 +135,19 @@ def _describe_scene_file(scene_file) -> list[str]:
     for partition, group in scene_file.partitions().items():
         lines.append(f"parts, {partition}")
         lines += [report.line(name, expression) for name, expression in group.items()]
-    return lines
+    return [*lines, *_describe_results(scene_file)]
+
+
+def _describe_results(scene_file) -> list[str]:
+    """What a run of the scene file makes beside maps: frames in time, labels, detections, truth."""
+    lines, sequence = [], scene_file.sequence
+    if sequence is not None:
+        first = scene_file.trace.start_time
+        last = first + (sequence.frames - 1) * sequence.interval
+        lines = ["frames in time", report.line("frames", f"{sequence.frames}, every {sequence.interval:.6g} s"),
+                 report.line("starts", f"{first:.6g} to {last:.6g} s"), report.line("kept", sequence.keep)]
+    wanted = [name for name in ("labels", "detections", "truth") if getattr(scene_file, name) is not None]
+    return [*lines, "results", report.line("beside maps", ", ".join(wanted))] if wanted else lines
 
 
 def _describe_scene(scene, radar, start_time: float) -> list[str]:
@@ -185,13 +199,14 @@ def _material(mesh) -> str:
     return name + (", mirror" if mesh.material.mirror else "")
 
 
-def _describe_radar(radar) -> list[str]:
+def _describe_radar(radar, start_time: float) -> list[str]:
+    """Antennas, place in the middle of a frame that starts at a time in s, and what the waveform tells."""
     waveform = radar.waveform
     return ["radar",
             report.line("antennas", f"{len(radar.transmitters)} transmitting, {len(radar.receivers)} receiving"),
             report.line("multiplexing", radar.multiplexing), report.line("receiver", receiver_text(radar)),
             *_describe_converter(radar), *_describe_array(ep.virtual_array(radar)),
-            report.line("place", _place(radar)),
+            report.line("place", _place(radar, radar.middle_of_frame(start_time))),
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
                         f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
@@ -205,11 +220,21 @@ def _describe_converter(radar) -> list[str]:
     return report.wrapped("converter", step_text(radar)) if has_converter else []
 
 
-def _place(radar) -> str:
-    x, y, z = radar.position
-    yaw, pitch = np.degrees((radar.yaw, radar.pitch))
-    moves = ", moving" if radar.motion is not None else ""
-    return f"({x:g}, {y:g}, {z:g}) m, yaw {yaw:g} deg, pitch {pitch:g} deg{moves}"
+def _place(radar, time: float) -> str:
+    """Where the radar is and looks, and how fast it is, at a time in s if it moves."""
+    pose = radar.world_from_radar(time)
+    yaw, pitch = np.degrees((np.arctan2(pose[1, 0], pose[0, 0]), np.arcsin(np.clip(pose[2, 0], -1.0, 1.0))))
+    x, y, z = np.round(pose[:3, 3], 6) + 0.0
+    place = f"({x:.6g}, {y:.6g}, {z:.6g}) m, yaw {_degrees(yaw)} deg, pitch {_degrees(pitch)} deg"
+    if radar.motion is None:
+        return place
+    half = 0.25 * radar.frame_duration  # within the frame, where its motion is known
+    before, after = (radar.world_from_radar(time + step)[:3, 3] for step in (-half, half))
+    return f"{place}, {np.linalg.norm(after - before) / (2.0 * half):.3g} m/s, at {time:.4g} s"
+
+
+def _degrees(angle: float) -> str:
+    return f"{np.round(angle, 4) + 0.0:g}"
 
 
 def _describe_array(array) -> list[str]:
@@ -230,7 +255,8 @@ def _describe_frame(path: Path, selections) -> list[str]:
     missing = left_out(path)
     frame = load_frame(path)
     chosen = [line for selection in selections for line in _describe_selection(frame, selection)]
-    lines = [str(path), *_describe_scene(frame.scene, frame.radar, frame.paths.frame.start_time), *_describe_radar(frame.radar),
+    lines = [str(path), *_describe_scene(frame.scene, frame.radar, frame.paths.frame.start_time),
+             *_describe_radar(frame.radar, frame.paths.frame.start_time),
              *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time), "record",
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is not None:

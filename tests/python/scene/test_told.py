@@ -9,6 +9,7 @@ from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.cli.report import folded_velocities
 from echopath.scene.closing_speeds import bodies_faster_than, closing_speeds
+from support.files.scene_text import SMALL_RADAR
 from support.radars import build_radar
 from support.shapes import quad
 
@@ -170,3 +171,21 @@ def test_tables_of_names_are_no_distributions(tmp_path):
     path.write_text('[dataset]\nscenes = 1\n[labels]\nobjects = {choices = ["a"]}\n[parts.uniforms]\nnormal = "T . R"\n')
     table = dataset.Template(path).draw(0).table
     assert table["labels"]["objects"] == {"choices": ["a"]} and table["parts"]["uniforms"] == {"normal": "T . R"}
+
+
+def test_info_tells_where_a_radar_that_drives_is_and_what_a_run_makes(tmp_path):
+    """Along a line at 30 degrees with 10 m/s, from (1, 2) m on, 2 s after time 0."""
+    path = tmp_path / "drive.toml"
+    path.write_text('[radar]\nposition = [1.0, 2.0, 0.5]\nyaw_deg = 30.0\nspeed = 10.0\n' + SMALL_RADAR
+                    + '[[objects]]\nname = "post"\nactor = "pole"\nposition = [60.0, 30.0, 0.0]\n'
+                    + '[trace]\nnum_rays = 500\nstart_time = 2.0\n[labels]\n[truth]\n'
+                    + '[sequence]\nframes = 5\ninterval = 0.25\nkeep = "labels"\n')
+    told = "\n".join(describe_file(path))
+    at = ep.load_scene(path).radar.middle_of_frame(2.0)
+    place = f"({1.0 + 10.0 * at * 0.75 ** 0.5:.6g}, {2.0 + 5.0 * at:.6g}, 0.5) m, yaw 30 deg, pitch 0 deg, 10 m/s, at {at:.4g} s"
+    assert place in told
+    for words in ("5, every 0.25 s", "2 to 3 s", "labels, truth"):
+        assert words in told
+    path.write_text(path.read_text().split("[labels]")[0].replace("speed = 10.0", ""))
+    told = "\n".join(describe_file(path))
+    assert "(1, 2, 0.5) m, yaw 30 deg, pitch 0 deg\n" in told and "frames in time" not in told and "results" not in told

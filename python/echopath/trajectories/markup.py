@@ -1,8 +1,10 @@
 """Positions over time in XML: floating car data of SUMO, and tracks of GPS receivers (GPX)."""
 from __future__ import annotations
 
+import gzip
 import math
 import re
+import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from xml.parsers import expat
@@ -11,6 +13,7 @@ from .. import _core
 from .samples import MAX_BYTES, MOST_SAMPLES, Samples, instant, number, refuse
 
 MAX_DEPTH = 64          # of nested elements
+PACKED = ".gz"          # suffix behind that of the file, as SUMO writes large ones
 _GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
 _IN_DEGREES = "places are in degrees (--fcd-output.geo), must be in m: write them without that option"
 LEAST_WAY, SMALLEST_SHARE = 10.0, 0.01  # m by speed, from which on places that go less than that share of it are no metres
@@ -143,6 +146,21 @@ class _Gpx:
             samples.places.append((latitude, longitude, height))
 
 
+class _Bounded:
+    """A file for a parser, no longer than MAX_BYTES once it is unpacked. Raises FileError."""
+
+    def __init__(self, path: Path, file):
+        self._path, self._file, self._read = path, file, 0
+
+    def read(self, size: int) -> bytes:
+        content = self._file.read(size)
+        self._read += len(content)
+        if self._read > MAX_BYTES:
+            raise _core.FileError(f"{self._path}: is larger than {MAX_BYTES} bytes")
+        return content
+
+
+
 def _parse(path: Path, begin, end=None, text=None, comment=None) -> None:
     """Calls begin(tag, attributes, line), end(tag, line), text(words) and comment(words, line) for the content of an XML file
     without entities."""
@@ -172,14 +190,14 @@ def _parse(path: Path, begin, end=None, text=None, comment=None) -> None:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise _core.FileError(f"{path}: is larger than {MAX_BYTES} bytes")
-        with open(path, "rb") as file:
-            parser.ParseFile(file)
+        with gzip.open(path) if path.suffix.lower() == PACKED else open(path, "rb") as file:
+            parser.ParseFile(_Bounded(path, file))
     except expat.ExpatError as error:
         reason = expat.errors.messages[error.code] if error.code in expat.errors.messages else str(error)
         raise _core.FileError(f"{path}, line {error.lineno}: is no XML ({reason})") from None
-    except OSError as error:
+    except (OSError, EOFError, zlib.error) as error:
         if isinstance(error, _core.FileError):
             raise
-        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
+        raise _core.FileError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     except (LookupError, ValueError) as error:  # an encoding that is not known
         raise _core.FileError(f"{path}: is no XML ({error})") from None

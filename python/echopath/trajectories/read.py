@@ -17,14 +17,14 @@ from .arguments import GOES_ON, Outside
 from .doubts import doubts_of
 from .geodesy import east_north_up
 from .kinds import usual_kind
-from .markup import read_fcd, read_gpx
+from .markup import PACKED, read_fcd, read_gpx
 from .samples import Samples, refuse
 from .smoothing import smoothed
 from .table import read_table
 from .trajectory import Trajectory
 
 MOST_SECONDS = 1e6     # from which on times are taken to count from some day long ago
-SUFFIXES = (".csv", ".txt", ".tsv", ".xml", ".gpx")
+SUFFIXES = (".csv", ".txt", ".tsv", ".xml", ".xml.gz", ".gpx")
 
 
 def _origin_rule(argument: str, value):
@@ -57,7 +57,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
         (degrees), and, where it has them, z or ele (m), id or name, type, yaw (rad, from x to y) or yaw_deg, speed (m/s). Names
         may be written in other usual ways ("Timestamp [s]", "track_id"), with a usual unit in brackets ("t [ms]", "x [cm]",
         "speed (km/h)"); other columns are left out. Commas, semicolons or tabs
-    .xml: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions
+    .xml, .xml.gz: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions
     .gpx: tracks of a GPS receiver
 
     origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon
@@ -77,7 +77,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix == ".xml":
+    if suffix == ".xml" or path.name.lower().endswith(".xml" + PACKED):
         tracks, is_geographic = read_fcd(path, _length_of(vehicle_length)), False
     elif suffix == ".gpx":
         tracks, is_geographic = read_gpx(path), True

@@ -1,4 +1,5 @@
 """Trajectories of files: tables, SUMO's floating car data, GPX, scene files; what is wrong is refused by file and line."""
+import gzip
 import math
 import re
 from fractions import Fraction
@@ -55,6 +56,25 @@ def test_vehicles_of_sumo_have_their_fronts_where_the_file_has_them(tmp_path, ki
 
 
 @pytest.mark.filterwarnings("ignore:.*single position")
+def test_packed_files_of_sumo_are_read_as_the_same_files(tmp_path):
+    plain, packed = write(tmp_path, "fcd.xml", FCD), tmp_path / "fcd.xml.gz"
+    packed.write_bytes(gzip.compress(FCD.encode()))
+    expected, found = ep.read_trajectories(plain), ep.read_trajectories(packed)
+    assert list(found) == list(expected) and all(found[name] == expected[name] for name in found)
+    for content, told in ((b"no gzip at all", "cannot be read"), (packed.read_bytes()[:-40], "cannot be read|is no XML"),
+                          (packed.read_bytes()[:60] + b"\xff" * 60, "cannot be read|is no XML")):
+        packed.write_bytes(content)
+        with pytest.raises(ep.FileError, match=f"fcd.xml.gz.*({told})"):
+            ep.read_trajectories(packed)
+
+
+def test_what_unpacks_to_more_than_files_may_hold_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("echopath.trajectories.markup.MAX_BYTES", 1000)
+    (tmp_path / "fcd.xml.gz").write_bytes(gzip.compress(b"<fcd-export>" + b" " * 100_000 + b"</fcd-export>"))
+    with pytest.raises(ep.FileError, match="is larger than 1000 bytes"):
+        ep.read_trajectories(tmp_path / "fcd.xml.gz")
+
+
 def test_vehicles_of_sumo_are_half_their_length_behind_their_bumpers(tmp_path):
     found = ep.read_trajectories(write(tmp_path, "fcd.xml", FCD), vehicle_length={"truck": 16.5})
     assert {name: one.kind for name, one in found.items()} == {"flow/0": "passenger", "walker": "pedestrian", "south": "truck"}

@@ -107,8 +107,9 @@ def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_t
         if isinstance(one, Frame):
             burst = _of_frame(one, radar, part, start_times)
         elif isinstance(one, FrameMaps):
+            maps = "" if one.power is None else "; their maps over time are ep.load_sequence(path).to_xarray().power"
             raise TypeError(f"frames: must have signals, got {one!r} of files that hold none; those that are saved with "
-                            'keep="all" do')
+                            f'keep="all" do{maps}')
         else:
             start = _start_of(number, before, start_times)
             burst = Burst(start, _CUBE("frames", one), _radar_of_cubes(radar, part),

@@ -162,7 +162,7 @@ class EchoFields:
         """Places in the echoes of those whose phase is no parabola, ascending."""
         return np.flatnonzero(self._echoes["unsteady"])
 
-    @property
+    @cached_property
     def _far(self) -> float:
         """Cells of range beyond which an echo gives nothing."""
         reach = self._range_response.reach + 0.5 * self._largest("travel") + self._largest_shift
@@ -191,7 +191,7 @@ class EchoFields:
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
                 "sweep": sweep, "first": first, "length": cells.length[index], "unsteady": unsteady,
-                "travel": np.where(unsteady, away / waveform.range_resolution, travel)}
+                "travel": np.where(unsteady, np.copysign(away / waveform.range_resolution, travel), travel)}
 
     @cached_property
     def _power(self) -> np.ndarray:

@@ -12,7 +12,10 @@ from .imbalance import weights_of_imbalance
 
 _BLOCKS = 16       # of ranges; of the quarter of which filters leave least, the quietest tells the noise behind them
 _ROUNDING = 1e-12  # of the largest power, below which there is nothing but rounding
+_SHORT = 128       # squared samples of a chirp over those of its past, up to which it is cheapest to go through them
 _MOST_SAMPLES = 1 << 20  # of responses that are transformed at once
+_LOST = 1e-14      # of the largest power, of what the past sends
+_ROWS_AT_ONCE = 16  # that are looked for in what the past sends
 
 
 def noise_shape(spectrum, radar) -> np.ndarray:
@@ -44,19 +47,74 @@ def _filtered_power(receiver, waveform, window, zero_pad: int) -> np.ndarray:
     """
     count = waveform.num_samples
     gain = response(receiver, beat_frequencies(waveform, count + length_of_past(waveform, receiver)))
-    impulse = np.fft.ifft(gain)
     taper = samples_of(window, count)
-    power = np.zeros(2 * count)
-    at_once = max(1, _MOST_SAMPLES // (2 * count))
-    for first in range(0, count, at_once):
-        late = np.arange(count) - np.arange(first, min(first + at_once, count))[:, None]  # of each sample after that of the noise
-        power += np.sum(np.abs(np.fft.fft(taper * impulse[late % len(impulse)], 2 * count)) ** 2, axis=0)
+    is_short = count ** 2 <= _SHORT * (len(gain) - count)
+    power = _power_of_each(gain, taper) if is_short else _power_without_past(gain, taper)
     correlation = np.fft.ifft(power) / np.sum(taper ** 2)
     lags = np.arange(1 - count, count)
     folded = np.zeros(count * zero_pad, complex)
     np.add.at(folded, lags % len(folded), correlation[lags])
     shape = np.fft.fft(folded).real
     return np.maximum(shape, _ROUNDING * shape.max())
+
+
+def _power_of_each(gain: np.ndarray, taper: np.ndarray) -> np.ndarray:
+    """Power [2 S] of the responses to each sample of a chirp, one by one.
+
+    gain: of the filters, [S + past]; taper: the window, [S]
+    """
+    count = len(taper)
+    impulse = np.fft.ifft(gain)
+    power = np.zeros(2 * count)
+    at_once = max(1, _MOST_SAMPLES // (2 * count))
+    for first in range(0, count, at_once):
+        late = np.arange(count) - np.arange(first, min(first + at_once, count))[:, None]  # of each sample after that of the noise
+        power += np.sum(np.abs(np.fft.fft(taper * impulse[late % len(impulse)], 2 * count)) ** 2, axis=0)
+    return power
+
+
+def _power_without_past(gain: np.ndarray, taper: np.ndarray) -> np.ndarray:
+    """Likewise, without going through the samples of a long chirp.
+
+    Model: were there noise in the past as well, that behind the filters would be stationary, and its correlation behind the
+    window that of the filters times that of the window. Of this goes what noise of the past would send into the chirp.
+    """
+    count = len(taper)
+    lags = np.arange(1 - count, count)
+    correlation = np.fft.ifft(np.abs(np.fft.fft(taper, 2 * count)) ** 2)
+    correlation[lags] *= np.fft.ifft(np.abs(gain) ** 2)[lags]
+    power = np.fft.fft(correlation).real
+    for echo in _echoes_of_past(gain, count):
+        power -= np.abs(np.fft.fft(taper * echo, 2 * count)) ** 2
+    return power
+
+
+def _echoes_of_past(gain: np.ndarray, count: int) -> np.ndarray:
+    """A few rows [row, count], whose powers add up to those of the responses, in a chirp, to all samples before it.
+
+    Model: those responses [count, past] have next to no rank, as each pole of a filter decays in one way only, and jumps of the
+    gain add some rows for each decade of samples. An orthonormal basis of the past that holds all but 1e-14 of them is found by
+    sending random mixtures of the chirp back to it (Halko, Martinsson, Tropp 2011, 4.4); the rows are the responses to it.
+    gain: of the filters, [count + past]
+    """
+    past = len(gain) - count
+    lags = np.arange(1, len(gain))
+    times_met = np.minimum(np.minimum(lags, len(gain) - lags), min(count, past))  # by pairs of a sample and one of the past
+    left = np.sum(np.abs(np.fft.ifft(gain)[lags]) ** 2 * times_met)
+    enough = _LOST * np.max(np.abs(gain)) ** 2
+    draws = np.random.default_rng(0)
+    basis, rows = np.zeros((0, past), complex), np.zeros((0, count), complex)
+    while left > enough and len(rows) < min(count, past):
+        mixtures = draws.standard_normal((min(_ROWS_AT_ONCE, min(count, past) - len(rows)), count))
+        sent_back = np.fft.ifft(np.fft.fft(mixtures, len(gain)) * gain.conj())[:, count:]
+        for _ in range(2):  # once leaves rounding of what is large
+            sent_back = sent_back - (sent_back @ basis.conj().T) @ basis
+        found = np.linalg.qr(sent_back.T)[0].T
+        basis = np.concatenate([basis, found])
+        found = np.pad(found, ((0, 0), (count, 0)))
+        rows = np.concatenate([rows, np.fft.ifft(np.fft.fft(found) * gain)[:, :count]])
+        left -= np.sum(np.abs(rows[-len(found):]) ** 2)
+    return rows
 
 
 def _shares(spectrum, radar, thermal) -> tuple[float, float]:

@@ -1,11 +1,16 @@
 """False-alarm rates of CFAR on noise, and what it finds of echoes."""
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
+from scipy.linalg import toeplitz
 
 import echopath as ep
 from echopath.bench.labels.false_alarms import NoiseMap, describe_false_alarms, measure_false_alarms
+from echopath.receiver.filters import beat_frequencies, length_of_past, response
+from echopath.receiver.noise_shape import noise_shape
 from support.radars import build_radar
 
 RATE_TOLERANCE = 0.1  # of the rate; a thousand false alarms scatter by 3 to 4 %
@@ -78,6 +83,34 @@ def test_an_echo_behind_filters_is_found_with_the_noise_at_its_range(cell):
     assert found.mask[cell] and len(found) < 12
     index = [tuple(one) for one in found.cells].index(cell)
     assert found.noise[index] == pytest.approx(levels[cell[1]], rel=0.2, abs=0)
+
+
+@pytest.mark.parametrize("real", [False, True])
+@pytest.mark.parametrize("receiver", [dict(high_pass=[1.75e5, 3.5e5], low_pass=5e6), dict(low_pass=3e6, low_pass_poles=8),
+                                      dict(high_pass=[2e4])], ids=str)
+def test_noise_behind_filters_is_the_sum_of_what_each_sample_sends(receiver, real):
+    """Twice the cells, of a chirp of 768 samples: the responses to each of them, as a matrix of the filters' samples."""
+    radar = build_radar(num_chirps=2, chirp_interval=1e-3, num_samples=768, real=real, receiver=ep.Receiver(**receiver))
+    spectrum = ep.range_doppler(np.zeros((1, 1, 2, 768), complex), radar, window="hann", zero_pad=2)
+    past = length_of_past(radar.waveform, radar.receiver)
+    impulse = np.fft.ifft(response(radar.receiver, beat_frequencies(radar.waveform, 768 + past)))
+    sent = toeplitz(impulse[:768], impulse[-np.arange(768)])  # [sample, sample of the noise]
+    window = np.hanning(769)[:768]
+    cells = np.fft.fft(window[:, None] * sent, 2 * 768, axis=0)
+    expected = np.sum(np.abs(cells) ** 2, axis=1) / np.sum(window ** 2)
+    shape = noise_shape(spectrum, radar)
+    assert len(shape) == (768 if real else 1536)
+    assert shape == pytest.approx(expected[:len(shape)], rel=0, abs=1e-12 * expected.max())
+
+
+def test_noise_behind_filters_of_long_chirps_costs_as_their_transforms_do():
+    """4 times the samples cost 4 to 6 times as much; to go through them all cost 18 times as much, and 18 s."""
+    radar = build_radar(num_chirps=2, chirp_interval=1e-3, num_samples=1 << 14,
+                        receiver=ep.Receiver(high_pass=[1.75e5], low_pass=5e6))
+    spectrum = ep.range_doppler(np.zeros((1, 1, 2, 1 << 14), complex), radar)
+    begin = time.perf_counter()
+    noise_shape(spectrum, radar)
+    assert time.perf_counter() - begin < 3.0
 
 
 def test_each_row_of_the_benchmark_has_its_verdict():

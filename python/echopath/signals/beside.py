@@ -9,6 +9,8 @@ from ..receiver.channels import transmitter_factors
 from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes
 from ..transmit import demultiplex, signal_shape
+from ..transmit.doppler_division import undo_doppler_division
+from ..transmit.signals import has_steps
 
 
 def cubes_beside(frame) -> dict:
@@ -29,15 +31,19 @@ def leakage_map(radar, window, zero_pad: int):
 
 
 def _leaves_residue(frame) -> bool:
-    """Whether echoes of other transmitters are left in the signal of each. The signs of "bpm" leave next to nothing, and which
-    cell "ddm" gives to which transmitter depends on all that is there, so that nothing of it is a part."""
-    return frame.radar.multiplexing == "cdm" and len(frame.radar.transmitters) > 1 and frame.coded_cube is not None
+    """Whether echoes of other transmitters are left in the signal of each. The signs of "bpm" leave next to nothing, and so does
+    "ddm" where all its chirps are alike."""
+    radar = frame.radar
+    leaves = radar.multiplexing == "cdm" or (radar.multiplexing == "ddm" and has_steps(radar))
+    return leaves and len(radar.transmitters) > 1 and frame.coded_cube is not None
 
 
 def _residue(frame):
     """What `demultiplex` leaves in the signal of each transmitter of the echoes of the others, [tx, rx, chirp, sample]."""
     factors = None if frame.radar.receiver is None else transmitter_factors(frame.radar.receiver, frame.radar)
     own = frame.cube if factors is None else factors[:, None, None, None] * frame.cube
+    if frame.radar.multiplexing == "ddm":  # which transmitter a cell is given to depends on all that is there
+        return undo_doppler_division(frame.coded_cube[0], frame.radar, frame.received.cube[0]) - own
     return demultiplex(frame.coded_cube, frame.radar) - own
 
 

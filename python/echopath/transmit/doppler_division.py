@@ -22,13 +22,17 @@ from .code import num_shares
 FALSE_TARGET_RATE = 1e-2
 
 
-def undo_doppler_division(signal: np.ndarray, radar) -> np.ndarray:
-    """[rx, chirp, S] -> [tx, rx, chirp, S], in sqrt(W)."""
+def undo_doppler_division(signal: np.ndarray, radar, whole: np.ndarray | None = None) -> np.ndarray:
+    """[rx, chirp, S] -> [tx, rx, chirp, S], in sqrt(W).
+
+    whole: [rx, chirp, S], the signal of which this one is a part, whose cells tell which are of which transmitter; None: itself
+    """
     num_tx, shares = len(radar.transmitters), num_shares(radar)
     num_rx, num_chirps, num_samples = signal.shape
     taper = _hamming(num_chirps)[:, None] * _hamming(num_samples)
     cells = np.fft.fft2(signal * taper)
-    share, ratio = _shares_and_ratios(_smoothed_power(cells), num_tx, shares)
+    deciding = cells if whole is None else np.fft.fft2(whole * taper)
+    share, ratio = _shares_and_ratios(_smoothed_power(deciding), num_tx, shares)
     is_target = ratio > _ratio_of_noise(num_tx, shares, num_rx)
     cells = cells.reshape(num_rx, shares, num_chirps // shares, num_samples)
     apart = np.empty((num_tx, *cells.shape), np.complex128)

@@ -164,6 +164,21 @@ def test_what_random_codes_leave_of_other_transmitters_has_a_name(receiver):
     assert ep.detect(frame.spectrum, radar, paths=frame.paths).is_noise.sum() > 8  # without the name they are noise
 
 
+@pytest.mark.parametrize("steps", [dict(bandwidth_steps=(0.0, 1e8, 0.0, 2e8)), dict(frequency_steps=(0.0, 2e8))], ids=str)
+def test_what_doppler_division_leaves_of_chirps_that_differ_has_a_name(steps):
+    """Echoes and residue are all of the map but its noise."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material="metal", smooth=True, position=(4, 0.5, 0))
+    radar = array_radar(num_chirps=64, transmit_power=10.0, multiplexing="ddm", **steps)
+    frame = ep.simulate(scene, radar, num_rays=2000, max_bounces=1, labels=True, detections=True, guard=False)
+    own, residue = ep.range_doppler(frame.cube, radar).values, frame.beside_spectra["residue"].values
+    rest = np.mean(np.abs(frame.spectrum.values - own - residue) ** 2)
+    assert rest == pytest.approx(ep.noise_power(radar), rel=0.1) and np.max(np.abs(residue) ** 2) > 1e3 * rest
+    found, labels = frame.detections, frame.labels["parts"]
+    assert "residue" in found.part and not found.is_noise.any()
+    assert np.any(labels.mask & (labels.dominant == labels.part_names.index("residue")))
+
+
 def test_parts_of_chirps_that_differ_are_those_of_their_paths_alone():
     radar = array_radar(num_chirps=6, frequency_steps=(0.0, 2e8), bandwidth_steps=(0.0, 0.0, 3e8))
     paths = plates(1.0, -2.0, radar=radar)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arguments.checks import refused
 from ..scene.boxes import box_of
 from ..scene.found_objects import Things
 from ..scene.scene import Scene
@@ -37,7 +38,10 @@ def vantage(scene: Scene, things: Things | None = None) -> Vantage:
     there are none, that nearest to the middle where nothing higher than a kerb is near, and the direction of the longest open
     way.
     things: of `things_of`, None: there are none
+    Raises ValueError for a scene without meshes.
     """
+    if not scene.meshes:
+        raise refused(ValueError, "scene", "a Scene with meshes to look at", scene)
     low, high = box_of(scene)
     middle, size = 0.5 * (low + high), float((high - low).max())
     if (high - low)[:2].max() < TOWN:

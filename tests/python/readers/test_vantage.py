@@ -23,6 +23,11 @@ def test_on_an_open_field_it_looks_at_what_stands_there(bodies):
     assert found.is_within and np.abs((bearings + 180.0) % 360.0 - 180.0).min() < 15.0
 
 
+def test_a_scene_without_meshes_is_refused():
+    with pytest.raises(ValueError, match="scene: must be a Scene with meshes to look at, got Scene"):
+        vantage(ep.Scene())
+
+
 def test_between_walls_it_looks_along_the_street_at_what_stands_in_it():
     scene = ep.Scene()
     scene.add(ep.actors.ground((130.0, 60.0)), name="field", material="asphalt")

@@ -8,6 +8,7 @@ from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
 from ..arguments.motions import require_motion
 from ..arguments.objects import Objects, named_globs, objects_rule
+from ..base.golden import golden_place
 from ..base.made_by import made_by
 from ..scene.lifetimes import scene_at
 
@@ -16,7 +17,7 @@ LEAST_HIDDEN = 0.005  # share of an object from which what hides it is named
 DIRECTIONS = 128  # on each object: labels and truth look at all objects of each frame
 DIRECTIONS_OF_PLACES = 256  # on each object: shares to .006 rms, for the question whether they are above HIDDEN_SHARE
 _KEPT: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()  # {record: geometry}, one entry at most
-FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
+FRAME_PLACES = (0.0, 1.0, *map(golden_place, (1, 2, 3)))  # shares of a frame: its ends and irrational ones
 
 
 def occluder_words(occluders: dict) -> str:

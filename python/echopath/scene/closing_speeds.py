@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.antennas import middle_of_antennas
+from ..base.golden import golden_place
 from ..base.rates import step_within
 
-GOLDEN = 0.5 * (5.0 ** 0.5 - 1.0)
 NUM_TIMES = 8  # of a frame, at which what turns is looked at: no fractions of it, so that no turn repeats them
 
 Speeds = dict[str, NDArray[np.float64]]
@@ -66,7 +66,7 @@ def _fastest(speeds: Speeds, scene, radar, time: float) -> dict[str, float]:
     moving = [mesh for mesh in scene.meshes if scene.is_moving(mesh.id)]
     extent = max(radar.frame_duration - 2.0 * step_within(radar.frame_duration), 0.0)
     for number in range(1, NUM_TIMES + 1):
-        place = number * GOLDEN % 1.0 - 0.5
+        place = golden_place(number) - 0.5
         for name, of_mesh in _speeds_of(moving, scene, radar, time + place * extent).items():
             fastest[name] = max(fastest[name], float(of_mesh.max()), float(of_mesh.min()), key=abs)
     return fastest

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from ...base.counts import counted
+from ...base.golden import golden_place
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
@@ -23,7 +24,6 @@ from .faults import Faults
 
 MOST_SCENES = 10 ** 6
 _SEEDS = 2 ** 32  # of rays and noise
-_GOLDEN_STEP = 0.5 * (math.sqrt(5.0) - 1.0)  # the golden ratio less one
 
 
 def _shares(split: dict[str, float]) -> dict[str, float]:
@@ -108,7 +108,7 @@ class Template:
         Of any N <= 1000 scenes in a row a split has its share of N to within 4, and a split of a tenth has one of 20 at least:
         steps of the golden ratio, from a place that the seed draws, spread evenly however many there are.
         """
-        place = (Drawing(self.settings.seed, 0).random("dataset.split").random() + number * _GOLDEN_STEP) % 1.0
+        place = golden_place(number, first=Drawing(self.settings.seed, 0).random("dataset.split").random())
         names = list(self.settings.split)
         shares = np.cumsum(list(self.settings.split.values()))
         return names[min(int(np.searchsorted(shares, place, side="right")), len(names) - 1)]

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ..base.foreign_types import Axes, Figure, SubFigure
 
 DPI = 160
+_MOST_LAYOUTS, _SETTLED = 5, 1e-9  # of a figure that is saved; of its sides, by which nothing moves any more
 MAP_COLOURS = "inferno"
 # Okabe and Ito: told apart with any colour vision. By number of bounces, the last for all higher numbers.
 BOUNCE_COLOURS = ("#009e73", "#0072b2", "#d55e00", "#cc79a7", "#8c6d1f")
@@ -103,7 +104,7 @@ def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *,
              noise_seed: int | None = None) -> None:
     """Writes a figure as PNG, whole or not at all, with what made it as text chunks.
 
-    A figure that is made anew gives the same bytes; one that is saved again may not, as matplotlib goes on with its layout.
+    A figure gives the same bytes whether it is made anew or saved again.
     figure: of matplotlib, or axes in it; path: of the file; seed: of the rays, noise_seed: of the thermal noise; None: there
         are none
     Raises OSError where the file cannot be written, TypeError naming the argument.
@@ -117,4 +118,20 @@ def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *,
         raise refused(TypeError, "figure", "a figure of matplotlib, or axes in it", figure)
 
     with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary:
+        _settle(drawn.figure)
         drawn.figure.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))
+
+
+def _settle(figure: Figure) -> None:
+    """Lays a figure out until nothing moves any more: each drawing goes on from the layout of the last."""
+    dpi, figure.dpi = figure.dpi, DPI
+    try:
+        before = None
+        for _ in range(_MOST_LAYOUTS):
+            figure.draw_without_rendering()
+            places = [axes.get_position().bounds for axes in figure.get_axes()]
+            if before is not None and np.allclose(places, before, rtol=0.0, atol=_SETTLED):
+                return
+            before = places
+    finally:
+        figure.dpi = dpi

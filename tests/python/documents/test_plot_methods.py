@@ -74,6 +74,14 @@ def test_axes_are_saved_as_their_figure_is(frame, tmp_path):
         ep.plots.save_png(frame, tmp_path / "frame.png")
 
 
+def test_a_figure_that_is_saved_again_has_the_same_bytes(frame, tmp_path):
+    """The layout that Matplotlib makes goes on from the one before."""
+    ax = frame.plot()
+    for name in ("first.png", "second.png"):
+        ep.plots.save_png(ax, tmp_path / name)
+    assert (tmp_path / "first.png").read_bytes() == (tmp_path / "second.png").read_bytes()
+
+
 @pytest.mark.parametrize("scene, paths, argument", [("radar", "paths", "scene"), ("scene", "radar", "paths")])
 def test_the_picture_of_a_scene_refuses_by_name_what_is_none(frame, scene, paths, argument):
     with pytest.raises(TypeError, match=f"^{argument}: must be a"):

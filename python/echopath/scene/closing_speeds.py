@@ -13,6 +13,8 @@ from ..base.rates import step_within
 
 NUM_TIMES = 8  # of a frame, at which what turns is looked at: no fractions of it, so that no turn repeats them
 
+NEAR = 0.5     # of a limit: what is slower in the middle and at the ends of a frame does not pass it between
+
 Speeds = dict[str, NDArray[np.float64]]
 
 
@@ -41,13 +43,18 @@ def closing_speeds(scene, radar, time: float) -> Speeds:
 def _speeds_of(meshes, scene, radar, time: float) -> Speeds:
     """`closing_speeds` of some meshes."""
     step = step_within(radar.frame_duration)
-    antennas = [middle_of_antennas(radar, instant) for instant in (time - step, time + step)]
     found = {}
-    for mesh in meshes:
-        before, after = (np.linalg.norm(scene.world_vertices(mesh.id, instant) - antenna, axis=1)
-                         for instant, antenna in zip((time - step, time + step), antennas))
-        found[mesh.name] = (after - before) / (2.0 * step)
+    for mesh, before, after in _ways(meshes, scene, radar, time, step):
+        found[mesh.name] = (np.linalg.norm(after, axis=1) - np.linalg.norm(before, axis=1)) / (2.0 * step)
     return found
+
+
+def _ways(meshes, scene, radar, time: float, step: float) -> Iterator[tuple]:
+    """(mesh, its vertices [V, 3] in m from the antennas, a step in s before a time and after it) of some meshes."""
+    instants = time - step, time + step
+    antennas = [middle_of_antennas(radar, instant) for instant in instants]
+    for mesh in meshes:
+        yield mesh, *(scene.world_vertices(mesh.id, instant) - antenna for instant, antenna in zip(instants, antennas))
 
 
 def bodies_faster_than(limit: float, scene, radar, time: float) -> list[FastBody]:
@@ -55,21 +62,33 @@ def bodies_faster_than(limit: float, scene, radar, time: float) -> list[FastBody
     most of them does in the middle, else their parts, such as the wheels of a car whose body is slower, at their fastest."""
     speeds = closing_speeds(scene, radar, time)
     names = [mesh.name for mesh in scene.meshes]
-    fastest = _fastest(speeds, scene, radar, time)
+    fastest = _fastest(limit, speeds, scene, radar, time)
     return sorted(_faster(limit, speeds, fastest, names, depth=1), key=lambda body: -abs(body.speed))
 
 
-def _fastest(speeds: Speeds, scene, radar, time: float) -> dict[str, float]:
+def _fastest(limit: float, speeds: Speeds, scene, radar, time: float) -> dict[str, float]:
     """{mesh: m/s of its fastest point} in the frame: a blade that points at the radar in its middle comes and goes at other
-    times."""
+    times. Of meshes that are far slower than `limit` in m/s it is that in the middle."""
     fastest = {name: float(of_mesh[np.abs(of_mesh).argmax()]) for name, of_mesh in speeds.items()}
-    moving = [mesh for mesh in scene.meshes if scene.is_moving(mesh.id)]
     extent = max(radar.frame_duration - 2.0 * step_within(radar.frame_duration), 0.0)
+    moving = [mesh for mesh in scene.meshes if scene.is_moving(mesh.id)]
+    near = [mesh for mesh in moving if _may_pass(NEAR * limit, mesh, scene, radar, time, extent)]
     for number in range(1, NUM_TIMES + 1):
         place = golden_place(number) - 0.5
-        for name, of_mesh in _speeds_of(moving, scene, radar, time + place * extent).items():
+        for name, of_mesh in _speeds_of(near, scene, radar, time + place * extent).items():
             fastest[name] = max(fastest[name], float(of_mesh.max()), float(of_mesh.min()), key=abs)
     return fastest
+
+
+def _may_pass(limit: float, mesh, scene, radar, time: float, extent: float) -> bool:
+    """Whether some point of a mesh goes faster than `limit` in m/s, whichever way, in the middle of a frame or at an end.
+
+    time: s, of the middle; extent: s, from end to end
+    """
+    step = step_within(radar.frame_duration)
+    return any(np.linalg.norm(after - before, axis=1).max() > 2.0 * step * limit
+               for instant in (time, time - 0.5 * extent, time + 0.5 * extent)
+               for _, before, after in _ways([mesh], scene, radar, instant, step))
 
 
 def _faster(limit: float, speeds: Speeds, fastest: dict[str, float], names: list[str], depth: int) -> Iterator[FastBody]:

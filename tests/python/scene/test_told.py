@@ -8,6 +8,7 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.cli.report import folded_velocities
+from echopath.scene import closing_speeds as closing_speeds_module
 from echopath.scene.closing_speeds import bodies_faster_than, closing_speeds
 from support.files.scene_text import SMALL_RADAR
 from support.radars import build_radar
@@ -120,6 +121,24 @@ def test_a_blade_that_points_at_the_radar_in_mid_frame_is_as_fast_as_one_that_st
         (body,) = bodies_faster_than(4.0, scene, radar, 0.0)
         assert (body.name, body.as_whole) == ("blade", False) and abs(body.speed) == pytest.approx(6.0, rel=0.03)
         assert not bodies_faster_than(6.1, scene, radar, 0.0)
+
+
+def test_what_is_far_slower_than_the_map_tells_is_looked_at_thrice(monkeypatch):
+    """In the middle of a frame and at its ends, and not at the eight times of what may be too fast."""
+    radar = build_radar([(0, 0, 0.5)], [(0, 0, 0.5)], num_samples=16, num_chirps=16)
+    scene, looks = ep.Scene(), {}
+    for name, speed in (("slow", 1.0), ("fast", 30.0)):
+        scene.add(quad((9, -1, -1), (9, 1, -1), (9, 1, 1), (9, -1, 1)), name=name, material="metal",
+                  motion=ep.LinearMotion((speed, 0.0, 0.0)))
+
+    def count(meshes, *others):
+        looks.update({mesh.name: looks.get(mesh.name, 0) + 1 for mesh in meshes})
+        return ways(meshes, *others)
+
+    ways = closing_speeds_module._ways
+    monkeypatch.setattr(closing_speeds_module, "_ways", count)
+    (body,) = bodies_faster_than(20.0, scene, radar, 0.0)
+    assert body.name == "fast" and looks == {"slow": 4, "fast": 10}
 
 
 def test_of_a_car_that_the_map_tells_only_the_wheels_are_named():

@@ -92,11 +92,11 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //      by that factor where errors fall with the square of a cell's side. There a field that is weaker than its edges may
 //      change little by chance: q is at least e / (kKnownAbove |F|^2) - 1, up to 1. Where F is 0, q and w are 1 and s q is
 //      0.
-//  A surface sends back no more than an endless mirror over the same way: (3) and (5) each add at most kMostOfImage times
-//  the field of that mirror, twice it because curved surfaces may gather. They add no more than rims_at_most, too, nor does
-//  (1); (2) adds at most the larger one of both and |F|. rims_at_most is known where the wave meets mirrors at most before
-//  and behind flat facets of which none reflects it to the receiver. A larger |F| is the lattice of rays that shows through:
-//  the field may then be smaller by all of it.
+//  A surface sends back no more than an endless mirror over the same way. M is the smaller of rims_at_most and kMostOfImage
+//  times the field of that mirror, twice it because curved surfaces may gather: (1), (3) and (5) each add at most M, and (2)
+//  at most the larger of M and |F|. rims_at_most is known where the wave meets mirrors at most before and behind flat facets
+//  of which none reflects it to the receiver. A larger |F| is the lattice of rays that shows through: the field may then be
+//  smaller by all of it.
 //  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
 //      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
 //      rays closer than facets see another field than rays farther apart. Images are exact, but for those beside the edge of

@@ -25,13 +25,14 @@ constexpr int kMaxDepth = 100;         // bounds the recursion, and the memory o
 struct Selection::Term {
   enum class Kind { kExpression, kNumBounces, kPower, kAnd, kOr, kNot };
   Kind kind;
-  PathExpression expression = {};              // kExpression
-  int min = 0, max = 0;                        // kNumBounces
-  Comparison comparison = Comparison::kAbove;  // kPower
-  double watts = 0.0;                          // kPower
-  std::vector<Selection> operands = {};        // kAnd, kOr: two or more, also of the same kind; kNot: one
-  int64_t size = 1;                            // leaves as often as they are evaluated, or more where operands share some
-  int depth = 1;                               // of the tree of terms, in which a chain of & or | is one
+  PathExpression expression = {};               // kExpression
+  int min = 0, max = 0;                         // kNumBounces
+  Comparison comparison = Comparison::kAbove;   // kPower
+  double watts = 0.0;                           // kPower
+  std::vector<Selection> operands = {};         // kAnd, kOr: two or more, also of the same kind; kNot: one
+  int64_t size = 1;                             // leaves as often as they are evaluated, or more where operands share some
+  int depth = 1;                                // of the tree of terms, in which a chain of & or | is one
+  mutable const Term* next_released = nullptr;  // that waits to be deleted behind this one
 
   static Selection make(Term term) {
     count(term);
@@ -93,18 +94,20 @@ struct Selection::Term {
   }
 
   // Deletes a term and then, one after the other, the operands that it was the last to hold: those of a long chain would
-  // exhaust the stack if each deleted its own.
-  static void release(const Term* term) {
-    thread_local std::vector<const Term*>* of_first_call = nullptr;
-    if (of_first_call) return of_first_call->push_back(term);
-    std::vector<const Term*> waiting = {term};
-    of_first_call = &waiting;
-    while (!waiting.empty()) {
-      const Term* next = waiting.back();
-      waiting.pop_back();
+  // exhaust the stack if each deleted its own. They wait in a list through themselves, for which no memory can be missing.
+  static void release(const Term* term) noexcept {
+    thread_local const Term* waiting = nullptr;
+    thread_local bool is_deleting = false;
+    term->next_released = waiting;
+    waiting = term;
+    if (is_deleting) return;
+    is_deleting = true;
+    while (waiting) {
+      const Term* next = waiting;
+      waiting = next->next_released;
       delete next;  // calls this function for its operands
     }
-    of_first_call = nullptr;
+    is_deleting = false;
   }
 };
 

@@ -38,7 +38,7 @@ TEST(TrianglePoints, HoldTheErrorOfTheNumberOfPoints) {
         const double step = 2.0 / side, y = -1.0 + step * (k / 2 % side), z = -1.0 + step * (k / 2 / side);
         const Vec3 low(20.0, y, z), high(20.0, y + step, z + step),
             other = k % 2 ? Vec3(20.0, y + step, z) : Vec3(20.0, y, z + step);
-        add_surface_points(seed, {0, static_cast<uint32_t>(k)}, {low, high, other}, {Vec3::Zero(), 5e4}, found);
+        add_surface_points(seed, {{0, static_cast<uint32_t>(k)}, 0, {low, high, other}}, {Vec3::Zero(), 5e4}, found);
       }
       TrianglePoints points;
       for (const SurfacePoint& point : found) points.add(on(0, point.on.triangle_id), 1.0);

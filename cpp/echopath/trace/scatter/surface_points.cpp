@@ -63,8 +63,8 @@ std::array<double, 3> coordinates_in_part(const std::array<double, 3>& of, size_
 // Draws what belongs to the points of one triangle.
 class PointNumbers {
  public:
-  PointNumbers(uint64_t seed, TriangleName name)
-      : key_(philox_key(seed)), mesh_(name.mesh_id), triangle_(name.triangle_id) {}
+  PointNumbers(uint64_t seed, const ScatteringTriangle& of)
+      : key_(philox_key(seed)), mesh_(of.mesh_number), triangle_(of.name.triangle_id) {}
 
   // Returns barycentric coordinates, uniform over the area.
   std::array<double, 3> place(uint64_t number) const {
@@ -149,21 +149,22 @@ class PointTaker {
 
 }  // namespace
 
-void add_surface_points(uint64_t seed, TriangleName name, const std::array<Vec3, 3>& corners, const PointDensity& density,
+void add_surface_points(uint64_t seed, const ScatteringTriangle& triangle, const PointDensity& density,
                         std::vector<SurfacePoint>& out) {
+  const auto& corners = triangle.corners;
   const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double twice_area = across.norm();
   if (!(twice_area > 0.0)) return;
   const double height = std::abs(across.dot(density.viewer - corners[0])) / twice_area;
   const PlaneDensity here{density.viewer, height, density.ray_density};
-  const PointNumbers numbers(seed, name);
+  const PointNumbers numbers(seed, triangle);
   const size_t before = out.size();
   PointTaker taker(numbers, here, 0.5 * twice_area, out);
   if (taker.has_none(corners)) return;
   const TrianglePart whole{corners, numbers.place(0), 0, 0};
   taker.take(whole);
   taker.take_others(whole);
-  for (size_t i = before; i < out.size(); ++i) out[i].on = name;
+  for (size_t i = before; i < out.size(); ++i) out[i].on = triangle.name;
 }
 
 }  // namespace echopath

@@ -21,6 +21,13 @@ struct TriangleName {
   bool operator==(const TriangleName&) const = default;
 };
 
+// A triangle with points, its corners in the coordinates of their viewer.
+struct ScatteringTriangle {
+  TriangleName name;
+  uint32_t mesh_number;  // SceneMesh::number, by which its random numbers go: another than the ID where meshes are hidden
+  std::array<Vec3, 3> corners;
+};
+
 struct SurfacePoint {
   Vec3 position;
   TriangleName on{};
@@ -36,9 +43,9 @@ struct PointDensity {
   double ray_density = 0.0;
 };
 
-// Appends the points of a triangle, whichever of its sides the viewer sees. `corners` are in the coordinates of the
-// viewer. The random numbers go by the name alone.
-void add_surface_points(uint64_t seed, TriangleName name, const std::array<Vec3, 3>& corners, const PointDensity& density,
+// Appends the points of a triangle, whichever of its sides the viewer sees. The random numbers go by its mesh's number and
+// its own ID alone.
+void add_surface_points(uint64_t seed, const ScatteringTriangle& triangle, const PointDensity& density,
                         std::vector<SurfacePoint>& out);
 
 }  // namespace echopath

@@ -65,11 +65,10 @@ class PointFinder {
       const auto triangle = static_cast<uint32_t>(i);
       const auto corners = geometry_.corners(range.mesh_id, triangle);
       if (range.outward * side_of(corners) >= 0.0) {
-        add_surface_points(settings_.seed, {range.number, triangle}, corners, density, points);
+        add_surface_points(settings_.seed, {{range.mesh_id, triangle}, range.number, corners}, density, points);
       }
     }
     std::erase_if(points, [&](SurfacePoint& point) {
-      point.on.mesh_id = range.mesh_id;  // instead of the number, by which the random numbers went
       point.stratum = stratum;
       return !directions.contains((point.position - settings_.transmitter).normalized());
     });

@@ -13,12 +13,13 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 
 constexpr uint64_t kSeed = 5;
+constexpr uint32_t kMeshId = 5;  // another than the number of the mesh
 const Corners kSlanted{Vec3(6, -2, -1), Vec3(9, 3, -1), Vec3(8, 0, 2)};
 
-std::vector<SurfacePoint> points_of(const Corners& corners, double ray_density, TriangleName name = {3, 11},
-                                    uint64_t seed = kSeed) {
+std::vector<SurfacePoint> points_of(const Corners& corners, double ray_density, uint32_t mesh_number = 3,
+                                    uint32_t triangle_id = 11, uint64_t seed = kSeed) {
   std::vector<SurfacePoint> points;
-  add_surface_points(seed, name, corners, {Vec3::Zero(), ray_density}, points);
+  add_surface_points(seed, {{kMeshId, triangle_id}, mesh_number, corners}, {Vec3::Zero(), ray_density}, points);
   return points;
 }
 
@@ -65,7 +66,7 @@ TEST(SurfacePoints, LieOnTheTriangleAndNoTwoShareAKey) {
     EXPECT_TRUE(is_within(kSlanted, point.position));
     EXPECT_GE(point.key, 0);
     EXPECT_TRUE(by_key.emplace(point.key, point.position).second);
-    EXPECT_EQ(point.on.mesh_id, 3u);
+    EXPECT_EQ(point.on.mesh_id, kMeshId);
     EXPECT_EQ(point.on.triangle_id, 11u);
   }
 }
@@ -102,7 +103,7 @@ TEST(SurfacePoints, AreAsManyAsRaysWouldMeet) {
       double count = 0.0;
       for (int i = 0; i < num_triangles; ++i) {
         count +=
-            static_cast<double>(points_of(corners, wanted / solid_angle(corners), {0, static_cast<uint32_t>(i)}, 77).size());
+            static_cast<double>(points_of(corners, wanted / solid_angle(corners), 0, static_cast<uint32_t>(i), 77).size());
       }
       const double mean = count / num_triangles, deviation = std::sqrt(wanted / num_triangles);  // of Poisson's counts
       EXPECT_NEAR(mean, wanted, 3.0 * deviation);
@@ -134,7 +135,7 @@ TEST(SurfacePoints, OfSmallTrianglesAreEvenAlongTheMesh) {
   for (uint32_t first = 0; first < 4000; first += 200) {
     double count = 0.0;
     for (uint32_t i = first; i < first + 200; ++i) {
-      count += static_cast<double>(points_of(small, each / solid_angle(small), {0, i}).size());
+      count += static_cast<double>(points_of(small, each / solid_angle(small), 0, i).size());
     }
     EXPECT_NEAR(count, 10.0, 2.0) << first;  // chance leaves 3
   }

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "echopath/base/principal_box.h"
-#include "echopath/base/solid_angle.h"
 #include "echopath/em/surface/coherent_share.h"
 #include "echopath/scene/edges/planar_patches.h"
 #include "echopath/scene/mesh/adjacency.h"
@@ -13,9 +12,21 @@
 namespace echopath {
 namespace {
 
-constexpr double kZones = 2.0;    // widths of the Fresnel zone from which on a plane is large
-constexpr int kPlanesOfBody = 3;  // large ones, of what may be a body: a wall has its two sides
+constexpr double kZones = 2.0;     // widths of the Fresnel zone from which on a plane is large
+constexpr int kPlanesOfBody = 3;   // large ones, of what may be a body: a wall has its two sides
+constexpr int kDirections = 1000;  // that are looked into from an antenna
 constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
+
+// Returns directions that are spread evenly, along a spiral of golden angles.
+std::vector<Vec3> even_directions() {
+  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Vec3> directions;
+  for (int k = 0; k < kDirections; ++k) {
+    const double z = 1.0 - (2.0 * k + 1.0) / kDirections, aside = std::sqrt(1.0 - z * z);
+    directions.emplace_back(aside * std::cos(k * turn), aside * std::sin(k * turn), z);
+  }
+  return directions;
+}
 
 // Measures the planes of one mesh.
 class PlaneMeasure {
@@ -69,16 +80,25 @@ class PlaneMeasure {
   bool surrounds_antennas() const {
     const PrincipalBox own = principal_box(vertices_);
     return std::ranges::any_of(rule_.antennas, [&](const Vec3& antenna) {
-      return own.box.contains(own.coordinates(antenna)) && covered_from(antenna) > 2.0 * std::numbers::pi;
+      return own.box.contains(own.coordinates(antenna)) && covers_half_from(antenna);
     });
   }
 
-  // Returns the solid angle of all triangles, whichever side they show, in sr.
-  double covered_from(const Vec3& eye) const {
-    double covered = 0.0;
-    for (const auto& [a, b, c] : triangles_)
-      covered += std::abs(solid_angle({vertices_[a], vertices_[b], vertices_[c]}, eye));
-    return covered;
+  // Returns whether triangles lie in more than half of all directions, whichever side they show. Solid angles that add up
+  // would count the front and the back of a body both.
+  bool covers_half_from(const Vec3& eye) const {
+    std::vector<Vec3> open = even_directions();
+    const size_t half = open.size() / 2;
+    for (const auto& [a, b, c] : triangles_) {
+      const Vec3 to_a = vertices_[a] - eye, to_b = vertices_[b] - eye, to_c = vertices_[c] - eye;
+      const Vec3 ab = to_a.cross(to_b), bc = to_b.cross(to_c), ca = to_c.cross(to_a);
+      const double side = to_a.dot(bc);
+      std::erase_if(open, [&](const Vec3& direction) {
+        return side * direction.dot(ab) > 0.0 && side * direction.dot(bc) > 0.0 && side * direction.dot(ca) > 0.0;
+      });
+      if (open.size() < half) return true;
+    }
+    return false;
   }
 
   // Returns the width in m from which on a plane is large, at a distance in m from the antennas.

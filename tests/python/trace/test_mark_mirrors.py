@@ -108,6 +108,15 @@ def test_what_would_be_a_body_from_outside_is_a_room_around_the_radar(sides):
     assert marked(open_room, position=(0.1 * sides[0], 0.2, 0.1)) == ("plate",)
 
 
+def test_a_body_with_the_radar_in_its_box_is_no_room():
+    """Before a side of a prism, of which less than half of all directions see something: front and back together are more."""
+    corners = [(0.0, -1.0), (0.0, 1.0), (1.5, 0.0)]
+    sides = [t for i, j in ((0, 1), (1, 2), (2, 0)) for t in ((i, 3 + j, j), (i, 3 + i, 3 + j))]
+    prism = ep.Mesh([(x, y, z) for z in (-1.0, 1.0) for x, y in corners], [(0, 1, 2), (3, 5, 4), *sides])
+    outward = np.array([2.0, 3.0, 0.0]) / np.sqrt(13.0)
+    assert marked(prism, position=-(np.array([0.75, 0.5, 0.0]) + 0.2 * outward)) == ()
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_in_scenes_of_this_repository_it_marks_what_people_marked(name):
     with as_file(data_folder("scenes") / f"{name}.toml") as path:

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 
 namespace echopath {
 namespace {
@@ -25,8 +26,13 @@ void validate_layers(const Material& material) {
     require(std::isfinite(layer.conductivity) && layer.conductivity >= 0, "conductivity", "must be >= 0 S/m",
             layer.conductivity);
   }
-  require(!material.is_sheet() || !material.mirror, "mirror",
-          "must be False where a material has layers: flagged mirrors let nothing pass", material.mirror);
+  if (!material.is_sheet() || !material.mirror) return;
+  constexpr const char* kRule =
+      "must be False where a material has layers, as flagged mirrors let nothing pass; materials without layers do: 'glass' "
+      "in the place of 'glass_pane', 'plasterboard' in that of 'plasterboard_wall'";
+  double thickness = 0.0;
+  for (const Layer& layer : material.layers) thickness += layer.thickness;
+  require(false, "mirror", kRule, streamed("True of ", 1e3 * thickness, " mm of layers"));
 }
 
 }  // namespace

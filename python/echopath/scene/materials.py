@@ -94,11 +94,12 @@ def known_with(name: str, **fields) -> _core.Material:
     there are none, with the name of the material that is alike and has none."""
     try:
         return materials[name].replace(**fields)
-    except ValueError as error:
+    except ValueError:
         whole = _without_layers(name) if fields.get("mirror") else ""
         if not whole:
             raise
-        raise ValueError(f"{error}; '{whole}' is a material without layers for such surfaces, instead of '{name}'") from None
+        raise ValueError(f"mirror: must be False for '{name}', which has layers, as flagged mirrors let nothing pass; '{whole}' "
+                         "is the material without layers, got True") from None
 
 
 def _without_layers(name: str) -> str:

@@ -143,3 +143,13 @@ def test_the_data_are_found_beside_a_source_tree_that_is_not_installed(monkeypat
 
     monkeypatch.setattr("echopath.base.data_folder.resources.files", not_installed)
     assert (data_folder("materials") / "metal.toml").is_file()
+
+
+def test_a_mirror_of_layers_is_refused_with_what_would_do():
+    layered = [name for name in ep.materials if ep.materials[name].layers]
+    assert {"glass_pane", "plasterboard_wall"} <= set(layered)
+    for name in layered:
+        thickness = 1e3 * sum(layer.thickness for layer in ep.materials[name].layers)
+        with pytest.raises(ValueError, match=rf"mirror: .* 'glass' in the place of 'glass_pane'.* got True of {thickness:g} mm"):
+            ep.materials[name].replace(mirror=True)
+    assert ep.materials["glass"].replace(mirror=True).mirror and ep.materials["plasterboard"].replace(mirror=True).mirror

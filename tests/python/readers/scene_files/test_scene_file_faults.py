@@ -57,8 +57,8 @@ FAULTS = [
      "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),
     (RADAR + mesh_object("material = {scattering = 1.3}"), "objects[0].material.scattering: must be at most 1"),
     (RADAR + mesh_object("material = {base = 'plasterboard_wall', mirror = true}"),
-     "objects[0].material: mirror: must be False where a material has layers: flagged mirrors let nothing pass, got 1; "
-     "'plasterboard' is a material without layers for such surfaces, instead of 'plasterboard_wall'"),
+     "objects[0].material: mirror: must be False for 'plasterboard_wall', which has layers, as flagged mirrors let nothing pass; "
+     "'plasterboard' is the material without layers, got True"),
     (RADAR + mesh_object("material = {cross_polarization = 0.6}"),
      "objects[0].material.cross_polarization: must be at most 0.5"),
     (RADAR + mesh_object(""), "objects[0]"),

@@ -2,47 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
-#include <utility>
 
 namespace echopath {
 
-namespace {
-
-// Gathers meshes by a node above them.
-class ByNode {
- public:
-  void add(int node, uint32_t mesh_id) {
-    const auto [entry, is_new] = place_.try_emplace(node, objects.size());
-    if (is_new) objects.push_back({node, {}});
-    objects[entry->second].mesh_ids.push_back(mesh_id);
-  }
-
-  std::vector<SceneObject> objects;
-
- private:
-  std::unordered_map<int, size_t> place_;  // among the objects, by node
-};
-
-}  // namespace
-
 std::vector<SceneObject> objects_of(const Scene& scene) {
-  ByNode found;
+  MeshesByNode found;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     if (!scene.node_of(id).material->mirror) found.add(scene.meshes()[id].object, id);
   }
-  return std::move(found.objects);
+  return found.found();
 }
 
 std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object) {
-  ByNode found;
+  MeshesByNode found;
   for (const uint32_t id : object.mesh_ids) {
     int node = scene.meshes()[id].node;
     const auto parent = [&] { return scene.nodes()[node].parent; };
     while (node != object.node && parent() != object.node) node = parent();
     found.add(node, id);
   }
-  return std::move(found.objects);
+  return found.found();
 }
 
 Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "echopath/scene/meshes_by_node.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {
@@ -15,10 +16,7 @@ struct Sphere {
 };
 
 // An object is a child of the scene's root with the meshes below it that are not flagged mirrors; it has at least one.
-struct SceneObject {
-  int node = 0;  // index into Scene::nodes()
-  std::vector<uint32_t> mesh_ids;
-};
+using SceneObject = NodeMeshes;
 
 // Returns the objects in the order of their first mesh.
 std::vector<SceneObject> objects_of(const Scene& scene);

@@ -12,8 +12,7 @@
 namespace echopath {
 namespace {
 
-// Times are sums of intervals, so the last chirp may pass the last key by a few units in the last place.
-constexpr double kTimeRounding = 1e-12;
+constexpr double kTimeRounding = 1e-12;    // relative, and in s for times below 1 s
 constexpr double kMinDisplacement = 1e-9;  // m
 constexpr int64_t kColumnsPerTask = 2048;  // keeps three rows of a block in the first-level cache
 
@@ -27,8 +26,10 @@ void check_times(const std::vector<double>& times) {
 
 }  // namespace
 
+double rounding_of(double begin, double end) { return kTimeRounding * std::max({1.0, std::abs(begin), std::abs(end)}); }
+
 double time_inside(double time, const TimeSpan& span) {
-  const double slack = kTimeRounding * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
+  const double slack = rounding_of(span.begin, span.end);
   if (!(time >= span.begin - slack && time <= span.end + slack)) {
     const std::string limits = with_digits(17, span.begin) + ", " + with_digits(17, span.end);
     require(false, "time", "must lie in the motion's [" + limits + "] s", time);

@@ -75,6 +75,10 @@ class TurningPoints {
   double rate_ = 0.0;
 };
 
+// Returns the rounding, in s, of times between `begin` and `end` (s) that are sums of intervals: by so much may the last
+// chirp pass the last key.
+double rounding_of(double begin, double end);
+
 // Returns `time` moved into `span`; raises invalid_argument unless it is inside up to rounding.
 double time_inside(double time, const TimeSpan& span);
 

@@ -7,6 +7,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/text/quoted.h"
 #include "echopath/base/text/streamed.h"
+#include "echopath/motion/spline.h"
 
 namespace echopath {
 namespace {
@@ -52,14 +53,8 @@ bool covers(const TimeSpan& span, double begin, double end, double slack = 0.0) 
   return begin >= span.begin - slack && end <= span.end + slack;
 }
 
-// Returns the rounding of the ends of a frame, which are sums of intervals, in s.
-double rounding_of(double begin, double end) { return 1e-12 * std::max({1.0, std::abs(begin), std::abs(end)}); }
-
 void require_span(const TimeSpan& span, double begin, double end, const std::string& name) {
-  if (covers(span, begin, end)) return;
-  // The rounding of the ends is forgiven as the motions do.
-  const double slack = 1e-12 * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
-  if (covers(span, begin, end, slack)) return;
+  if (covers(span, begin, end, rounding_of(span.begin, span.end))) return;  // as the motions do
   const std::string rule = streamed("must cover the frame, ", begin, " to ", end,
                                     " s (that of an actor is as long as its duration=); node ", name);
   require(false, "motion", rule, streamed(span.begin, " to ", span.end, " s"));

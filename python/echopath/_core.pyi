@@ -691,7 +691,7 @@ class Node:
         a VertexSequence, a Skin or None
         """
     @property
-    def lifetime(self) -> typing.Any:
+    def lifetime(self) -> tuple[float, float] | None:
         """
         (begin, end) in s: it is part of the frames that this covers wholly; None: of all
         """
@@ -833,6 +833,8 @@ class Scene:
         """
         Raises KeyError naming the nearest names.
         """
+    def _lifetime(self, index: int) -> tuple[float, float]:
+        ...
     def _node(self, index: int) -> Node:
         ...
     def _remove(self, index: int) -> None:

@@ -30,7 +30,7 @@ void check_content(const Node& node) {
   require(!node.mesh || node.material, "material", "must be given with a mesh in node", node.name);
   require(node.mesh || !node.material, "material", "must not be given without a mesh in node", node.name);
   if (node.material) node.material->validate();
-  require(node.lifetime.begin <= node.lifetime.end, "lifetime", "must be a begin and an end in s, ascending, in node",
+  require(node.lifetime.begin < node.lifetime.end, "lifetime", "must be a begin and an end in s, ascending, in node",
           node.name);
   require(!node.motion || node.motion->is_rigid(), "motion", "must keep lengths: scales move joints of a Skin alone; node",
           node.name);

@@ -28,8 +28,8 @@ template <class T>
 using OrNone = Optional<Instance<std::shared_ptr<T>>>;
 
 TimeSpan span_of(const std::vector<double>& ends, const char* argument) {
-  const bool is_span = ends.size() == 2 && ends[0] <= ends[1];
-  require(is_span, argument, "must be (begin, end) in s, ascending", shown(py::cast(ends)));
+  const bool is_span = ends.size() == 2 && ends[0] < ends[1];
+  require(is_span, argument, "must be (begin, end) in s, ascending, or None", shown(py::cast(ends)));
   return {std::max(ends[0], TimeSpan{}.begin), std::min(ends[1], TimeSpan{}.end)};
 }
 
@@ -53,13 +53,19 @@ Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<in
   return made;
 }
 
-// Returns (begin, end) in s, infinite where it has none; None: always.
-py::object lifetime_of(const Node& node) {
+// (begin, end) in s, infinite where there is none.
+using Ends = std::pair<double, double>;
+
+Ends ends_of(const TimeSpan& span) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const TimeSpan always, span = node.lifetime;
-  const bool has_begin = span.begin > always.begin, has_end = span.end < always.end;
-  if (!has_begin && !has_end) return py::none();
-  return py::make_tuple(has_begin ? span.begin : -kInfinity, has_end ? span.end : kInfinity);
+  const TimeSpan always;
+  return {span.begin > always.begin ? span.begin : -kInfinity, span.end < always.end ? span.end : kInfinity};
+}
+
+// Returns when a node is there; None: always.
+std::optional<Ends> lifetime_of(const Node& node) {
+  const Ends ends = ends_of(node.lifetime);
+  return ends == ends_of(TimeSpan{}) ? std::nullopt : std::optional(ends);
 }
 
 // What scene.meshes lists.
@@ -230,6 +236,8 @@ void bind_tree(py::module_& m) {
       .def("_remove", &Scene::remove, py::arg("index"))
       .def("_takes_part", &Scene::takes_part, py::arg("index"))
       .def("_hide_absent", &Scene::hide_absent, py::arg("begin"), py::arg("end"))
+      .def(
+          "_lifetime", [](const Scene& self, int index) { return ends_of(self.lifetime(index)); }, py::arg("index"))
       .def_property_readonly("_has_lifetimes", &Scene::has_lifetimes)
       .def("__len__", [](const Scene& self) { return self.nodes().size(); })
       .def(

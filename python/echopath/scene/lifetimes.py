@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from .. import _core
 from ..arguments.names import first_names
@@ -32,29 +31,46 @@ def _scene_within(scene, begin: float, end: float):
     return there
 
 
-def lifetime_in_tree(nodes: Sequence[_core.Node], index: int) -> tuple[float, float]:
-    """When a node and all above it are there, (begin, end) in s."""
-    begin, end = ALWAYS
-    while index >= 0:
-        first, last = nodes[index].lifetime or ALWAYS
-        begin, end, index = max(begin, first), min(end, last), nodes[index].parent
-    return begin, end
-
-
-def warn_of_absence(scene: _core.Scene, radar: _core.Radar, begin: float, end: float) -> None:
+def warn_of_absence(scene: _core.Scene, radar: _core.Radar, begin: float, end: float) -> bool:
     """Warns (RuntimeWarning) where visible objects have lifetimes and none of these lasts as long as a frame within a run, from
-    begin to end in s."""
-    if not scene._has_lifetimes:
-        return
-    nodes = scene.nodes
-    lifetimes = {f"'{node.name}'": lifetime_in_tree(nodes, index) for index, node in enumerate(nodes)
-                 if node.lifetime is not None and scene._takes_part(index)}
+    begin to end in s. Returns whether it did."""
+    lifetimes = _lifetimes(scene)
     if not lifetimes:
-        return
+        return False
     shortest = radar.frame_duration * (1.0 - _ROUNDING)
     if any(min(end, last) - max(begin, first) >= shortest for first, last in lifetimes.values()):
-        return
+        return False
     firsts, lasts = zip(*lifetimes.values())
     are = "is" if len(lifetimes) == 1 else "are"
     warn_user(f"{first_names(list(lifetimes))} {are} absent from {begin:g} to {end:g} s: what comes and goes in the scene is "
               f"there from {min(firsts):g} to {max(lasts):g} s alone")
+    return True
+
+
+def warn_of_the_unseen(scene: _core.Scene, radar: _core.Radar, start_time: float, interval: float, frames: int) -> None:
+    """Warns (RuntimeWarning) of visible objects that come and go within a run and are in none of its frames.
+
+    start_time: s, of the first frame; interval: s, from start to start
+    """
+    duration = radar.frame_duration
+    end = start_time + (frames - 1) * interval + duration
+    slack = _ROUNDING * duration
+    unseen = []
+    for name, (first, last) in _lifetimes(scene).items():
+        if start_time <= first < last <= end:
+            next_start = start_time + math.ceil((first - slack - start_time) / interval) * interval
+            if next_start + duration > last + slack:
+                unseen.append(name)
+    if unseen:
+        come, are, their = ("comes and goes", "is", "its") if len(unseen) == 1 else ("come and go", "are", "their")
+        warn_user(f"{first_names(unseen)} {come} between the starts of frames and {are} in none of them: {their} lifetime must "
+                  f"cover a whole frame, {duration:.3g} s of every {interval:g} s")
+
+
+def _lifetimes(scene: _core.Scene) -> dict[str, tuple[float, float]]:
+    """{"'name'": (begin, end) in s} of the visible nodes that have a lifetime of their own, as far as what is above them is
+    there, too."""
+    if not scene._has_lifetimes:
+        return {}
+    return {f"'{node.name}'": scene._lifetime(index) for index, node in enumerate(scene.nodes)
+            if node.lifetime is not None and scene._takes_part(index)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import array, flag, real, refused, vector
+from ..arguments.checks import flag, real, refused, vector
 from ..base.counts import counted
 from ..base.made_by import made_by
 from ..trajectories.trajectory import Trajectory
@@ -112,7 +112,8 @@ class SceneNode:
     def motion(self) -> _core.Motion | _core.Deformation | None:
         """A LinearMotion, KeyframeMotion, CurveMotion, VertexSequence, MorphTargets or Skin, in the axes of the parent about
         the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as
-        `Scene.add` makes them. To set it sets `lifetime`, too: to that of a Trajectory, or to None."""
+        `Scene.add` makes them. A Trajectory brings its `lifetime`, which goes when another motion is set; one that was set by
+        hand stays."""
         node = self._node
         return node.deformation or node.motion
 
@@ -124,7 +125,7 @@ class SceneNode:
                 rule = f"none that divides its mesh, as a Skin does; remove '{self._name}' and add it anew"
                 raise refused(ValueError, "motion", rule, value)
             motion, deformation = split_motion(value, mesh, self._name)
-            self._change(motion=motion, deformation=deformation, lifetime=lifetime_of(value))
+            self._change(motion=motion, deformation=deformation, lifetime=lifetime_of(value) or _lifetime_by_hand(self._node))
 
     @property
     def material(self) -> _core.Material | None:
@@ -161,7 +162,7 @@ class SceneNode:
 
     @lifetime.setter
     def lifetime(self, value) -> None:
-        self._change(lifetime=None if value is None else _span("lifetime", value))
+        self._change(lifetime=value)
 
     @property
     def _index(self) -> int:
@@ -197,16 +198,19 @@ class SceneNode:
         return f"SceneNode('{self._name}', position=({position}) m, yaw={self.yaw:g} rad, {meshes}{hidden})"
 
 
-def _span(argument: str, value) -> tuple[float, float]:
-    begin, end = np.asarray(array("[2]")(argument, value), float).tolist()
-    if not begin < end:
-        raise refused(ValueError, argument, "(begin, end) in s, ascending, or None", value)
-    return begin, end
-
-
 def lifetime_of(motion) -> tuple[float, float] | None:
     """When what moves so is there, (begin, end) in s; None: always."""
     return motion.lifetime if isinstance(motion, Trajectory) else None
+
+
+def _lifetime_by_hand(node: _core.Node) -> tuple[float, float] | None:
+    """The lifetime of a node, but for one that is that of its way, as a Trajectory has brought it."""
+    motion = node.motion
+    if isinstance(motion, _core.CurveMotion) and motion.translation is not None:
+        times = np.asarray(motion.translation.times) - motion.offset
+        if node.lifetime == (times[0], times[-1]):
+            return None
+    return node.lifetime
 
 
 def split_motion(motion, mesh, name: str) -> tuple:

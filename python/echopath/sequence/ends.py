@@ -8,7 +8,7 @@ import numpy as np
 from .. import _core
 from ..arguments.names import first_names
 from ..base.callers import warn_user
-from ..scene.lifetimes import ALWAYS, lifetime_in_tree
+from ..scene.lifetimes import ALWAYS
 
 SLOWEST = 0.1   # m/s, at an end of a way: what is slower has come to rest
 STEP = 1e-3     # s, within which speeds at the ends are told
@@ -42,7 +42,7 @@ def _ways(scene: _core.Scene, radar: _core.Radar) -> Iterator[tuple[str, _core.M
             index = nodes[index].parent
         if moved >= 0 and moved not in told:
             told.add(moved)
-            yield f"'{nodes[moved].name}'", nodes[moved].motion, lifetime_in_tree(nodes, moved)
+            yield f"'{nodes[moved].name}'", nodes[moved].motion, scene._lifetime(moved)
 
 
 def _breaks_off(motion: _core.Motion, begin: float, end: float) -> bool:

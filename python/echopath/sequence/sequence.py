@@ -26,7 +26,7 @@ from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
 from ..frame.run import FrameRun, Recorded
-from ..scene.lifetimes import warn_of_absence
+from ..scene.lifetimes import warn_of_absence, warn_of_the_unseen
 from ..scene.scene import Scene
 from ..signals.interference_of_frame import require_interferers
 from ..signals.parts import Selections
@@ -67,8 +67,9 @@ class Sequence(Row[Frame]):
         labels, detections, truth, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
     Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames that its object is in. Warns
-    (RuntimeWarning) of trajectories that begin or end within the frames, at some speed, and of scenes of which nothing that has
-    a lifetime is there. A frame raises and warns as that of `simulate` does; why nothing is heard is told once.
+    (RuntimeWarning) of trajectories that begin or end within the frames, at some speed, of scenes of which nothing that has a
+    lifetime is there, and of objects that come and go between frames. A frame raises and warns as that of `simulate` does; why
+    nothing is heard is told once.
     """
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
@@ -97,7 +98,8 @@ class Sequence(Row[Frame]):
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         warn_of_ends(scene, radar, start_time, end)
-        warn_of_absence(scene, radar, start_time, end)
+        if not warn_of_absence(scene, radar, start_time, end):
+            warn_of_the_unseen(scene, radar, start_time, interval, frames)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
 
     @property

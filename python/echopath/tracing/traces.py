@@ -14,7 +14,7 @@ from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sam
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.bodies import warn_of_bodies
-from ..scene.lifetimes import scene_in_frame, warn_of_absence
+from ..scene.lifetimes import scene_at, scene_in_frame, warn_of_absence
 from ..weather.weather import attenuation_of
 from .edge_paths import warn_of_edge_paths
 from .edges import looks_for_edges
@@ -167,7 +167,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
         target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
         edges: bool = False, cavities: Cavity | Sequence[Cavity] | None = None, components: bool = False,
         return_error: bool = False, progress: Progress = None) -> CrossSections:
-    """Radar cross section of a scene in m^2, far field, at time 0.
+    """Radar cross section of a scene in m^2, far field, at time 0, without what is absent then (`SceneNode.lifetime`).
 
     Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
     the mean over realisations of the roughness.
@@ -204,6 +204,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the footprints of the rays are too wide to
     know cross sections to 3 dB; of nulls between lobes they need not.
     """
+    scene = scene_at(scene, 0.0)
     warn_of_coarse_meshes(scene, frequency)
     chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")
     is_one = not isinstance(polarization, list) and np.shape(polarization) == (3,)

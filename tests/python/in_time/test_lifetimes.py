@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -303,3 +304,61 @@ def test_info_tells_who_comes_and_goes_and_no_overlaps_of_those_that_are_absent(
     told = capsys.readouterr().out
     assert "'early', 'late'; in the frame at 0 s: 'late' absent" in told
     assert "surfaces on each other            none" in told
+
+
+def test_a_lifetime_set_by_hand_stays_when_the_motion_changes():
+    """One that a trajectory has brought goes with it."""
+    way = ep.Trajectory([(0.0, 0.0), (1.0, 0.0)], speed=1.0, outside="absent")
+    scene = parked((1.0, 2.0))
+    scene["van"].motion = None
+    assert scene["van"].lifetime == (1.0, 2.0)
+    scene["van"].motion = way
+    assert scene["van"].lifetime == (0.0, 1.0)
+    scene["van"].motion = ep.LinearMotion((1.0, 0.0, 0.0))
+    assert scene["van"].lifetime is None
+    scene["van"].motion = way
+    scene["van"].lifetime = 0.5, 3.0
+    scene["van"].motion = None
+    assert scene["van"].lifetime == (0.5, 3.0)
+
+
+def test_lifetimes_have_one_rule_wherever_they_are_set():
+    for empty in ((1.0, 1.0), (2.0, 1.0)):
+        with pytest.raises(ValueError, match=r"lifetime: must be \(begin, end\) in s, ascending, or None, got"):
+            screen_before_a_plate()["screen"].lifetime = empty
+        with pytest.raises(ValueError, match=r"lifetime: must be \(begin, end\) in s, ascending, or None, got"):
+            screen_before_a_plate().nodes[0].replace(lifetime=empty)
+
+
+def test_lifetimes_of_carriers_and_of_what_they_carry_are_joined():
+    scene = ep.Scene()
+    scene.add(name="ship")
+    scene.add(ep.actors.plate(1.0, 1.0), name="mast", parent="ship", material="metal", position=(9.0, 0.0, 0.0))
+    scene["ship"].lifetime, scene["ship/mast"].lifetime = (0.0, 5.0), (-np.inf, 3.0)
+    assert [scene._lifetime(index) for index in range(len(scene))] == [(0.0, 5.0), (0.0, 3.0)]
+    scene["ship"].lifetime = None
+    assert scene._lifetime(1) == (-np.inf, 3.0)
+
+
+def test_cross_sections_are_of_what_is_there_at_time_0():
+    """The van before the plate comes later: the plate has 4 pi A^2 / wavelength^2 at normal incidence."""
+    scene, frequency = parked((1.0, 2.0)), 10e9
+    plate = ep.rcs(scene, frequency=frequency, incidence=(-1.0, 0.0, 0.0))
+    assert plate == pytest.approx(4.0 * np.pi * (frequency / ep.speed_of_light) ** 2, rel=0.02)
+    scene["van"].motion, scene["van"].lifetime = None, (-1.0, 2.0)
+    assert ep.rcs(scene, frequency=frequency, incidence=(-1.0, 0.0, 0.0)) != pytest.approx(plate, rel=0.2)
+
+
+@pytest.mark.parametrize("lifetime, is_told", [((0.1, 0.3), True), ((0.1, 0.5), True), ((0.1, 0.6), False), ((-0.2, 0.3), False)])
+def test_who_is_there_between_frames_alone_is_named(lifetime, is_told):
+    """Frames every 0.5 s, each of some ms."""
+    scene = parked((0.0, 3.0))
+    scene.add(ep.actors.plate(1.0, 1.0), name="guest", material="metal", position=(9.0, 3.0, 0.0))
+    scene["guest"].lifetime = lifetime
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        sequence = drive(scene, labels=None, truth=None)
+    told = [str(one.message) for one in caught if "between" in str(one.message)]
+    assert bool(told) == is_told and len(told) < 2 and all("'guest' comes and goes between" in one for one in told)
+    there = [bool(sequence[place].scene["guest"].visible) for place in (0, 1)]
+    assert there == [lifetime[0] < 0.0, lifetime == (0.1, 0.6)]

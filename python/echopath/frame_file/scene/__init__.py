@@ -84,7 +84,7 @@ def _read_lifetimes(group, count: int) -> list:
     if "lifetime" not in group:
         return [None] * count
     lifetimes = read_array(group, "lifetime", np.float64, (count, 2))
-    if not np.all(lifetimes[:, 0] <= lifetimes[:, 1]):
+    if not np.all(lifetimes[:, 0] < lifetimes[:, 1]):
         raise _core.FileError(f"{group.name}/lifetime: must hold begins and ends, ascending")
     return [(begin, end) for begin, end in lifetimes.tolist()]
 

@@ -91,12 +91,11 @@ set(echopath_common_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <c
 
 set(echopath_test_headers <gtest/gtest.h> <map> <random> <set> <sstream> ${echopath_common_headers})
 
-# Takes the parsed headers of `owner`, which is compiled with the same options; the owner, and what has OWN_OPTIONS, parses them
-# for itself.
+# Takes the parsed headers of `owner`, which is compiled with the same options: GCC would optimise by those of the headers. The
+# owner parses them.
 function(echopath_parse_headers_once target owner)
-  cmake_parse_arguments(ARG "OWN_OPTIONS" "" "" ${ARGN})
-  if(target STREQUAL owner OR ARG_OWN_OPTIONS)
-    target_precompile_headers(${target} PRIVATE ${ARG_UNPARSED_ARGUMENTS})
+  if(target STREQUAL owner)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
   else()
     target_precompile_headers(${target} REUSE_FROM ${owner})
   endif()
@@ -139,13 +138,16 @@ macro(echopath_library suffix unity_files)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/cpp)
   target_link_libraries(${target} PUBLIC ${depends} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options
     echopath_looked_at${suffix})
-  set(own)
+  set(owner echopath_base${suffix})
   if(ARG_OPTIONS)
     target_compile_options(${target} PRIVATE ${ARG_OPTIONS})
-    set(own OWN_OPTIONS)
+    set(owner ${target})
+    if("${ARG_OPTIONS}" STREQUAL "${echopath_finite_numbers}")
+      set(owner echopath_em)
+    endif()
   endif()
   echopath_compile_together(${target} ${unity_files})
-  echopath_parse_headers_once(${target} echopath_base${suffix} ${own} ${echopath_common_headers})
+  echopath_parse_headers_once(${target} ${owner} ${echopath_common_headers})
 endmacro()
 
 # echopath_kernels(MODULE headers...): compiles them into a module once per instruction set that base/lanes/simd.h picks from, as

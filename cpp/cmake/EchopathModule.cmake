@@ -182,12 +182,13 @@ check_cxx_compiler_flag(-fcx-limited-range ECHOPATH_HAS_LIMITED_RANGE)  # clang 
 set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited-range> -fno-math-errno)
 
 # A library or program of tests other than those of a module is compiled as these are: with other code for addresses, or another
-# definition, it could not take their parsed headers.
+# definition (GTest has one), it could not take their parsed headers.
 function(echopath_compile_as_tests target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_compile_options(${target} PRIVATE -fPIE ${echopath_quickly_compiled})
   target_compile_definitions(${target} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${target} PRIVATE GTest::gtest)
   echopath_parse_headers_once(${target} test_base ${echopath_test_headers})
 endfunction()
 

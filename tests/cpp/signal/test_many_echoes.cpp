@@ -16,8 +16,11 @@ constexpr double kDirectRounding = 1e-12;
 constexpr double kAdditivity = 1e-12;
 constexpr double kWeakEchoDb = 0.1;
 
-double error_against_direct(const ChirpSequence& w, const Echoes& echoes, double tolerance) {
-  const auto direct = testing::synthesize(w, echoes, {.method = Method::kDirect});
+std::vector<Complex> direct_of(const ChirpSequence& w, const Echoes& echoes) {
+  return testing::synthesize(w, echoes, {.method = Method::kDirect});
+}
+
+double error_against(const std::vector<Complex>& direct, const ChirpSequence& w, const Echoes& echoes, double tolerance) {
   const auto nufft = testing::synthesize(w, echoes, {tolerance, Method::kNufft});
   const std::vector<Complex> first(echoes.amplitude.begin(), echoes.amplitude.begin() + echoes.num_echoes);
   return rms_error(nufft, direct, testing::sum_of_magnitudes(first));
@@ -31,11 +34,12 @@ TEST(ManyEchoes, NufftHoldsItsToleranceHoweverCrowdedAndMixedTheCellsAre) {
   const double middle = 500 * cell_delay(few_chirps());
   for (const Case& c : {Case{1, middle, 1, 0}, Case{9, middle, 1, 0}, Case{300, middle, 0.5, 0}, Case{1500, middle, 5, 0},
                         Case{1500, middle, 5, 3}, Case{700, 1e-9, 1000, 5}, Case{600, middle, 150, 0.3}}) {
-    for (const double tolerance : {1e-1, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
-      for (const int num_chirps : {2, 7, 19}) {
-        const ChirpSequence w = few_chirps(num_chirps);
-        const Echoes echoes = crowd(w, c.count, c.from, c.cells, c.drift);
-        EXPECT_LT(error_against_direct(w, echoes, tolerance), tolerance + kDirectRounding)
+    for (const int num_chirps : {2, 7, 19}) {
+      const ChirpSequence w = few_chirps(num_chirps);
+      const Echoes echoes = crowd(w, c.count, c.from, c.cells, c.drift);
+      const auto direct = direct_of(w, echoes);
+      for (const double tolerance : {1e-1, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
+        EXPECT_LT(error_against(direct, w, echoes, tolerance), tolerance + kDirectRounding)
             << c.count << " echoes in " << c.cells << " cells, tolerance " << tolerance << ", chirps " << num_chirps;
       }
     }
@@ -77,8 +81,9 @@ TEST(ManyEchoes, CellEdgesAndEndsOfTheRangeAreAsGood) {
   }
   const std::vector<double> rest(delay.size());
   const Echoes echoes = two_node_echoes(w, delay, rest, std::vector<Complex>(delay.size(), 1.0));
+  const auto direct = direct_of(w, echoes);
   for (const double tolerance : {1e-4, 1e-6, 1e-7, 1e-10}) {
-    EXPECT_LT(error_against_direct(w, echoes, tolerance), tolerance) << tolerance;
+    EXPECT_LT(error_against(direct, w, echoes, tolerance), tolerance) << tolerance;
   }
 }
 

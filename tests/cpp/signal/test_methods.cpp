@@ -46,17 +46,33 @@ struct ToneError {
   double rms = 0.0, largest = 0.0;
 };
 
-// Worst errors over the test frequencies, against cosine and sine in extended precision.
-ToneError tone_error(const ToneMethod& method, int num_samples) {
-  ToneError worst;
+// Returns the tone of each test frequency, by cosine and sine in extended precision. Those of the last number of samples
+// asked for are kept: several methods and tolerances follow each other.
+const std::vector<std::vector<Complex>>& exact_tones(int num_samples) {
+  static std::vector<std::vector<Complex>> kept;
+  if (!kept.empty() && kept[0].size() == static_cast<size_t>(num_samples)) return kept;
+  kept.clear();
   for (const double frequency : frequencies()) {
-    const auto actual = tone_samples(method, num_samples, frequency, 1.0);
-    double sum = 0.0;
+    std::vector<Complex>& tone = kept.emplace_back();
     for (int n = 0; n < num_samples; ++n) {
       const long double cycles = static_cast<long double>(frequency) * n;
       const long double angle = 2 * std::numbers::pi_v<long double> * (cycles - std::round(cycles));
-      const Complex expected(static_cast<double>(std::cos(angle)), static_cast<double>(std::sin(angle)));
-      const double error = std::abs(actual[n] - expected);
+      tone.emplace_back(static_cast<double>(std::cos(angle)), static_cast<double>(std::sin(angle)));
+    }
+  }
+  return kept;
+}
+
+// Worst errors over the test frequencies.
+ToneError tone_error(const ToneMethod& method, int num_samples) {
+  ToneError worst;
+  const std::vector<double> all = frequencies();
+  const auto& expected = exact_tones(num_samples);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const auto actual = tone_samples(method, num_samples, all[i], 1.0);
+    double sum = 0.0;
+    for (int n = 0; n < num_samples; ++n) {
+      const double error = std::abs(actual[n] - expected[i][n]);
       sum += error * error;
       worst.largest = std::max(worst.largest, error);
     }
@@ -93,23 +109,39 @@ TEST(Methods, NufftToneHoldsItsToleranceAtEveryFrequency) {
   }
 }
 
-// Largest error of three chirps relative to the sum of |a|.
-double error_against_slow_sum(const ChirpSequence& w, int num_points, const SynthesisOptions& options) {
-  const testing::MovingPoints points(num_points, 7, 1.0, w.max_range() + 10.0);  // some beyond the filter
-  const Echoes echoes = testing::exact_echoes(w, points);
-  const auto cube = testing::synthesize(w, echoes, options);
-  std::vector<double> taudot;
-  for (const double speed : points.speed) taudot.push_back(2.0 * speed / 299792458.0);
-  double largest = 0.0;
-  for (const int chirp : {0, w.num_chirps / 2, w.num_chirps - 1}) {
-    const auto delay = echoes.delay.begin() + int64_t{chirp} * num_points;
-    const auto amplitude = echoes.amplitude.begin() + int64_t{chirp} * num_points;
-    const auto expected = testing::slow_chirp(w, {delay, delay + num_points}, taudot, {amplitude, amplitude + num_points});
-    const auto samples = cube.begin() + int64_t{chirp} * w.num_samples;
-    largest = std::max(largest, testing::largest_difference({samples, samples + w.num_samples}, expected));
+// Holds the slow sum of moving points in three chirps.
+class SlowSum {
+ public:
+  SlowSum(const ChirpSequence& waveform, int num_points)
+      : w_(waveform), points_(num_points, 7, 1.0, w_.max_range() + 10.0),  // some beyond the filter
+        echoes_(testing::exact_echoes(w_, points_)), chirps_{0, w_.num_chirps / 2, w_.num_chirps - 1} {
+    std::vector<double> taudot;
+    for (const double speed : points_.speed) taudot.push_back(2.0 * speed / 299792458.0);
+    for (const int chirp : chirps_) {
+      const auto delay = echoes_.delay.begin() + int64_t{chirp} * num_points;
+      const auto amplitude = echoes_.amplitude.begin() + int64_t{chirp} * num_points;
+      expected_.push_back(testing::slow_chirp(w_, {delay, delay + num_points}, taudot, {amplitude, amplitude + num_points}));
+    }
   }
-  return largest / testing::sum_of_magnitudes(points.amplitude);
-}
+
+  // Returns the largest error of the three chirps relative to the sum of |a|.
+  double error_of(const SynthesisOptions& options) const {
+    const auto cube = testing::synthesize(w_, echoes_, options);
+    double largest = 0.0;
+    for (size_t i = 0; i < chirps_.size(); ++i) {
+      const auto samples = cube.begin() + int64_t{chirps_[i]} * w_.num_samples;
+      largest = std::max(largest, testing::largest_difference({samples, samples + w_.num_samples}, expected_[i]));
+    }
+    return largest / testing::sum_of_magnitudes(points_.amplitude);
+  }
+
+ private:
+  ChirpSequence w_;
+  testing::MovingPoints points_;
+  Echoes echoes_;
+  std::vector<int> chirps_;
+  std::vector<std::vector<Complex>> expected_;
+};
 
 // 4e4 turns of the carrier, rounded before the whole turns are removed, would leave 1e-11 rad.
 TEST(Methods, StartPhaseKeepsAllBits) {
@@ -129,8 +161,9 @@ TEST(Methods, DirectAndRecurrenceEqualTheSlowSum) {
     w.num_chirps = 8;
     w.real = real;
     for (const int count : {1, 3, 300}) {
-      EXPECT_LT(error_against_slow_sum(w, count, {.method = Method::kDirect}), kDoublePhaseError) << count;
-      EXPECT_LT(error_against_slow_sum(w, count, {.method = Method::kRecurrence}), kDoublePhaseError) << count;
+      const SlowSum slow(w, count);
+      EXPECT_LT(slow.error_of({.method = Method::kDirect}), kDoublePhaseError) << count;
+      EXPECT_LT(slow.error_of({.method = Method::kRecurrence}), kDoublePhaseError) << count;
     }
   }
 }
@@ -140,9 +173,9 @@ TEST(Methods, NufftEqualsTheSlowSumWithinItsTolerance) {
     ChirpSequence w = testing::reference_waveform();
     w.num_chirps = 4;
     w.real = real;
+    const SlowSum slow(w, 300);
     for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12}) {
-      const double error = error_against_slow_sum(w, 300, {tolerance, Method::kNufft});
-      EXPECT_LT(error, tolerance + kDoublePhaseError) << tolerance;
+      EXPECT_LT(slow.error_of({tolerance, Method::kNufft}), tolerance + kDoublePhaseError) << tolerance;
     }
   }
 }

@@ -1,6 +1,7 @@
 // Factors of CFAR against closed forms and exact probabilities of correlated Gaussian cells.
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <chrono>
 #include <cmath>
@@ -106,8 +107,10 @@ double exact_rate(const CfarDesign& design, int range, double factor) {
                          along_range.at(static_cast<size_t>(columns + all[i].range - all[j].range));
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(covariance);
-  const Eigen::MatrixXcd root = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXcd> factors(covariance);  // a root sooner than by eigenvectors
+  const Eigen::VectorXd scales = factors.vectorD().real().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXcd root =
+      factors.transpositionsP().transpose() * (Eigen::MatrixXcd(factors.matrixL()) * scales.asDiagonal());
   Eigen::VectorXd form = Eigen::VectorXd::Constant(n, -factor / static_cast<double>(cells.size()));
   form[0] = 1.0;
   const Eigen::VectorXd values =

@@ -114,9 +114,9 @@ def test_the_gallery_has_its_pages():
 
 
 def with_little_work(text: str) -> str:
-    """The text of a script, a page or a notebook with an eighth of its rays and an eighth to a half of its frames, where
+    """The text of a script, a page or a notebook with a thirty-second of its rays and an eighth to a half of its frames, where
     they are many: the site is built, and read, with all of them."""
-    for name, many, part in (("num_rays", 5000, 8), ("frames", 20, 4), ("frames", 8, 2)):
+    for name, many, part in (("num_rays", 5000, 32), ("frames", 20, 4), ("frames", 8, 2)):
         text = re.sub(rf"\b{name}=(\d[\d_]*)", lambda found: f"{name}={fewer(int(found[1].replace('_', '')), many, part)}", text)
     return text
 

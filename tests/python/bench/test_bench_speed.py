@@ -105,6 +105,8 @@ def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsy
     monkeypatch.setattr(speed, "REPLAY_REPEATS", 1)
     monkeypatch.setattr(speed.guard, "QUICK_RAYS", 2_000)
     monkeypatch.setattr(speed.guard, "QUICK_REPEATS", 1)
+    monkeypatch.setattr(speed.faint, "QUICK_RAYS", 1_000)
+    monkeypatch.setattr(speed.faint, "QUICK_SEEDS", 2)
     cases = speed.replay_cases.all_cases()[:1]
     monkeypatch.setattr(speed.replay_cases, "all_cases", lambda: cases)
     assert main(["bench", "speed", "--quick", "--out", str(tmp_path / "b")]) == 0

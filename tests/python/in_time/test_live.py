@@ -257,9 +257,9 @@ def test_a_preview_has_fewer_rays_and_is_that_of_a_fresh_scene(live):
     (lambda live: live.watch(print, failed=3), "failed"),
     (lambda live: live.watch(print, budget=0.0), "budget"), (lambda live: live.preview(num_rays=-1), "num_rays"),
     (lambda live: setattr(live, "radar", None), "radar"), (lambda live: live.set_map(zero_pad=0), "zero_pad")])
-def test_wrong_arguments_are_named(live, call, named):
+def test_wrong_arguments_are_named(live_at_rest, call, named):
     with pytest.raises((TypeError, ValueError), match=named):
-        call(live)
+        call(live_at_rest)
 
 
 def test_the_record_that_an_update_has_made_is_handed_out_and_is_that_of_the_scene_now():
@@ -290,7 +290,8 @@ def test_chirps_that_differ_have_the_signal_of_the_record(live):
 
 
 @pytest.mark.parametrize("travel", [pickle.dumps, copy.copy, copy.deepcopy])
-def test_a_live_scene_says_what_travels_in_its_place(live, travel):
+def test_a_live_scene_says_what_travels_in_its_place(live_at_rest, travel):
+    live = live_at_rest
     with pytest.raises(TypeError, match="^Live: holds locks of its threads and cannot be pickled or copied; pickle or copy its "
                                         "scene and radar"):
         travel(live)

@@ -17,16 +17,50 @@ constexpr int kPlanesOfBody = 3;   // large ones, of what may be a body: a wall 
 constexpr int kDirections = 1000;  // that are looked into from an antenna
 constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
 
-// Returns directions that are spread evenly, along a spiral of golden angles.
-std::vector<Vec3> even_directions() {
-  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  std::vector<Vec3> directions;
-  for (int k = 0; k < kDirections; ++k) {
-    const double z = 1.0 - (2.0 * k + 1.0) / kDirections, aside = std::sqrt(1.0 - z * z);
-    directions.emplace_back(aside * std::cos(k * turn), aside * std::sin(k * turn), z);
+// Finds out in how many of some even directions, along a spiral of golden angles from the one pole to the other, triangles
+// lie.
+class DirectionCount {
+ public:
+  DirectionCount() : is_met_(kDirections) {
+    const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+    for (int k = 0; k < kDirections; ++k) {
+      const double z = 1.0 - (2.0 * k + 1.0) / kDirections, aside = std::sqrt(1.0 - z * z);
+      directions_.emplace_back(aside * std::cos(k * turn), aside * std::sin(k * turn), z);
+    }
   }
-  return directions;
-}
+
+  // Looks at the directions between the heights of a cone around the triangle, whose corners are relative to the eye.
+  void meet(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 ab = a.cross(b), bc = b.cross(c), ca = c.cross(a);
+    const double side = a.dot(bc);
+    const Vec3 axis = (a.normalized() + b.normalized() + c.normalized()).normalized();
+    const double cosine = std::min({1.0, axis.dot(a.normalized()), axis.dot(b.normalized()), axis.dot(c.normalized())});
+    const double radius = cosine > 0.0 ? std::acos(cosine) : std::numbers::pi;  // a wider cone may not hold the arcs
+    const double angle = std::acos(std::clamp(axis.z(), -1.0, 1.0));
+    const int last = place_of(angle + radius) + 1;
+    for (int k = std::max(0, place_of(angle - radius)); k < std::min(last, kDirections); ++k) {
+      const Vec3& direction = directions_[k];
+      if (is_met_[k] || side * direction.dot(ab) <= 0.0 || side * direction.dot(bc) <= 0.0 ||
+          side * direction.dot(ca) <= 0.0)
+        continue;
+      is_met_[k] = true;
+      ++num_met_;
+    }
+  }
+
+  bool is_over_half() const { return 2 * num_met_ > kDirections; }
+
+ private:
+  // Returns the direction that is next to an angle from the pole, or one before or behind it.
+  static int place_of(double angle) {
+    const double z = std::cos(std::clamp(angle, 0.0, std::numbers::pi));
+    return static_cast<int>(std::floor(0.5 * kDirections * (1.0 - z)));
+  }
+
+  std::vector<Vec3> directions_;
+  std::vector<bool> is_met_;
+  int num_met_ = 0;
+};
 
 // Measures the planes of one mesh.
 class PlaneMeasure {
@@ -87,16 +121,10 @@ class PlaneMeasure {
   // Returns whether triangles lie in more than half of all directions, whichever side they show. Solid angles that add up
   // would count the front and the back of a body both.
   bool covers_half_from(const Vec3& eye) const {
-    std::vector<Vec3> open = even_directions();
-    const size_t half = open.size() / 2;
+    DirectionCount count;
     for (const auto& [a, b, c] : triangles_) {
-      const Vec3 to_a = vertices_[a] - eye, to_b = vertices_[b] - eye, to_c = vertices_[c] - eye;
-      const Vec3 ab = to_a.cross(to_b), bc = to_b.cross(to_c), ca = to_c.cross(to_a);
-      const double side = to_a.dot(bc);
-      std::erase_if(open, [&](const Vec3& direction) {
-        return side * direction.dot(ab) > 0.0 && side * direction.dot(bc) > 0.0 && side * direction.dot(ca) > 0.0;
-      });
-      if (open.size() < half) return true;
+      count.meet(vertices_[a] - eye, vertices_[b] - eye, vertices_[c] - eye);
+      if (count.is_over_half()) return true;
     }
     return false;
   }

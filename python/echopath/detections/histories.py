@@ -8,8 +8,8 @@ from ..paths.cells import chirp_times
 from ..paths.subset import subset
 
 CHECKED = (0.137, 0.311, 0.618, 0.843)  # of the frame: at no simple fraction, as what turns comes back after whole turns
-UNSTEADY = 0.05    # turns of the phase, by which a parabola may be wrong
-BYTES = 28        # of an echo in a chirp, while it is evaluated
+UNSTEADY = 0.05       # turns of the phase, by which a parabola may be wrong
+BYTES = 28            # of an echo in a chirp, while it is evaluated
 MAX_MEMORY = 2 ** 28  # bytes, of all echoes that are followed
 
 
@@ -64,7 +64,7 @@ class Histories:
         return self._largest[rows]
 
     def fields(self, rows) -> np.ndarray:
-        """complex64 [N, C], as shares of the largest; their phases are whole ones."""
+        """complex64 [N, C], over the largest of each, with their own phases."""
         return self._fields[rows]
 
     def farther(self, rows) -> np.ndarray:

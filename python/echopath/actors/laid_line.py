@@ -42,8 +42,8 @@ class LaidLine:
         places, distances = self._places, self._distances
         near = int(np.searchsorted(distances, min(distances[0] + END_WAY, distances[-1])))
         far = int(np.searchsorted(distances, max(distances[-1] - END_WAY, distances[0]), side="right")) - 1
-        first = (distances[near] - distances[0]) / (places[near] - places[0])
-        last = (distances[-1] - distances[far]) / (places[-1] - places[far])
+        first = _slope(distances[near] - distances[0], places[near] - places[0])
+        last = _slope(distances[-1] - distances[far], places[-1] - places[far])
         inside = np.clip(line, places[0], places[-1])
         return np.interp(inside, places, distances) + np.where(line < inside, first, last) * (line - inside)
 
@@ -51,6 +51,11 @@ class LaidLine:
         """(points [T, 3] in m, yaws [T] in rad) of the path under places [T] on the line."""
         distances = self.distances(line)
         return self.track.path.points(distances), self.track.path.bearings(distances)[0]
+
+
+def _slope(distance: float, place: float) -> float:
+    """Of the distance over the place; 1 where nothing moves all the time."""
+    return distance / place if place > 0.0 else 1.0
 
 
 def usual_speed(track) -> float:

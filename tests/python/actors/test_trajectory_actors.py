@@ -199,8 +199,20 @@ def test_a_cyclist_pedals_with_the_distance():
         assert_same_angle(angle_about_y(motion_of(rider, "bicycle/crank").at(time)[:3, :3]), turn)
 
 
-@pytest.mark.parametrize("make", ["car", "van", "truck", "motorcycle", "bicycle", "cyclist", "pedestrian", "runner", "child",
-                                  "dog"])
+FOLLOWING = ["car", "van", "truck", "motorcycle", "bicycle", "cyclist", "pedestrian", "runner", "child", "dog"]
+
+
+@pytest.mark.parametrize("make", FOLLOWING)
+def test_who_waits_all_the_time_stands_still_on_the_floor(make):
+    waits = ep.Trajectory([(5, 6)] * 3, times=[0, 1, 2], yaw=[1.0] * 3)
+    scene = ep.Scene()
+    scene.add(getattr(ep.actors, make)(trajectory=waits), name="a")
+    first, later = (np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes]) for time in (0.3, 1.7))
+    np.testing.assert_allclose(first, later, rtol=0, atol=1e-9)
+    assert -1e-9 <= first[:, 2].min() < 0.01 and np.hypot(*(first[:, :2] - [5, 6]).T).min() < 1.0
+
+
+@pytest.mark.parametrize("make", FOLLOWING)
 def test_what_a_trajectory_replaces_is_refused_beside_it(make):
     with pytest.raises(ValueError, match="^speed: must be left out beside trajectory, got 2.5"):
         getattr(ep.actors, make)(trajectory=WALK, speed=2.5)

@@ -1,21 +1,27 @@
 """Traffic: objects that follow the trajectories of a file, put into a scene."""
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import functools
+import inspect
+import math
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from .. import actors
 from ..actors.laid_line import usual_speed
-from ..arguments.checks import an, anything, checked, optional, real, refused, text
+from ..arguments.checks import an, anything, array, checked, optional, real, refused, text
 from ..arguments.names import first_names
+from ..arguments.objects import listed
+from ..arguments.shown import writable
 from ..base.counts import counted
 from ..base.made_by import made_by
 from ..readers.tree import fit_name
-from ..trajectories.kinds import usual_kind
+from ..trajectories.kinds import takes, takes_kind, usual_kind
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 
 ActorOf = Callable[[str, Trajectory], Any]
+ActorOfKinds = Mapping[str, ActorOf | str | None]
 
 
 @made_by("ep.add_traffic")
@@ -69,29 +75,89 @@ def _trajectories_rule(argument: str, value) -> dict[str, Trajectory]:
     return dict(value)
 
 
-def _maker_rule(argument: str, value):
-    if value is not None and (isinstance(value, type) or not callable(value)):
-        raise refused(TypeError, argument, "a callable (name, trajectory) that returns an actor, or None", value)
+def _maker_rule(argument: str, value) -> ActorOf | None:
+    if isinstance(value, Mapping):
+        return _maker_of_kinds(argument, value)
+    if value is not None and not _is_maker(value):
+        raise refused(TypeError, argument, "a callable (name, trajectory) that returns an actor, a dict of them by globs of "
+                      "kinds, or None", value)
     return value
 
 
-@checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, parent=optional(text), time=optional(anything))
-def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | None = None,
-                parent: str | None = None, time: float | None = None) -> Traffic:
+def _is_maker(value) -> bool:
+    return callable(value) and not isinstance(value, type)
+
+
+def _maker_of_kinds(argument: str, makers: Mapping) -> ActorOf:
+    """The maker of a dict {glob of kinds: maker, name of an actor or None}."""
+    found = []
+    for glob, maker in makers.items():
+        place = f"{argument}['{text(argument, glob)}']"
+        if isinstance(maker, str):
+            maker = _maker_by_name(place, maker)
+        elif maker is not None and not _is_maker(maker):
+            raise refused(TypeError, place, "a callable (name, trajectory), the name of an actor, or None", maker)
+        found.append((glob, maker))
+
+    def made(name: str, trajectory: Trajectory):
+        maker = next((maker for glob, maker in found if takes_kind(glob, trajectory.kind)), usual_actor)
+        return None if maker is None else maker(name, trajectory)
+    return made
+
+
+def _maker_by_name(argument: str, actor: str) -> ActorOf:
+    if actor not in following_actors():
+        raise refused(ValueError, argument, f"an actor that takes a trajectory ({', '.join(following_actors())})", actor)
+    return lambda name, trajectory: getattr(actors, actor)(trajectory=trajectory)
+
+
+@functools.cache
+def following_actors() -> list[str]:
+    """Names of the actors that follow a trajectory by themselves, without further arguments."""
+    signatures = {name: inspect.signature(getattr(actors, name)).parameters for name in actors.__all__
+                  if inspect.isfunction(getattr(actors, name))}
+    return [name for name, known in signatures.items() if "trajectory" in known
+            and all(one.default is not one.empty for one in known.values())]
+
+
+def _globs_rule(argument: str, value) -> list[str]:
+    globs = [value] if isinstance(value, str) else listed(value)
+    if not isinstance(globs, list) or not all(isinstance(glob, str) and glob for glob in globs):
+        raise refused(TypeError, argument, "a glob of names or a list of globs", value)
+    return globs
+
+
+def _span_rule(argument: str, value) -> tuple[float, float]:
+    begin, end = (float(one) for one in array("[2]", finite=True)(argument, value))
+    if begin > end:
+        raise refused(ValueError, argument, "(begin, end) in s, the end not before the begin", value)
+    return begin, end
+
+
+@checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, exclude=_globs_rule,
+         during=optional(_span_rule), parent=optional(text), time=optional(anything))
+def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | ActorOfKinds | None = None,
+                exclude: str | Iterable[str] = (), during: tuple[float, float] | None = None, parent: str | None = None,
+                time: float | None = None) -> Traffic:
     """Puts an object for each trajectory into a scene, under its name; what a name of the scene must not hold becomes '_'.
 
     Trajectories whose names become alike by that are numbered.
     trajectories: {name: Trajectory}, such as read_trajectories returns
     actor_of: (name, trajectory) -> what Scene.add takes, such as `ep.actors.car(kind="suv", trajectory=trajectory)`; what does
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
-        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car
+        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car. Or a dict {glob of kinds:
+        such a callable, the name of an actor, or None: no object}, of which the first that takes the kind counts, in whatever
+        case; kinds that none takes are as usual: `{"police*": "car", "tram*": None}`
+    exclude: globs of names that are left out, such as the car that carries the radar; each must take one
+    during: (begin, end) in s, outside of which nothing is of interest: who is on its way at no time of it is left out. None: all
     parent: full name of the object whose axes the trajectories are in; None: the world
     time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
     Returns the Traffic. Raises TypeError or ValueError naming the argument, also where the scene has an object of such a
     name, as after the same call before; nothing is added then.
     """
     time = None if time is None else real(unit="s")("time", time)
-    made = {name: (actor_of or usual_actor)(name, trajectory) for name, trajectory in trajectories.items()}
+    maker = actor_of if callable(actor_of) else usual_actor
+    made = {name: _made(maker, name, one) for name, one in _chosen(trajectories, list(exclude), during).items()}
     present = {name: actor for name, actor in made.items() if actor is not None}
     _require_new(scene, present, parent)
     added = {}
@@ -105,6 +171,25 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     if time is not None:
         traffic.show(time)
     return traffic
+
+
+def _chosen(trajectories: Mapping[str, Trajectory], exclude: list[str], during) -> dict[str, Trajectory]:
+    """Those that are not left out by their names or their times."""
+    for glob in exclude:
+        if not any(takes(glob, name) for name in trajectories):
+            raise refused(ValueError, "exclude", f"globs of which each takes one of {first_names(list(trajectories)) or 'none'}",
+                          glob)
+    begin, end = during or (-math.inf, math.inf)
+    return {name: one for name, one in trajectories.items()
+            if not any(takes(glob, name) for glob in exclude) and one.begin <= end and begin <= one.end}
+
+
+def _made(maker: ActorOf, name: str, trajectory: Trajectory):
+    """What is made for a name; what cannot be is told with it."""
+    try:
+        return maker(name, trajectory)
+    except ValueError as error:
+        raise type(error)(f"trajectories['{writable(name)[:60]}']: {error}") from None
 
 
 def _require_new(scene, names, parent: str | None) -> None:

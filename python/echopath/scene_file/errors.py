@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from .. import _core
 from ..arguments.shown import shown
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -68,19 +69,34 @@ def describe(error: ValidationError, prefix: tuple = ()) -> str:
     return "\n".join(dict.fromkeys(lines))
 
 
+class ToldValueError(ValueError):
+    """A fault whose message begins with the dotted path of its key."""
+
+
+class ToldFileError(_core.FileError):
+    """A fault of a file whose message begins with the dotted path of the key that names it."""
+
+
 def validated(model: type[Model], data: Mapping[str, Any], prefix: tuple[str, ...] = ()) -> Model:
     """`data` as a `model`; raises ValueError with one line per fault, paths beginning with `prefix`."""
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        raise ValueError(describe(error, prefix)) from None
+        raise ToldValueError(describe(error, prefix)) from None
 
 
 @contextmanager
-def blamed(key: str) -> Iterator[None]:
-    """Prefixes what the core refuses with the dotted path of the key it came from."""
+def blamed(key: str, file: str = "") -> Iterator[None]:
+    """Prefixes what the core refuses with the dotted path of the key it came from, unless one within has done so.
+
+    file: dotted path below `key` of the key that names a file, for faults of that; "": the same key
+    """
     try:
         yield
+    except (ToldValueError, ToldFileError):
+        raise
+    except _core.FileError as error:
+        raise ToldFileError(f"{key}{'.' if file else ''}{file}: {error}") from None
     except (ValueError, TypeError, KeyError) as error:
         text = str(error.args[0]) if error.args else str(error)
-        raise ValueError(f"{key}: {text}") from None
+        raise ToldValueError(f"{key}: {text}") from None

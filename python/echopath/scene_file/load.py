@@ -50,8 +50,9 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None) -> SceneF
     try:
         settings = validated(SceneTable, table)
         folder = folder or path.parent
-        trajectories = Trajectories(folder)
+        trajectories = Trajectories(folder, settings.traffic)
         scene = build_scene(settings, folder, trajectories)
+        trajectories.traffic.add_to(scene)
         scene.interferers = _build_interferers(settings, folder, trajectories)
         radar = _build_radar(settings.radar, folder, trajectories)
         if settings.mark_mirrors:
@@ -65,6 +66,8 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None) -> SceneF
         check_partitions(scene_file.partitions(), scene_file.scene)
         _check_objects(scene_file)
         return scene_file
+    except _core.FileError as error:  # of a file that it names
+        raise _core.FileError(f"{path}: {error}") from None
     except ValueError as error:
         raise ValueError("\n".join(_with_file(path, line) for line in str(error).splitlines())) from None
 
@@ -142,7 +145,7 @@ _BESIDE_SENSOR = ("transmit_power", "noise_figure_db", "receiver")  # of the tab
 
 def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, key: str = "radar"):
     if table.sensor is not None:
-        with blamed(key):
+        with blamed(key, file="sensor"):
             radar = load_radar(folder / table.sensor, table.board, subframe=table.subframe)
             given = {name: getattr(table, name) for name in _BESIDE_SENSOR if name in table.model_fields_set}
             return radar.replace(**given, **_place(table, trajectories, key))
@@ -152,8 +155,10 @@ def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, ke
     for side in ("transmitters", "receivers"):
         antennas[side] = []
         for index, antenna in enumerate(getattr(table, side)):
-            with blamed(f"{key}.{side}[{index}]"):
-                antennas[side].append(_antenna(antenna, table, folder))
+            place = f"{key}.{side}[{index}]"
+            pattern = _pattern(antenna.pattern or table.pattern, folder, place if antenna.pattern else key)
+            with blamed(place):
+                antennas[side].append(_antenna(antenna, table, pattern))
     with blamed(key):
         return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
@@ -171,24 +176,27 @@ def _build_interferers(settings: SceneTable, folder: Path, trajectories: Traject
 
 def _place(table: RadarTable, trajectories: Trajectories, key: str) -> dict:
     """Keywords of Radar that say where it is and how it moves."""
-    motion = motion_of(table.motion, f"{key}.motion") or trajectories.of(table, key)
-    return {"position": tuple(table.position), "yaw": math.radians(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
+    position, motion = tuple(table.position), motion_of(table.motion, f"{key}.motion") or trajectories.of(table, key)
+    if table.rides_on is not None:
+        position, motion = (0.0, 0.0, 0.0), trajectories.traffic.of(table.rides_on, f"{key}.rides_on").motion(position)
+    return {"position": position, "yaw": math.radians(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
             "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
 
 
-def _antenna(antenna, radar: RadarTable, folder: Path):
+def _antenna(antenna, radar: RadarTable, pattern):
     direction = {"orientation": tuple(antenna.orientation)} if antenna.orientation is not None else {
         "yaw": math.radians(antenna.yaw_deg or 0.0), "pitch": math.radians(antenna.pitch_deg or 0.0)}
     return _core.Antenna(tuple(antenna.position), **direction,
-                         pattern=_pattern(antenna.pattern or radar.pattern, folder),
-                         polarization=tuple(antenna.polarization or radar.polarization))
+                         pattern=pattern, polarization=tuple(antenna.polarization or radar.polarization))
 
 
-def _pattern(table, folder: Path):
+def _pattern(table, folder: Path, key: str):
+    """The pattern of a table; key: of the antenna or the radar that has it."""
     if table is None:
         return _core.Isotropic()
-    if table.kind == "isotropic":
-        return _core.Isotropic(gain=table.gain)
-    if table.kind == "table":
-        return load_antenna(folder / table.file, normalize=table.normalize)
-    return _core.CosinePower(table.exponent, peak_gain=table.peak_gain)
+    with blamed(f"{key}.pattern", file="file"):
+        if table.kind == "isotropic":
+            return _core.Isotropic(gain=table.gain)
+        if table.kind == "table":
+            return load_antenna(folder / table.file, normalize=table.normalize)
+        return _core.CosinePower(table.exponent, peak_gain=table.peak_gain)

@@ -57,7 +57,7 @@ TrajectoryValue = Annotated[
 
 def one_motion(table):
     """Raises where a table has several motions, or keys of a trajectory of a file without a file."""
-    given = [key for key in ("motion", "speed", "trajectory") if getattr(table, key) is not None]
+    given = [key for key in ("motion", "speed", "trajectory", "rides_on") if getattr(table, key, None) is not None]
     if len(given) > 1:
         raise broken_rule(given[1], f"must not stand beside {given[0]}", getattr(table, given[1]))
     for key in OF_FILE:

@@ -2,22 +2,18 @@
 from __future__ import annotations
 
 import functools
-import inspect
 import math
-import typing
 from pathlib import Path
 
-from pydantic import create_model
-
-from .. import _core, actors
+from .. import _core
 from ..readers import load_model
 from ..scene.materials import known_with, material_fields, materials
 from ..scene.scene import Scene
 from ..weather import Weather
-from .errors import blamed, validated
+from .actors import actor_keywords, named_actor
+from .errors import blamed
 from .object_tables import MODEL_KEYS, ObjectTable
 from .schema import SceneTable
-from .table import Table, nearest_key
 from .trajectories import Trajectories
 
 
@@ -73,17 +69,12 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file,
         return (meshes[0][1] if len(meshes) == 1 else meshes), material
     if table.model is not None:
         return _model(table, folder, key, trajectory), material
-    factory = _actor_factory(table.actor, f"{key}.actor")
-    model = _parameter_table(table.actor, factory)
-    parameters = validated(model, table.parameters, (*_as_location(key), "parameters")).model_dump(exclude_unset=True)
-    if "path" in parameters:
-        parameters["path"] = folder / parameters["path"]  # of a motion capture, relative to the scene file
-    if material is not None and "material" in _parameters(factory):
-        parameters["material"], material = material, None
-    if trajectory is not None and "trajectory" in _parameters(factory):
-        parameters["trajectory"] = trajectory
-    with blamed(f"{key}.parameters"):
-        return factory(**parameters), material
+    own = {}
+    if material is not None and "material" in actor_keywords(table.actor, f"{key}.actor"):
+        own["material"], material = material, None
+    if trajectory is not None and "trajectory" in actor_keywords(table.actor, f"{key}.actor"):
+        own["trajectory"] = trajectory
+    return named_actor(table.actor, table.parameters, folder, key, **own), material
 
 
 def _model(table: ObjectTable, folder: Path, key: str, trajectory):
@@ -96,33 +87,3 @@ def _model(table: ObjectTable, folder: Path, key: str, trajectory):
         return model
     with blamed(f"{key}.way"):
         return model.along(trajectory, way=None if table.way == "auto" else table.way)
-
-
-def _as_location(key: str) -> tuple:
-    """'objects[3]' -> ('objects', 3)."""
-    name, _, index = key.rstrip("]").partition("[")
-    return (name, int(index))
-
-
-def actor_names() -> list[str]:
-    """Names of the ready-made objects: the public functions of echopath.actors."""
-    return [name for name in actors.__all__ if inspect.isfunction(getattr(actors, name))]
-
-
-def _actor_factory(name: str, key: str):
-    if name not in actor_names():
-        raise ValueError(f"{key}: unknown actor '{name}'; {nearest_key(name, actor_names()).replace('keys', 'actors')}")
-    return getattr(actors, name)
-
-
-@functools.cache
-def _parameters(factory) -> dict:
-    return dict(inspect.signature(factory).parameters)
-
-
-@functools.cache
-def _parameter_table(name: str, factory) -> type[Table]:
-    """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
-    fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
-              for parameter in _parameters(factory).values() if parameter.name not in ("material", "trajectory")}
-    return create_model(f"{name}_parameters", __base__=Table, **fields)

@@ -86,6 +86,7 @@ class RadarTable(Table):
     trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
     id: str | None = Field(None, description="of the object of the file; none: its only one")
     goes_on: GoesOn | None = Field(None, description="s, straight on before the begin and after the end of that; none: 0")
+    rides_on: str | None = Field(None, description="id of the traffic, in whose axes position and directions are; none: nothing")
 
     _one_motion = model_validator(mode="after")(one_motion)
 

@@ -17,6 +17,7 @@ from .run_tables import (
     WeatherTable,
 )
 from .table import Name, Table, by_check
+from .traffic_tables import TrafficTable
 
 PartsValue = Annotated[
     Annotated[dict[Name, str], Tag("<partition>")] | Annotated[str, Tag("<expression>")],
@@ -34,6 +35,7 @@ class SceneTable(Table):
     mark_mirrors: bool = Field(False, description="whether meshes of planes larger than their Fresnel zone become mirrors")
     radar: RadarTable
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
+    traffic: list[TrafficTable] = Field([], description="files of trajectories, whose objects come behind the others")
     weather: WeatherTable | None = Field(None, description="air, fog and rain; none: empty space")
     interferers: list[InterfererTable] = Field([], description="other radars that send into the receivers")
     trace: TraceTable = TraceTable()

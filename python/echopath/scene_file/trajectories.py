@@ -10,13 +10,16 @@ from ..trajectories import Trajectory, read_trajectories
 from .errors import blamed
 from .object_tables import ObjectTable
 from .radar_tables import RadarTable
+from .traffic import TrafficFiles
+from .traffic_tables import TrafficTable
 
 
 class Trajectories:
     """Makes the trajectories of a scene file; those of one file are read once."""
 
-    def __init__(self, folder: Path):
+    def __init__(self, folder: Path, traffic: list[TrafficTable]):
         self._folder = folder
+        self.traffic = TrafficFiles(traffic, folder)
         self._read = functools.cache(read_trajectories)
 
     def of(self, table: ObjectTable | RadarTable, key: str) -> Trajectory | None:

@@ -1,6 +1,7 @@
 """What moves along trajectories of files, by the words of its kind."""
 from __future__ import annotations
 
+import re
 from typing import Any, NamedTuple
 
 
@@ -19,8 +20,22 @@ _MOTORCYCLE, _CYCLIST = Kind("motorcycle", {}, 2.0), Kind("cyclist", {}, 1.95)
 _PERSON, _DOG = Kind("pedestrian", {}, 0.0), Kind("dog", {}, 0.0)  # files have their middles
 # The first word that is in the name of a kind is taken.
 _KINDS = {"truck": _TRUCK, "trailer": _TRUCK, "lorry": _TRUCK, "tram": _TRUCK, "bus": _BUS, "coach": _BUS, "delivery": _BUS,
-          "van": _VAN, "motorcycle": _MOTORCYCLE, "moped": _MOTORCYCLE, "bicycle": _CYCLIST, "bike": _CYCLIST,
-          "cyclist": _CYCLIST, "ped": _PERSON, "person": _PERSON, "walk": _PERSON, "dog": _DOG}
+          "van": _VAN, "motorcycle": _MOTORCYCLE, "motorbike": _MOTORCYCLE, "moped": _MOTORCYCLE, "bicycle": _CYCLIST,
+          "bike": _CYCLIST, "cyclist": _CYCLIST, "ped": _PERSON, "person": _PERSON, "walk": _PERSON, "dog": _DOG}
+
+
+VEHICLES = "bicycle", "car", "cyclist", "motorcycle", "truck", "van"  # actors whose fronts files have, not their middles
+
+
+def takes(glob: str, name: str) -> bool:
+    """Whether a glob means a name: '*' is any text, '?' one letter, all else itself."""
+    form = re.escape(glob).replace(r"\*", ".*").replace(r"\?", ".")
+    return re.fullmatch(form, name, re.DOTALL) is not None
+
+
+def takes_kind(glob: str, kind: str) -> bool:
+    """Whether a glob means a kind, in whatever case."""
+    return takes(glob.lower(), kind.lower())
 
 
 def usual_kind(name: str) -> Kind:

@@ -23,10 +23,11 @@ def read_fcd(path: Path, length_of: Callable[[str], float]) -> dict[str, Samples
     """{name: Samples} of a file of SUMO's --fcd-output; length_of: m, of a vehicle of a type. Raises FileError.
 
     x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
+    Persons are left out while they ride in a vehicle; one who gets off is another from there on, "name_2".
     Longitudes and latitudes are refused: by the options that the file names, or where all go much less far than their speeds say.
     """
     tracks: dict[str, Samples] = {}
-    ways = _Ways()
+    ways, on_foot = _Ways(), _OnFoot()
     state = {"time": math.nan, "root": "", "count": 0}
 
     def begin(tag: str, attributes: Mapping[str, str], line: int) -> None:
@@ -40,8 +41,12 @@ def read_fcd(path: Path, length_of: Callable[[str], float]) -> dict[str, Samples
             state["count"] += 1
             if state["count"] > MOST_SAMPLES or math.isnan(state["time"]):
                 refuse(path, line, f"<{tag}>: must stand in a <timestep>, at most {MOST_SAMPLES} in all")
-            _add_vehicle(path, line, tag, attributes, state["time"], tracks, length_of)
-            ways.add(attributes, state["time"])
+            name = _attribute(path, line, tag, attributes, "id")
+            if tag == "person":
+                name = on_foot.name_of(name, rides=bool(attributes.get("vehicle")))
+            if name:
+                _add_vehicle(path, line, tag, {**attributes, "id": name}, state["time"], tracks, length_of)
+                ways.add({**attributes, "id": name}, state["time"])
 
     def comment(words: str, line: int) -> None:
         if _GEO_OPTION.search(words):
@@ -51,6 +56,24 @@ def read_fcd(path: Path, length_of: Callable[[str], float]) -> dict[str, Samples
     if ways.are_in_degrees:
         raise _core.FileError(f"{path}: {_IN_DEGREES} (they go {ways.by_place:.3g}, by their speeds {ways.by_speed:.3g} m)")
     return tracks
+
+
+class _OnFoot:
+    """Tells the ways of persons on foot apart, between which they ride in vehicles: their rows then name the vehicle."""
+
+    def __init__(self):
+        self._riding: set[str] = set()
+        self._ways: dict[str, int] = {}
+
+    def name_of(self, name: str, rides: bool) -> str:
+        """The name of the way that a row of a person belongs to, "" where the person rides."""
+        if rides:
+            self._riding.add(name)
+            return ""
+        if name in self._riding or name not in self._ways:
+            self._riding.discard(name)
+            self._ways[name] = self._ways.get(name, 0) + 1
+        return f"{name}_{self._ways[name]}" if self._ways[name] > 1 else name
 
 
 class _Ways:

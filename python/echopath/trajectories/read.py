@@ -1,22 +1,24 @@
 """Trajectories of files."""
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments.checks import array, checked, is_writable, one_of, real, refused
+from ..arguments.checks import array, checked, is_writable, one_of, real, refused, vector
 from ..arguments.checks import file as file_rule
 from ..base.callers import warn_user
 from ..base.counts import counted
 from .arguments import GOES_ON, Outside
 from .doubts import doubts_of
 from .geodesy import east_north_up
-from .kinds import usual_kind
+from .kinds import takes_kind, usual_kind
 from .markup import PACKED, read_fcd, read_gpx
 from .samples import Samples, refuse
 from .smoothing import smoothed
@@ -36,7 +38,7 @@ def _origin_rule(argument: str, value):
     return np.append(origin, np.zeros(3 - len(origin)))
 
 
-def _length_rule(argument: str, value):
+def length_rule(argument: str, value):
     rule = real(0.0, 100.0, "m")
     if isinstance(value, Mapping):
         if not all(isinstance(kind, str) and is_writable(kind) for kind in value):
@@ -45,11 +47,12 @@ def _length_rule(argument: str, value):
     return None if value is None else rule(argument, value)
 
 
-@checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=_length_rule, goes_on=GOES_ON,
-         outside=one_of(Outside))
+@checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=length_rule, goes_on=GOES_ON,
+         outside=one_of(Outside), position=vector, yaw=real(unit="rad"))
 def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None = None, smoothing: float = 0.0,
                       vehicle_length: float | Mapping[str, float] | None = None, goes_on: float = 0.0,
-                      outside: Outside = "absent") -> dict[str, Trajectory]:
+                      outside: Outside = "absent", position: ArrayLike = (0.0, 0.0, 0.0),
+                      yaw: float = 0.0) -> dict[str, Trajectory]:
     """Reads where objects were over time, by the suffix of the file.
 
     path: of the file, one of
@@ -63,11 +66,13 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon
         are made metres east (x), north (y) and up (z), on the WGS 84 ellipsoid; None: the first position of the file
     smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all
-    vehicle_length: m, or {type: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which its
-        files tell; None, and types that are not among them: as long as the actor that `add_traffic` takes for the type, so that
+    vehicle_length: m, or {glob of types: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which
+        its files tell; None, and types that none takes: as long as the actor that `add_traffic` takes for the type, so that
         its front is where the file has it (with an `actor_of` of one's own, give the lengths of its actors)
     goes_on: s, so long they go straight on before their first and behind their last positions; outside: "absent": nobody is
         there before and behind that, or "stands"; both as of Trajectory
+    position, yaw: [3] m and rad (left positive), where the origin and the +x of the file are in the world: a point p of the file
+        is at position + R(yaw) p. A crossing at (x, y) of a network comes to the origin by position=(-x, -y, 0)
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
@@ -75,6 +80,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     degrees do.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
+    _core.warn_of_turns(yaw)
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix == ".xml" or path.name.lower().endswith(".xml" + PACKED):
@@ -94,13 +100,32 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
             samples.times = [time - earliest for time in samples.times]
     if is_geographic:
         origin = next(iter(tracks.values())).places[0] if origin is None else origin
-    return _trajectories(path, tracks, origin if is_geographic else None, smoothing, {"goes_on": goes_on, "outside": outside})
+    ends, placement = {"goes_on": goes_on, "outside": outside}, _Placement(np.asarray(position, float), yaw)
+    return _trajectories(path, tracks, origin if is_geographic else None, smoothing, placement, ends)
+
+
+class _Placement(NamedTuple):
+    """Where the origin and the +x of a file are in the world: position [3] in m, yaw in rad."""
+
+    position: np.ndarray
+    yaw: float
+
+    def places(self, places: np.ndarray) -> np.ndarray:
+        """Places [P, 3] of the file in the world, m."""
+        if self.yaw == 0.0:
+            return places + self.position
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return places @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + self.position
+
+    def yaws(self, yaws: list[float]) -> list[float]:
+        """Yaws of the file in the world, rad."""
+        return [yaw + self.yaw for yaw in yaws]
 
 
 def _length_of(vehicle_length):
     """type -> m"""
     if isinstance(vehicle_length, Mapping):
-        return lambda kind: vehicle_length.get(kind, usual_kind(kind).length)
+        return lambda kind: next((m for glob, m in vehicle_length.items() if takes_kind(glob, kind)), usual_kind(kind).length)
     return lambda kind: usual_kind(kind).length if vehicle_length is None else vehicle_length
 
 
@@ -112,7 +137,8 @@ def _check_order(path: Path, samples: Samples) -> None:
                    f"{after:.12g}")
 
 
-def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float, ends: dict) -> dict[str, Trajectory]:
+def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float, placement: _Placement,
+                  ends: dict) -> dict[str, Trajectory]:
     single = [name for name, samples in tracks.items() if len(samples.times) < 2]
     if single:
         warn_user(f"{path}: {counted(len(single), 'object')} with a single position "
@@ -126,8 +152,9 @@ def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: flo
             places = east_north_up(places[:, 0], places[:, 1], places[:, 2], origin)
         doubts += [f"'{name[:60]}' {words}" for words in doubts_of(np.array(samples.times), places, samples.yaws, samples.speeds)]
         try:
-            found[name] = Trajectory(smoothed(np.array(samples.times), places, smoothing), times=samples.times,
-                                     yaw=samples.yaws or None, speed=samples.speeds or None, kind=samples.kind, **ends)
+            places = placement.places(smoothed(np.array(samples.times), places, smoothing))
+            found[name] = Trajectory(places, times=samples.times, yaw=placement.yaws(samples.yaws) or None,
+                                     speed=samples.speeds or None, kind=samples.kind, **ends)
         except ValueError as error:
             refuse(path, samples.lines[0], f"'{name[:60]}': {error}")
     if doubts:

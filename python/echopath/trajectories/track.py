@@ -55,6 +55,17 @@ class Track:
         by_pitch = np.stack([-c * m, s * n, -c * n, -s * m], axis=-1)
         return values, 0.5 * (by_yaw * yaw_rate[:, None] + by_pitch * pitch_rate[:, None])
 
+    def axes(self, times, has_pitch: bool):
+        """(axes [N, 3, 3] whose columns look ahead, left and up, their rates [N, 3, 3] per s)."""
+        yaw, yaw_rate = self.yaws(times)
+        pitch, pitch_rate = self.pitches(times) if has_pitch else (np.zeros_like(yaw), np.zeros_like(yaw))
+        c, s, n, m, zero = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch), np.zeros_like(yaw)
+        values = np.stack([c * n, -s, -c * m, s * n, c, -s * m, m, zero, n], axis=-1)
+        by_yaw = np.stack([-s * n, -c, s * m, c * n, -s, -c * m, zero, zero, zero], axis=-1)
+        by_pitch = np.stack([-c * m, zero, -c * n, -s * m, zero, -s * n, n, zero, -m], axis=-1)
+        rates = by_yaw * yaw_rate[:, None] + by_pitch * pitch_rate[:, None]
+        return values.reshape(-1, 3, 3), rates.reshape(-1, 3, 3)
+
     def junctions(self):
         """Times in s at which it may not be smooth: those of the profile, and when it passes those of the path."""
         knots, at_knots = self.profile.times, self.profile.at(self.profile.times)[0]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text
+from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text, vector
 from .arguments import (
     GOES_ON, LATEST, RATE, Outside, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times,
 )
@@ -108,9 +108,23 @@ class Trajectory(_core.CurveMotion):
         """What moves, "" where nothing is known."""
         return self._kind
 
-    def motion(self) -> _core.CurveMotion:
-        """The CurveMotion that the core follows; scenes keep it in the place of the trajectory."""
-        return _core.CurveMotion(self.translation, self.rotation)
+    def motion(self, position: ArrayLike = (0.0, 0.0, 0.0)) -> _core.CurveMotion:
+        """The CurveMotion that the core follows; scenes keep it in the place of the trajectory.
+
+        position: [3] m, a place in the axes of what follows the trajectory (x ahead, y left, z up), whose motion is asked for:
+            that of a radar behind the bumper of a car, `motion=car.motion((2.2, 0, 0.5))` of one at the origin, swings in curves
+        Raises TypeError or ValueError naming it.
+        """
+        mount = np.asarray(vector("position", position), float)
+        if not np.any(mount):
+            return _core.CurveMotion(self.translation, self.rotation)
+
+        def places(times):
+            points, velocities = self._track.places(times)
+            axes, rates = self._track.axes(times, self._has_pitch)
+            return points + axes @ mount, velocities + rates @ mount
+
+        return _core.CurveMotion(curve_through(places, self._track.junctions(), TOLERANCE), self.rotation)
 
     def position(self, time: ArrayLike) -> np.ndarray:
         """Position [3] or [T, 3] in m at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""

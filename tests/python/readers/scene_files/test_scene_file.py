@@ -10,7 +10,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli.run import simulate_file
-from echopath.scene_file import motion_tables, object_tables, radar_tables, run_tables, schema
+from echopath.scene_file import motion_tables, object_tables, radar_tables, run_tables, schema, traffic_tables
 from echopath.scene_file.table import Table
 from support.files.scene_files import RADAR, fault_of, mesh_object
 
@@ -186,14 +186,14 @@ def test_the_pedestrian_of_the_street_walks_towards_the_radar():
 
 
 def tables() -> dict:
-    parts = (motion_tables, object_tables, radar_tables, run_tables, schema)
+    parts = (motion_tables, object_tables, radar_tables, run_tables, schema, traffic_tables)
     return {name: value for part in parts for name, value in vars(part).items()
             if isinstance(value, type) and issubclass(value, Table) and value is not Table}
 
 
 # Where the rows of a table begin in data/README.md, unless that is "[trace]" for TraceTable and so on.
 HEADS = {"WaveformTable": "[radar.waveform]", "AntennaTable": "[[radar.transmitters]]", "ObjectTable": "[[objects]]",
-         "InterfererTable": "[[interferers]]"}
+         "InterfererTable": "[[interferers]]", "TrafficTable": "[[traffic]]", "TrafficActorTable": "[[traffic]]"}
 
 
 def described(name: str) -> str:

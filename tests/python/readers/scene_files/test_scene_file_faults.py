@@ -125,9 +125,27 @@ def test_a_missing_scene_file_is_a_file_error(tmp_path):
         ep.load_scene(tmp_path / "nowhere.toml")
 
 
-def test_a_missing_mesh_file_is_a_file_error(write):
-    with pytest.raises(ep.FileError, match="quid.obj"):
-        ep.load_scene(write(mesh_object('material = "metal"').replace("quad.obj", "quid.obj")))
+@pytest.mark.parametrize("text, key", [
+    (mesh_object('material = "metal"').replace("quad.obj", "gone.obj"), "objects[0].mesh"),
+    ('[[objects]]\nname = "a"\nmodel = "gone.glb"\n', "objects[0].model"),
+    ('[[objects]]\nname = "a"\nactor = "bicycle"\ntrajectory = "gone.csv"\n', "objects[0].trajectory"),
+    ('[[objects]]\nname = "a"\nactor = "captured_pedestrian"\nparameters = {path = "gone.bvh"}\n', "objects[0].parameters.path"),
+    ('[[traffic]]\nfile = "gone.xml"\n', "traffic[0].file"),
+    ('[[interferers]]\nsensor = "gone.cfg"\n', "interferers[0].sensor")])
+def test_a_file_that_is_missing_is_told_with_the_key_that_names_it(write, text, key):
+    path = write(text)
+    with pytest.raises(ep.FileError, match="^" + re.escape(f"{path}: {key}: {path.parent}") + ".gone"):
+        ep.load_scene(path)
+
+
+@pytest.mark.parametrize("place, key", [("radar", "radar.pattern.file"), ("transmitter", "radar.transmitters[0].pattern.file")])
+def test_a_missing_pattern_is_told_with_the_radar_or_the_antenna_that_has_it(write, place, key):
+    path, pattern = write(""), 'pattern = {kind = "table", file = "gone.csv"}\n'
+    head = "[radar]\n" if place == "radar" else "[[radar.transmitters]]\n"
+    text = path.read_text()
+    path.write_text(text.replace(head, head + pattern, 1) if head in text else f"{head}{pattern}{text}")
+    with pytest.raises(ep.FileError, match="^" + re.escape(f"{path}: {key}: {path.parent}") + ".gone"):
+        ep.load_scene(path)
 
 
 def test_a_mirror_of_layers_without_a_whole_material_of_its_name_gets_no_name_instead(write):

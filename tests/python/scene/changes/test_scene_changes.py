@@ -185,14 +185,14 @@ def test_a_table_of_meshes_forgets_those_that_are_gone():
 
 
 def test_the_keywords_of_an_actor_are_looked_up_once(tmp_path):
-    from echopath.scene_file import objects
+    from echopath.scene_file import actors
 
-    objects._parameter_table.cache_clear()
+    actors._parameter_table.cache_clear()
     path = tmp_path / "scene.toml"
     path.write_text(RADAR_FILE + "".join(
         f'[[objects]]\nname = "box{number}"\nactor = "box"\nparameters = {{size = [1, 1, 1]}}\nmaterial = "metal"\n'
         for number in range(30)))
-    with mock.patch.object(objects, "create_model", wraps=objects.create_model) as made:
+    with mock.patch.object(actors, "create_model", wraps=actors.create_model) as made:
         assert len(ep.load_scene(path).scene) == 30
     assert made.call_count == 1
 

@@ -1,0 +1,60 @@
+"""Ready-made objects that scene files name, with their parameters."""
+from __future__ import annotations
+
+import functools
+import inspect
+import typing
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pydantic import create_model
+
+from .. import actors
+from .errors import blamed, validated
+from .table import Table, nearest_key
+
+
+def named_actor(name: str, parameters: dict, folder: Path, key: str, **own):
+    """An actor with the parameters of a table; key: of that table; own: further keywords of the actor."""
+    make = actor_maker(name, parameters, folder, key)
+    with blamed(f"{key}.parameters", file="path" if "path" in parameters else ""):
+        return make(**own)
+
+
+def actor_maker(name: str, parameters: dict, folder: Path, key: str) -> Callable[..., Any]:
+    """What makes that actor of further keywords. Raises ValueError for parameters that it does not have."""
+    factory = _actor_factory(name, f"{key}.actor")
+    known = validated(_parameter_table(name, factory), parameters, (key, "parameters")).model_dump(exclude_unset=True)
+    if "path" in known:
+        known["path"] = folder / known["path"]  # of a motion capture, relative to the scene file
+    return functools.partial(factory, **known)
+
+
+def actor_keywords(name: str, key: str) -> dict:
+    """{keyword: inspect.Parameter} of an actor; key: that names it. Raises ValueError for an unknown one."""
+    return _parameters(_actor_factory(name, key))
+
+
+def actor_names() -> list[str]:
+    """Names of the ready-made objects: the public functions of echopath.actors."""
+    return [name for name in actors.__all__ if inspect.isfunction(getattr(actors, name))]
+
+
+def _actor_factory(name: str, key: str):
+    if name not in actor_names():
+        raise ValueError(f"{key}: unknown actor '{name}'; {nearest_key(name, actor_names()).replace('keys', 'actors')}")
+    return getattr(actors, name)
+
+
+@functools.cache
+def _parameters(factory) -> dict:
+    return dict(inspect.signature(factory).parameters)
+
+
+@functools.cache
+def _parameter_table(name: str, factory) -> type[Table]:
+    """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
+    fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
+              for parameter in _parameters(factory).values() if parameter.name not in ("material", "trajectory")}
+    return create_model(f"{name}_parameters", __base__=Table, **fields)

@@ -28,9 +28,16 @@ _OF_ACTORS: dict[str, ClassName] = {
     "car": "car", "van": "van", "truck": "truck", "cyclist": "cyclist", "bicycle": "cyclist", "motorcycle": "motorcycle",
     "pedestrian": "pedestrian", "captured_pedestrian": "pedestrian", "runner": "pedestrian", "standing_person": "pedestrian",
     "child": "pedestrian", "dog": "animal", "drone": "other"}
+_OF_TRAFFIC: dict[str, ClassName] = {"bus": "bus", "coach": "bus", "tram": "train"}  # by words of types, before the actor
 
 
 def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName]) -> dict[str, ClassName]:
-    """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors."""
+    """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors,
+    before which the types of traffic tell buses and trams."""
     return {one["name"]: next((kind for glob, kind in chosen.items() if fnmatchcase(one["name"], glob)),
-                              _OF_ACTORS.get(str(one.get("actor")), "static")) for one in objects}
+                              _usual_class(one)) for one in objects}
+
+
+def _usual_class(one: dict[str, Any]) -> ClassName:
+    of_word = next((kind for word, kind in _OF_TRAFFIC.items() if word in str(one.get("kind", "")).lower()), None)
+    return of_word or _OF_ACTORS.get(str(one.get("actor")), "static")

@@ -155,7 +155,7 @@ class Dataset:
         The names are those of truth, labels and detections. Raises IndexError for a scene that the template has not.
         """
         self._check_scene(scene)
-        return classes_of(self.template.draw(scene).table["objects"], self.template.settings.classes)
+        return classes_of(self.template.objects(scene), self.template.settings.classes)
 
     def _check_scene(self, scene: int) -> None:
         if not 0 <= scene < self.template.settings.scenes:

@@ -61,8 +61,7 @@ def statistics_of(dataset: Dataset) -> Statistics:
     kinds: dict[int, dict[str, ClassName]] = {}
     for one in dataset[::step]:
         if one.scene not in kinds:
-            table = dataset.template.draw(one.scene).table
-            kinds = {one.scene: classes_of(table["objects"], dataset.template.settings.classes)}
+            kinds = {one.scene: classes_of(dataset.template.objects(one.scene), dataset.template.settings.classes)}
         _count(one, kinds[one.scene], found)
     return found
 

@@ -157,7 +157,7 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     """
     time = None if time is None else real(unit="s")("time", time)
     maker = actor_of if callable(actor_of) else usual_actor
-    made = {name: _made(maker, name, one) for name, one in _chosen(trajectories, list(exclude), during).items()}
+    made = {name: _made(maker, name, one) for name, one in chosen_of(trajectories, list(exclude), during).items()}
     present = {name: actor for name, actor in made.items() if actor is not None}
     _require_new(scene, present, parent)
     added = {}
@@ -173,7 +173,7 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     return traffic
 
 
-def _chosen(trajectories: Mapping[str, Trajectory], exclude: list[str], during) -> dict[str, Trajectory]:
+def chosen_of(trajectories: Mapping[str, Trajectory], exclude: list[str], during) -> dict[str, Trajectory]:
     """Those that are not left out by their names or their times."""
     for glob in exclude:
         if not any(takes(glob, name) for name in trajectories):

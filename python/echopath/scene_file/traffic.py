@@ -7,9 +7,10 @@ from pathlib import Path
 from ..arguments.checks import refused
 from ..arguments.names import first_names
 from ..scene.scene import Scene
-from ..scene.traffic import add_traffic, following_actors
+from ..readers.names import fit_name
+from ..scene.traffic import add_traffic, chosen_of, following_actors
 from ..trajectories import Trajectory, read_trajectories
-from ..trajectories.kinds import VEHICLES
+from ..trajectories.kinds import VEHICLES, takes_kind, usual_kind
 from .actors import actor_keywords, actor_maker, named_actor
 from .errors import ToldValueError, blamed
 from .traffic_tables import TrafficTable
@@ -29,6 +30,18 @@ class TrafficFiles:
             makers = {glob: _maker(value, f"{key}.actors.{glob}", self._folder) for glob, value in table.actors.items()}
             with blamed(key):
                 add_traffic(scene, found, actor_of=makers, exclude=table.exclude, during=table.during)
+
+    def objects(self) -> list[dict[str, str]]:
+        """{"name", "actor" and "kind", the type in the file} of each object that `add_to` puts into a scene."""
+        found = []
+        for table, trajectories in zip(self._tables, self._found):
+            for name, one in chosen_of(trajectories, table.exclude, table.during).items():
+                value = next((value for glob, value in table.actors.items() if takes_kind(glob, one.kind)),
+                             usual_kind(one.kind).actor)
+                if value is not False:
+                    actor = value if isinstance(value, str) else value.actor
+                    found.append({"name": fit_name(name, "object"), "actor": actor, "kind": one.kind})
+        return found
 
     def of(self, name: str, key: str) -> Trajectory:
         """The trajectory of a name, of the first file that has it; key: that asks for it. Raises ValueError."""

@@ -8,6 +8,7 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
+from echopath.dataset.classes import classes_of
 from echopath.cli import main
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import SceneRecord, damaged_files, scene_folder, write_manifest
@@ -78,6 +79,28 @@ material = "metal"
     assert {one.name for one in opened[0].frame.labels["parts"].objects} <= set(known)
     with pytest.raises(IndexError, match="scene: must be from 0 to 0, got 1"):
         opened.classes(1)
+
+
+def test_classes_of_traffic_are_told_by_its_types(tmp_path):
+    rows = [f'<vehicle id="{name}" type="{kind}" x="{{0}}" y="{10 * place}" angle="90"/>' for place, (name, kind) in enumerate(
+        {"ego": "passenger", "a/1": "pt_bus", "b": "truck_heavy", "c": "bike", "d": "tram", "e": "taxi", "f": "x"}.items())]
+    steps = "".join(f'<timestep time="{time}">{"".join(rows).format(5 * time)}</timestep>' for time in (0, 1))
+    (tmp_path / "fcd.xml").write_text(f"<fcd-export>{steps}</fcd-export>")
+    traffic = """
+[[traffic]]
+file = "fcd.xml"
+exclude = ["ego"]
+actors = {x = false, truck_heavy = "van"}
+position = [{uniform = [20.0, 30.0]}, 0.0, 0.0]
+"""
+    path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + traffic + SCENE)
+    template = dataset.Template(path)
+    known = classes_of(template.objects(1), {})
+    assert {name: known[name] for name in ("a_1", "b", "c", "d", "e")} == {
+        "a_1": "bus", "b": "van", "c": "cyclist", "d": "train", "e": "car"}
+    assert not {"ego", "f"} & set(known)
+    begins = [template.scene_file(number).scene["e"].motion.at(0.0)[0, 3] for number in (0, 1)]
+    assert all(20.0 < begin + 2.15 < 30.0 for begin in begins) and begins[0] != begins[1]  # by the front of a car of 4.3 m
 
 
 def test_frames_are_those_of_the_drawn_scene(small_dataset):

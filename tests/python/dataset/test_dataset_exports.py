@@ -120,6 +120,6 @@ def test_files_that_a_template_names_are_found_from_where_it_was(tmp_path):
     assert "wall" in made.remade()[1].frame.paths.scene
     np.testing.assert_array_equal(made.remade()[1].frame.labels["parts"].object_map, made[1].frame.labels["parts"].object_map)
     shutil.move(tmp_path / "work", tmp_path / "away")
-    with pytest.raises(ep.FileError, match=r"made.dataset.toml: scene 0: .*models.wall.obj: "):
+    with pytest.raises(ep.FileError, match=r"made.dataset.toml: line \d+: scene 0: objects.wall.model: /[^:]*models.wall.obj: "):
         dataset.open(made.folder).remade()[1]
     assert "wall" in made.remade(tmp_path / "away")[1].frame.paths.scene

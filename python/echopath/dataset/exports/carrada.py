@@ -83,7 +83,7 @@ def _require(dataset: Dataset) -> None:
 def _written_frames(dataset: Dataset, scene: int, folder: Path) -> Iterator[tuple[str, _Annotations]]:
     """Writes the arrays of a scene's frames; yields the name and the annotations of each."""
     template = dataset.template
-    kinds = classes_of(template.draw(scene).table["objects"], template.settings.classes)
+    kinds = classes_of(template.objects(scene), template.settings.classes)
     told = dataset.sequence(scene).settings["labels"] or {}
     margins = LabelSettings(**{name: told[name] for name in _MARGINS if name in told})
     for one in dataset.of_scene(scene):

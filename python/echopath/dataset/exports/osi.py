@@ -98,7 +98,7 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
 
 def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
     """{name: place} of the road users among the objects of a scene."""
-    objects = dataset.template.draw(scene).table["objects"]
+    objects = dataset.template.objects(scene)
     kinds = classes_of(objects, dataset.template.settings.classes)
     return {one["name"]: place for place, one in enumerate(objects) if kinds[one["name"]] != "static"}
 

@@ -14,6 +14,7 @@ from ...base.golden import golden_place
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
+from ...scene_file.traffic import TrafficFiles
 from ...scene_file.schema import SceneTable
 from ...scene_file.table import Positive, Table
 from ...sequence import Sequence
@@ -78,6 +79,7 @@ class Template:
             raise self._faults.told(error) from None
         self._objects = scene.pop("objects", [])
         self._rest = scene
+        self._traffic: dict[str, list[dict[str, str]]] = {}  # objects of the traffic as it was drawn last
 
     def __repr__(self) -> str:
         made = self.settings
@@ -101,6 +103,17 @@ class Template:
             return DrawnScene(number, table, drawing.values)
         except ValueError as error:
             raise self._faults.told(error, number) from None
+
+    def objects(self, number: int) -> list[dict[str, Any]]:
+        """The objects of scene `number`, as tables that have at least a name, those of its traffic too. Raises as `draw`."""
+        scene = self.draw(number)
+        if "traffic" not in scene.table:
+            return scene.table["objects"]
+        told = repr(scene.table["traffic"])
+        if told not in self._traffic:  # alike in all scenes, mostly
+            with self._faults.of(number, scene.table):
+                self._traffic = {told: TrafficFiles(validated(SceneTable, scene.table).traffic, self.folder).objects()}
+        return scene.table["objects"] + self._traffic[told]
 
     def split_of(self, number: int) -> str:
         """The name of the split that scene `number` (from 0) belongs to. Raises nothing.

@@ -33,7 +33,7 @@ class Faults:
         except ValueError as error:
             raise self.told(error, number, drawn) from None
         except _core.FileError as error:  # of a file that the scene names
-            raise _core.FileError(f"{self._path}: scene {number}: {error}") from None
+            raise _core.FileError(str(self.told(ValueError(str(error)), number, drawn))) from None
 
     def told(self, error: ValueError, number: int | None = None, drawn: dict[str, Any] | None = None) -> ValueError:
         """The error with file, line and scene before each fault; objects of one entry that have the same fault say it once.

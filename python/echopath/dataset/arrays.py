@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..frame.frame import Frame
-from ..frame.maps import FrameMaps, mean_power
 from ..presentation.xarray_maps import axis, words_of, xarray_module
 from .classes import CODES
 
@@ -27,9 +25,8 @@ def lazy_arrays(dataset: Dataset) -> XarrayDataset:
     xarray = xarray_module()
     from .maps_array import MapsArray  # late: a class of xarray's, which is not always installed
 
-    first: Any = dataset[0].frame
-    axes: Any = first.spectrum if isinstance(first, Frame) else first
-    velocity, range_ = np.asarray(axes.velocity), np.asarray(axes.range)
+    first = dataset[0].frame
+    velocity, range_ = first.velocity, first.range
     shape = (len(dataset), len(velocity), len(range_))
 
     def maps(read: Callable[[DatasetFrame], NDArray[Any]], dtype: str, attributes: dict[str, Any]) -> Any:
@@ -54,8 +51,7 @@ def lazy_arrays(dataset: Dataset) -> XarrayDataset:
 
 
 def _power(one: DatasetFrame) -> NDArray[np.float32]:
-    frame: Any = one.frame
-    return np.asarray(frame.power if isinstance(frame, FrameMaps) else mean_power(frame.spectrum.values))
+    return np.asarray(one.frame.power)
 
 
 def _cells(one: DatasetFrame) -> NDArray[np.int8]:

@@ -102,6 +102,41 @@ class Frame:
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
+    def start_time(self) -> float:
+        """s, first sample of the frame; it and the next ones are called as in `ep.FrameMaps`, which small files keep."""
+        return self.paths.frame.start_time
+
+    @property
+    def seed(self) -> int:
+        """Seed of the rays."""
+        return self.paths.frame.seed
+
+    @property
+    def velocity(self) -> NDArray[np.float64] | Any:
+        """[V] m/s, receding positive: axis of the range-Doppler map; None of a record of paths alone, which has none."""
+        return None if self.spectrum is None else np.asarray(self.spectrum.velocity)
+
+    @property
+    def range(self) -> NDArray[np.float64] | Any:
+        """[R] m: axis of the range-Doppler map; None of a record of paths alone."""
+        return None if self.spectrum is None else np.asarray(self.spectrum.range)
+
+    @property
+    def power(self) -> NDArray[np.float32] | Any:
+        """f32 [V, R] W of the range-Doppler map with its noise, mean over channels; None of a record of paths alone."""
+        return None if self.spectrum is None else power_of_map(self.spectrum.values)
+
+    @property
+    def azimuth(self) -> NDArray[np.float64] | Any:
+        """[A] rad, left positive: axis of the range-azimuth map; None where the radar sees no azimuth."""
+        return None if self.range_azimuth is None else np.asarray(self.range_azimuth.azimuth)
+
+    @property
+    def azimuth_power(self) -> NDArray[np.float32] | Any:
+        """f32 [A, R] W of the range-azimuth map; None where the radar sees no azimuth."""
+        return None if self.range_azimuth is None else self.range_azimuth.power.astype(np.float32)
+
+    @property
     def noisy_cube(self) -> Cube:
         """The cube with rain, interference, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample],
         sqrt(W): the same bits at every call. Codes of transmitters are undone (`demultiplex`).
@@ -258,6 +293,11 @@ class Frame:
         labels = f", labels: {', '.join(self.labels)}" if self.labels else ""
         found = "" if self.detections is None else f", {counted(len(self.detections), 'detection')}"
         return f"Frame(paths={self.paths.num_paths}, cube={cube}, partitions: {partitions}{labels}{found})"
+
+
+def power_of_map(values: NDArray[np.complex128]) -> NDArray[np.float32]:
+    """Power of a map [tx, rx, V, R] in sqrt(W), mean over channels: f32 [V, R] in W."""
+    return np.mean(values.real ** 2 + values.imag ** 2, axis=(0, 1)).astype(np.float32)
 
 
 def with_spectra(frame: Frame) -> Frame:

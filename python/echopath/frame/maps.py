@@ -64,20 +64,12 @@ class FrameMaps:
 
 def maps_of(frame: Frame, with_power: bool) -> FrameMaps:
     """What a small file keeps of a frame; with_power: maps too, not labels alone."""
-    azimuth_map = frame.range_azimuth if with_power else None
     return FrameMaps(
-        start_time=frame.paths.frame.start_time, seed=frame.paths.frame.seed, noise_seed=frame.noise_seed,
+        start_time=frame.start_time, seed=frame.seed, noise_seed=frame.noise_seed,
         labels={partition: _within_mask(labels) for partition, labels in frame.labels.items()},
         detections=None if frame.detections is None else dataclasses.replace(frame.detections, echoes=None),
-        velocity=np.asarray(frame.spectrum.velocity), range=np.asarray(frame.spectrum.range),
-        power=mean_power(frame.spectrum.values) if with_power else None, kept_truth=frame.kept_truth,
-        azimuth=None if azimuth_map is None else np.asarray(azimuth_map.azimuth),
-        azimuth_power=None if azimuth_map is None else azimuth_map.power.astype(np.float32))
-
-
-def mean_power(values) -> np.ndarray:
-    """Power of a map [tx, rx, V, R] in sqrt(W), mean over channels: f32 [V, R] in W."""
-    return np.mean(values.real ** 2 + values.imag ** 2, axis=(0, 1)).astype(np.float32)
+        velocity=frame.velocity, range=frame.range, power=frame.power if with_power else None, kept_truth=frame.kept_truth,
+        azimuth=frame.azimuth if with_power else None, azimuth_power=frame.azimuth_power if with_power else None)
 
 
 def _within_mask(labels):

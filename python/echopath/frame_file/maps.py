@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..frame.maps import FrameMaps, mean_power
+from ..frame.frame import power_of_map
+from ..frame.maps import FrameMaps
 from .container import new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import check_sums, read_array, read_attribute, read_group, write_array, write_attribute
@@ -90,7 +91,7 @@ def power_in_file(file, shape: tuple = (None, None)) -> np.ndarray:
     """
     if "maps" in file:
         return read_array(_map_group(file), "power", np.float32, shape)
-    return mean_power(read_array(_map_group(file), "values", np.complex128, (None,) * 4))
+    return power_of_map(read_array(_map_group(file), "values", np.complex128, (None,) * 4))
 
 
 def _map_group(file):

@@ -1,6 +1,7 @@
 """Frames in time that are read from a folder: the same bits as those that were simulated."""
 from __future__ import annotations
 
+import dataclasses
 import pickle
 from pathlib import Path
 
@@ -114,6 +115,20 @@ def test_the_maps_of_all_frames_are_one_dataset(folders, keep):
     assert maps.object_names.values.tolist() == ["plate"] and maps.dominant_names.values.tolist() == ["plate", "other"]
     moved = maps.range.values[maps.power.max("velocity").argmax("range")]
     assert np.allclose(moved, DISTANCE + SPEED * stored.times, atol=0.3)  # a cell
+
+
+def test_frames_have_the_names_and_the_values_of_their_small_files(folders):
+    """The power is the mean square of the map over its channels."""
+    whole, maps = (ep.load_sequence(folders[keep])[1] for keep in ("all", "maps"))
+    assert isinstance(whole, ep.Frame) and isinstance(maps, FrameMaps)
+    for name in (field.name for field in dataclasses.fields(FrameMaps)):
+        kept, own = getattr(maps, name), getattr(whole, name)
+        if isinstance(kept, np.ndarray):
+            assert own.dtype == kept.dtype
+            np.testing.assert_array_equal(own, kept)
+        elif name not in ("labels", "detections"):
+            assert own == kept
+    np.testing.assert_allclose(whole.power, np.mean(np.abs(whole.spectrum.values) ** 2, axis=(0, 1)), rtol=1e-6)
 
 
 @pytest.mark.parametrize("name", ["seed", "noise_seed"])

@@ -118,7 +118,6 @@ def test_the_maps_of_all_frames_are_one_dataset(folders, keep):
 
 
 def test_frames_have_the_names_and_the_values_of_their_small_files(folders):
-    """The power is the mean square of the map over its channels."""
     whole, maps = (ep.load_sequence(folders[keep])[1] for keep in ("all", "maps"))
     assert isinstance(whole, ep.Frame) and isinstance(maps, FrameMaps)
     for name in (field.name for field in dataclasses.fields(FrameMaps)):
@@ -128,7 +127,16 @@ def test_frames_have_the_names_and_the_values_of_their_small_files(folders):
             np.testing.assert_array_equal(own, kept)
         elif name not in ("labels", "detections"):
             assert own == kept
-    np.testing.assert_allclose(whole.power, np.mean(np.abs(whole.spectrum.values) ** 2, axis=(0, 1)), rtol=1e-6)
+
+
+def test_the_power_of_a_frame_is_the_mean_square_of_its_map_over_the_channels():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(5, 0, 0))
+    frame = ep.simulate(scene, make_radar().replace(receivers=[ep.Antenna((0, 0.002 * place, 0)) for place in range(3)]),
+                        num_rays=500, guard=False)
+    channels = np.abs(frame.spectrum.values.reshape(3, *frame.power.shape)) ** 2
+    np.testing.assert_allclose(frame.power, (channels[0] + channels[1] + channels[2]) / 3.0, rtol=1e-6)
+    assert frame.azimuth_power.shape == (len(frame.azimuth), len(frame.range))
 
 
 @pytest.mark.parametrize("name", ["seed", "noise_seed"])

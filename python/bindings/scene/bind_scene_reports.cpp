@@ -60,7 +60,8 @@ std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, doubl
     for (const PosedAntenna& antenna : posed_antennas(antennas, radar.world_from_radar(time), Vec3::Zero()))
       rule.antennas.push_back(antenna.position);
   }
-  const Scene seen = scene;  // others may change it meanwhile
+  // Others may change the scene meanwhile.
+  const Scene seen = scene;  // NOLINT(performance-unnecessary-copy-initialization)
   const WithoutGil released;
   return meshes_of_large_planes(seen, rule);
 }

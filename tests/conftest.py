@@ -7,5 +7,3 @@ def pytest_collection_finish():
     thousand objects of imported libraries, which a whole search takes 0.1 s for."""
     gc.collect()
     gc.freeze()
-    # What tests import later is as large: the search begins less often than by itself, which takes a twentieth of some files.
-    gc.set_threshold(20_000, 20, 50)

@@ -157,6 +157,6 @@ def test_filters_take_noise_before_it_is_converted(real):
 
 def test_info_tells_of_a_converter():
     radar = one_channel(noise_figure_db=10.0, receiver=ep.Receiver(adc=ep.Adc(bits=8, gain_db=40.0)))
-    told = " ".join(line.strip() for line in _describe_radar(radar))
+    told = " ".join(line.strip() for line in _describe_radar(radar, 0.0))
     assert "converter" in told and "the steps swamp the noise, which uses" in told
-    assert "converter" not in " ".join(_describe_radar(radar.replace(receiver=None)))
+    assert "converter" not in " ".join(_describe_radar(radar.replace(receiver=None), 0.0))

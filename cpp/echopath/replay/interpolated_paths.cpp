@@ -85,8 +85,12 @@ std::vector<uint8_t> Replayer::negligible_ones(const FrameNodes& nodes, std::spa
   std::vector<uint8_t> is_negligible(channels.front().num_echoes, 1);
   const double limit = negligible_amplitude();
   for (const Echoes& channel : channels) {
-    for (size_t p = 0; p < is_negligible.size(); ++p)
-      is_negligible[p] = is_negligible[p] && is_dark(nodes, channel, p, limit);
+    for (size_t p = 0; p < is_negligible.size(); ++p) {  // most are told by their amplitude at the first node
+      is_negligible[p] = is_negligible[p] && std::norm(channel.amplitude[p]) < limit * limit;
+    }
+    for (size_t p = 0; p < is_negligible.size(); ++p) {
+      if (is_negligible[p]) is_negligible[p] = is_dark(nodes, channel, p, limit);
+    }
   }
   return is_negligible;
 }

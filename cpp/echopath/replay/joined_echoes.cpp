@@ -22,8 +22,8 @@ std::vector<uint8_t> JoinRule::operator()(std::span<const int64_t> paths) const 
 }
 
 bool JoinRule::is_joined(size_t before, size_t path) const {
-  if (preparer_.has_lobe(static_cast<int64_t>(path)) || preparer_.has_lobe(static_cast<int64_t>(before))) return false;
   if (paths_.offsets[before] != paths_.offsets[path] || paths_.num_bounces[before] != paths_.num_bounces[path]) return false;
+  if (preparer_.has_lobe(static_cast<int64_t>(path)) || preparer_.has_lobe(static_cast<int64_t>(before))) return false;
   if (!paths_.passes_of(before).empty() || !paths_.passes_of(path).empty()) return false;
   if (paths_.flags[before] != paths_.flags[path] || paths_.batch[before] != paths_.batch[path]) return false;
   const auto is_alike = [&](const std::vector<uint32_t>* label) { return (*label)[before] == (*label)[path]; };

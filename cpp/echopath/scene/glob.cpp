@@ -5,6 +5,15 @@
 namespace echopath {
 namespace {
 
+// Names are UTF-8, of whose characters all bytes but the first are 10xxxxxx.
+bool begins_character(char byte) { return (byte & 0xc0) != 0x80; }
+
+size_t end_of_character(std::string_view name, size_t n) {
+  while (++n < name.size() && !begins_character(name[n])) {
+  }
+  return n;
+}
+
 // On a mismatch only the latest star needs to take one character more, so the time is at most |glob| |name|.
 bool matches(std::string_view glob, std::string_view name) {
   constexpr size_t kNone = std::string_view::npos;
@@ -13,7 +22,10 @@ bool matches(std::string_view glob, std::string_view name) {
     if (g < glob.size() && glob[g] == '*') {
       star = g++;
       resume = n;
-    } else if (g < glob.size() && (glob[g] == '?' || glob[g] == name[n])) {
+    } else if (g < glob.size() && glob[g] == '?' && begins_character(name[n])) {
+      ++g;
+      n = end_of_character(name, n);
+    } else if (g < glob.size() && glob[g] == name[n]) {
       ++g, ++n;
     } else if (star != kNone) {
       g = star + 1;

@@ -2,65 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "echopath/base/principal_box.h"
 #include "echopath/em/surface/coherent_share.h"
 #include "echopath/scene/edges/planar_patches.h"
 #include "echopath/scene/mesh/adjacency.h"
+#include "echopath/scene/mesh/direction_count.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kZones = 2.0;     // widths of the Fresnel zone from which on a plane is large
-constexpr int kPlanesOfBody = 3;   // large ones, of what may be a body: a wall has its two sides
-constexpr int kDirections = 1000;  // that are looked into from an antenna
+constexpr double kZones = 2.0;    // widths of the Fresnel zone from which on a plane is large
+constexpr int kPlanesOfBody = 3;  // large ones, of what may be a body: a wall has its two sides
 constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
-
-// Finds out in how many of some even directions, along a spiral of golden angles from the one pole to the other, triangles
-// lie.
-class DirectionCount {
- public:
-  DirectionCount() : is_met_(kDirections) {
-    const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-    for (int k = 0; k < kDirections; ++k) {
-      const double z = 1.0 - (2.0 * k + 1.0) / kDirections, aside = std::sqrt(1.0 - z * z);
-      directions_.emplace_back(aside * std::cos(k * turn), aside * std::sin(k * turn), z);
-    }
-  }
-
-  // Looks at the directions between the heights of a cone around the triangle, whose corners are relative to the eye.
-  void meet(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 ab = a.cross(b), bc = b.cross(c), ca = c.cross(a);
-    const double side = a.dot(bc);
-    const Vec3 axis = (a.normalized() + b.normalized() + c.normalized()).normalized();
-    const double cosine = std::min({1.0, axis.dot(a.normalized()), axis.dot(b.normalized()), axis.dot(c.normalized())});
-    const double radius = cosine > 0.0 ? std::acos(cosine) : std::numbers::pi;  // a wider cone may not hold the arcs
-    const double angle = std::acos(std::clamp(axis.z(), -1.0, 1.0));
-    const int last = place_of(angle + radius) + 1;
-    for (int k = std::max(0, place_of(angle - radius)); k < std::min(last, kDirections); ++k) {
-      const Vec3& direction = directions_[k];
-      if (is_met_[k] || side * direction.dot(ab) <= 0.0 || side * direction.dot(bc) <= 0.0 ||
-          side * direction.dot(ca) <= 0.0)
-        continue;
-      is_met_[k] = true;
-      ++num_met_;
-    }
-  }
-
-  bool is_over_half() const { return 2 * num_met_ > kDirections; }
-
- private:
-  // Returns the direction that is next to an angle from the pole, or one before or behind it.
-  static int place_of(double angle) {
-    const double z = std::cos(std::clamp(angle, 0.0, std::numbers::pi));
-    return static_cast<int>(std::floor(0.5 * kDirections * (1.0 - z)));
-  }
-
-  std::vector<Vec3> directions_;
-  std::vector<bool> is_met_;
-  int num_met_ = 0;
-};
 
 // Measures the planes of one mesh.
 class PlaneMeasure {
@@ -72,37 +26,49 @@ class PlaneMeasure {
     const Eigen::AlignedBox3d box = box_of_all();
     const double extent = box.diagonal().norm();
     if (!(extent >= least_width_at(nearest_distance(box)))) return false;  // most meshes are told by their boxes
-    const auto patches = planar_patches(vertices_, triangles_, flat_tolerance(extent));
+    const Sizes sizes = measured(flat_tolerance(extent));
+    const double longest = box.sizes().maxCoeff();
+    const bool is_short = longest < rule_.least_extent;
+    const bool is_as_vehicle = longest <= rule_.vehicle_length && depth_along(sizes.normal) <= rule_.vehicle_width;
+    const bool may_be_body = (is_short || is_as_vehicle) && sizes.num_large >= kPlanesOfBody;
+    const bool is_room = may_be_body && surrounds_antennas();
+    if (may_be_body && !is_room) return false;
+    const double least_share = is_short && !is_room ? rule_.least_area_of_short : rule_.least_area;
+    return sizes.whole > 0.0 && sizes.large >= least_share * sizes.whole;
+  }
+
+ private:
+  struct Sizes {
+    double whole = 0.0, large = 0.0;  // m^2, of the mesh and of its large planes
+    int num_large = 0;
+    Vec3 normal = Vec3::UnitX();  // of the widest plane
+  };
+
+  // Measures the planes, which are flat to within a tolerance in m.
+  Sizes measured(double tolerance) const {
+    const auto patches = planar_patches(vertices_, triangles_, tolerance);
     const auto neighbours = edge_neighbours(vertices_, triangles_);
     std::vector<uint32_t> patch_of(triangles_.size(), kNoPatch);
     for (uint32_t patch = 0; patch < patches.size(); ++patch) {
       for (const uint32_t triangle : patches[patch]) patch_of[triangle] = patch;
     }
-    double whole = 0.0, large = 0.0, widest = 0.0;
-    int num_large = 0;
-    Vec3 normal = Vec3::UnitX();  // of the widest plane
+    Sizes found;
+    double widest = 0.0;
     for (const std::vector<uint32_t>& patch : patches) {
       const double area = area_of(patch);
-      whole += area;
+      found.whole += area;
       if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, neighbours, patch_of)) {
-        large += area;
-        ++num_large;
+        found.large += area;
+        ++found.num_large;
       }
       if (area > widest) {
         widest = area;
-        normal = normal_of(patch.front());
+        found.normal = normal_of(patch.front());
       }
     }
-    const double longest = box.sizes().maxCoeff();
-    const bool is_short = longest < rule_.least_extent;
-    const bool is_as_vehicle = longest <= rule_.vehicle_length && depth_along(normal) <= rule_.vehicle_width;
-    const bool may_be_body = (is_short || is_as_vehicle) && num_large >= kPlanesOfBody;
-    const bool is_room = may_be_body && surrounds_antennas();
-    if (may_be_body && !is_room) return false;
-    return whole > 0.0 && large >= (is_short && !is_room ? rule_.least_area_of_short : rule_.least_area) * whole;
+    return found;
   }
 
- private:
   Eigen::AlignedBox3d box_of_all() const {
     Eigen::AlignedBox3d box;
     for (const Vec3& vertex : vertices_) box.extend(vertex);
@@ -123,7 +89,7 @@ class PlaneMeasure {
   bool covers_half_from(const Vec3& eye) const {
     DirectionCount count;
     for (const auto& [a, b, c] : triangles_) {
-      count.meet(vertices_[a] - eye, vertices_[b] - eye, vertices_[c] - eye);
+      count.add(vertices_[a] - eye, vertices_[b] - eye, vertices_[c] - eye);
       if (count.is_over_half()) return true;
     }
     return false;

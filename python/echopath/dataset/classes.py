@@ -1,8 +1,9 @@
 """What kinds of road users the objects of a dataset are."""
 from __future__ import annotations
 
-from fnmatch import fnmatchcase
 from typing import Any, Literal, NamedTuple
+
+from .. import _core
 
 ClassName = Literal["car", "van", "truck", "bus", "train", "cyclist", "motorcycle", "pedestrian", "pedestrian_group", "animal",
                     "other", "static"]
@@ -34,7 +35,7 @@ _OF_TRAFFIC: dict[str, ClassName] = {"bus": "bus", "coach": "bus", "tram": "trai
 def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName]) -> dict[str, ClassName]:
     """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors,
     before which the types of traffic tell buses and trams."""
-    return {one["name"]: next((kind for glob, kind in chosen.items() if fnmatchcase(one["name"], glob)),
+    return {one["name"]: next((kind for glob, kind in chosen.items() if _core.glob_takes(glob, one["name"])),
                               _usual_class(one)) for one in objects}
 
 

@@ -22,7 +22,7 @@ from ..sequence import StoredSequence, load_sequence
 from ..sequence.keep import Keep
 from .address import is_address
 from .arrays import lazy_arrays
-from .classes import ClassName, classes_of
+from .classes import ClassName
 from .folder import DRAWN, open_template, read_record, scene_folder
 from .sources import Files, Remade, Source
 from .template import Template
@@ -155,7 +155,7 @@ class Dataset:
         The names are those of truth, labels and detections. Raises IndexError for a scene that the template has not.
         """
         self._check_scene(scene)
-        return classes_of(self.template.objects(scene), self.template.settings.classes)
+        return self.template.classes(scene)
 
     def _check_scene(self, scene: int) -> None:
         if not 0 <= scene < self.template.settings.scenes:

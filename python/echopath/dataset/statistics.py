@@ -12,7 +12,7 @@ import numpy as np
 from ..arguments import part_names
 from ..detections.detections import Detections
 from ..paths.resolution import Interval
-from .classes import ClassName, classes_of
+from .classes import ClassName
 from .opened import Dataset, DatasetFrame
 
 MOST_FRAMES = 2000  # that are read, evenly spread
@@ -61,7 +61,7 @@ def statistics_of(dataset: Dataset) -> Statistics:
     kinds: dict[int, dict[str, ClassName]] = {}
     for one in dataset[::step]:
         if one.scene not in kinds:
-            kinds = {one.scene: classes_of(dataset.template.objects(one.scene), dataset.template.settings.classes)}
+            kinds = {one.scene: dataset.template.classes(one.scene)}
         _count(one, kinds[one.scene], found)
     return found
 

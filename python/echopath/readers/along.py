@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
-from .model import Model, ModelNode
+from .model import Model
 from .played import PlayedCurve
 
 SAMPLES = 48          # poses of a loop, in which the way of the feet is measured
@@ -30,10 +30,9 @@ def model_along(model: Model, trajectory, way: float | None) -> Model:
     player = _Player(trajectory._track, period, way)
     nodes = [dataclasses.replace(node, motion=player.motion(node.motion), deformation=player.deformation(node.deformation))
              for node in model.nodes]
-    if abs(direction) > TURNED:
-        nodes = _below(nodes, -direction)
     note = f"its animation of {period:g} s is played once in {way:.3g} m of the trajectory"
-    return dataclasses.replace(model, nodes=tuple(nodes), motion=trajectory, notes=(*model.notes, note))
+    played = dataclasses.replace(model, nodes=tuple(nodes), motion=trajectory, notes=(*model.notes, note))
+    return played.placed(yaw=-direction) if abs(direction) > TURNED else played
 
 
 def _period_of(model: Model) -> float:
@@ -121,10 +120,3 @@ def _poses(model: Model, period: float):
     begin = -min(offsets)
     times = begin + period * np.linspace(0.0, 1.0 - 1e-9, SAMPLES + 1)
     return np.array([np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes]) for time in times])
-
-
-def _below(nodes: list[ModelNode], angle: float) -> list[ModelNode]:
-    """The nodes below one that is turned by an angle in rad about z."""
-    placement = np.eye(4)
-    placement[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
-    return [ModelNode("turned", placement=placement), *(dataclasses.replace(node, parent=node.parent + 1) for node in nodes)]

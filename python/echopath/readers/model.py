@@ -1,13 +1,14 @@
 """What a foreign file holds, in the axes and units of a scene."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from ..arguments.checks import anything, checked, real, vector
 from ..base.counts import counted
 
 if TYPE_CHECKING:
@@ -59,6 +60,21 @@ class Model:
     duration: float = 0.0
     notes: tuple[str, ...] = field(default=())
     motion: _core.Motion | None = None
+
+    @checked(self=anything, position=vector, yaw=real(unit="rad"))
+    def placed(self, *, position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0) -> Model:
+        """The model moved and turned in its own axes, so that it stands at its origin and looks along +x.
+
+        For files that have it elsewhere: what moves a model, such as a trajectory, carries its origin and turns about it.
+        position: [3] m, where what was the origin comes to be; yaw: rad about z (left positive), by which it is turned before
+        Returns a Model with one node more. Raises TypeError or ValueError naming the argument; warns (RuntimeWarning) of a yaw
+        beyond a turn, which looks like degrees.
+        """
+        from ..scene.placements import placement
+
+        _core.warn_of_turns(yaw)
+        above = ModelNode("placed", placement=placement(position, yaw, None))
+        return replace(self, nodes=(above, *(replace(node, parent=node.parent + 1) for node in self.nodes)))
 
     def along(self, trajectory: Trajectory, *, way: float | None = None) -> Model:
         """The model as it goes along a trajectory: its looped animation is played by the distance, and stops with it.

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from .. import actors
+from .. import _core, actors
 from ..actors.laid_line import usual_speed
 from ..arguments.checks import an, anything, array, checked, optional, real, refused, text
 from ..arguments.names import first_names
@@ -15,13 +15,14 @@ from ..arguments.objects import listed
 from ..arguments.shown import writable
 from ..base.counts import counted
 from ..base.made_by import made_by
-from ..readers.tree import fit_name
-from ..trajectories.kinds import takes, takes_kind, usual_kind
+from ..readers.model import Model
+from ..readers.names import fit_name, unique
+from ..trajectories.kinds import of_kind, usual_kind
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 
 ActorOf = Callable[[str, Trajectory], Any]
-ActorOfKinds = Mapping[str, ActorOf | str | None]
+ActorOfKinds = Mapping[str, ActorOf | Model | str | None]
 
 
 @made_by("ep.add_traffic")
@@ -89,20 +90,26 @@ def _is_maker(value) -> bool:
 
 
 def _maker_of_kinds(argument: str, makers: Mapping) -> ActorOf:
-    """The maker of a dict {glob of kinds: maker, name of an actor or None}."""
+    """The maker of a dict {glob of kinds: maker, model, name of an actor or None}."""
     found = []
     for glob, maker in makers.items():
         place = f"{argument}['{text(argument, glob)}']"
         if isinstance(maker, str):
             maker = _maker_by_name(place, maker)
+        elif isinstance(maker, Model):
+            maker = _always(maker)
         elif maker is not None and not _is_maker(maker):
-            raise refused(TypeError, place, "a callable (name, trajectory), the name of an actor, or None", maker)
+            raise refused(TypeError, place, "a callable (name, trajectory), a Model, the name of an actor, or None", maker)
         found.append((glob, maker))
 
     def made(name: str, trajectory: Trajectory):
-        maker = next((maker for glob, maker in found if takes_kind(glob, trajectory.kind)), usual_actor)
+        maker = of_kind(found, trajectory.kind, usual_actor)
         return None if maker is None else maker(name, trajectory)
     return made
+
+
+def _always(model: Model) -> ActorOf:
+    return lambda name, trajectory: model
 
 
 def _maker_by_name(argument: str, actor: str) -> ActorOf:
@@ -146,8 +153,9 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     actor_of: (name, trajectory) -> what Scene.add takes, such as `ep.actors.car(kind="suv", trajectory=trajectory)`; what does
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
         `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car. Or a dict {glob of kinds:
-        such a callable, the name of an actor, or None: no object}, of which the first that takes the kind counts, in whatever
-        case; kinds that none takes are as usual: `{"police*": "car", "tram*": None}`
+        such a callable, a Model, whose meshes all share, the name of an actor, or None: no object}, of which the first that
+        takes the kind counts, in whatever case; kinds that none takes are as usual:
+        `{"police*": ep.load_model("police.glb"), "taxi": "car", "tram*": None}`
     exclude: globs of names that are left out, such as the car that carries the radar; each must take one
     during: (begin, end) in s, outside of which nothing is of interest: who is on its way at no time of it is left out. None: all
     parent: full name of the object whose axes the trajectories are in; None: the world
@@ -160,12 +168,12 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     made = {name: _made(maker, name, one) for name, one in chosen_of(trajectories, list(exclude), during).items()}
     present = {name: actor for name, actor in made.items() if actor is not None}
     _require_new(scene, present, parent)
-    added = {}
+    above, added = _above(parent), {}
+    own_names = object_names(present, [name.removeprefix(above) for name in scene if name.startswith(above)])
     for name, actor in present.items():
         trajectory = trajectories[name]
         follows = getattr(actor, "motion", None) is not None
-        full_name = scene.add(actor, name=_free_name(scene, fit_name(name, "object"), parent), parent=parent,
-                              motion=None if follows else trajectory)
+        full_name = scene.add(actor, name=own_names[name], parent=parent, motion=None if follows else trajectory)
         added[full_name] = trajectory
     traffic = Traffic(scene, added)
     if time is not None:
@@ -176,12 +184,12 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
 def chosen_of(trajectories: Mapping[str, Trajectory], exclude: list[str], during) -> dict[str, Trajectory]:
     """Those that are not left out by their names or their times."""
     for glob in exclude:
-        if not any(takes(glob, name) for name in trajectories):
+        if not any(_core.glob_takes(glob, name) for name in trajectories):
             raise refused(ValueError, "exclude", f"globs of which each takes one of {first_names(list(trajectories)) or 'none'}",
                           glob)
     begin, end = during or (-math.inf, math.inf)
     return {name: one for name, one in trajectories.items()
-            if not any(takes(glob, name) for glob in exclude) and one.begin <= end and begin <= one.end}
+            if not any(_core.glob_takes(glob, name) for glob in exclude) and one.begin <= end and begin <= one.end}
 
 
 def _made(maker: ActorOf, name: str, trajectory: Trajectory):
@@ -194,8 +202,7 @@ def _made(maker: ActorOf, name: str, trajectory: Trajectory):
 
 def _require_new(scene, names, parent: str | None) -> None:
     """Raises ValueError where the scene has objects of these names already, such as those of a call before."""
-    above = f"{parent}/" if parent else ""
-    there = [name for name in names if above + fit_name(name, "object") in scene]
+    there = [name for name in names if _above(parent) + fit_name(name, "object") in scene]
     if there:
         whose = f"'{parent}'" if parent else "the scene"
         raise refused(ValueError, "trajectories", f"of names that {whose} does not have yet (scene.remove takes out what is "
@@ -210,10 +217,12 @@ def usual_actor(name: str, trajectory: Trajectory):
     return getattr(actors, actor)(trajectory=trajectory, **keywords)
 
 
-def _free_name(scene, name: str, parent: str | None) -> str:
-    """The name, or with a number behind it where it is taken."""
-    above, tried, count = f"{parent}/" if parent else "", name, 1
-    while above + tried in scene:
-        count += 1
-        tried = f"{name}_{count}"
-    return tried
+def object_names(names: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
+    """{name of a trajectory: that of its object}, numbered where names become alike, or like one that is taken."""
+    counts = dict.fromkeys(taken, 1)
+    return {name: unique(fit_name(name, "object"), counts) for name in names}
+
+
+def _above(parent: str | None) -> str:
+    """What stands before the names of the objects in the scene."""
+    return f"{parent}/" if parent else ""

@@ -62,10 +62,10 @@ def _way(argument: str, value):
     return value if value == "auto" else positive("m, or \"auto\"")(argument, value)
 
 
-class ObjectTable(Table):
-    name: Name = Field(description="its name in path expressions")
-    mesh: str | None = Field(None, description="OBJ, PLY, STL or OFF file, relative to the scene file")
-    model: str | None = Field(None, description="foreign scene or object, a file that load_model reads, likewise")
+class ModelKeys(Table):
+    """How a foreign file is read and played, where a table names one."""
+
+    model: str | None = Field(None, description="foreign scene or object, what load_model reads, relative to the scene file")
     unit: Positive | None = Field(None, description="m, length of one unit of mesh or model; none: 1, or as the model says")
     up: Literal["x", "y", "z"] | None = Field(None, description="vertical axis of the model; none: as it says")
     materials: dict[str, MaterialValue] = Field({}, description="names in the model, or patterns of them = material")
@@ -75,6 +75,12 @@ class ObjectTable(Table):
     frequency: Positive | None = Field(None, description="Hz, of the materials of a model by name; none: 77 GHz")
     way: Annotated[Any, by_check(_way)] | None = Field(
         None, description="m of the trajectory in which a looped animation is played once, \"auto\": as its feet or itself say")
+    smooth: bool | None = Field(None, description="the mesh stands for a curved surface; none: it does not, a model as it says")
+
+
+class ObjectTable(ModelKeys):
+    name: Name = Field(description="its name in path expressions")
+    mesh: str | None = Field(None, description="OBJ, PLY, STL or OFF file, relative to the scene file")
     actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
     group: bool = Field(False, description="true, instead: no shape of its own, it carries those that name it as parent")
     parameters: dict = Field({}, description="keywords of the actor")
@@ -89,7 +95,6 @@ class ObjectTable(Table):
     goes_on: GoesOn | None = Field(None, description="s, straight on before the begin and after the end of that; none: 0")
     outside: Outside | None = Field(None, description="likewise: it \"stands\" or is absent; none: absent")
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
-    smooth: bool | None = Field(None, description="the mesh stands for a curved surface; none: it does not, a model as it says")
     visible: bool = Field(True, description="false: it takes no part in anything until it is shown")
 
     @model_validator(mode="after")

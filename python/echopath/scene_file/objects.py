@@ -6,13 +6,12 @@ import math
 from pathlib import Path
 
 from .. import _core
-from ..readers import load_model
-from ..scene.materials import known_with, material_fields, materials
 from ..scene.scene import Scene
 from ..weather import Weather
 from .actors import actor_keywords, named_actor
 from .errors import blamed
-from .object_tables import MODEL_KEYS, ObjectTable
+from .models import material_of, model_along, model_of
+from .object_tables import ObjectTable
 from .schema import SceneTable
 from .trajectories import Trajectories
 
@@ -27,19 +26,6 @@ def motion_of(table, key: str):
                                     interpolation=table.interpolation)
 
 
-def _material(value, key: str):
-    """The material of an object: None, an ep.Material, or a known name (which must be known)."""
-    if value is None:
-        return None
-    with blamed(key):
-        if isinstance(value, str):
-            return materials[value]
-        given = value.model_dump(exclude_unset=True)
-        base = given.pop("base", None)
-        given = material_fields(given)
-        return known_with(base, **given) if base is not None else _core.Material(**given)
-
-
 def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
     scene = Scene(weather=None if settings.weather is None else Weather(**settings.weather.model_dump()))
     meshes_of_file = functools.cache(_core.load_meshes)  # objects that name one file share its meshes
@@ -47,7 +33,7 @@ def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
         key = f"objects[{index}]"
         placement = {"transform": table.transform} if table.transform is not None else {
             "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": math.radians(table.yaw_deg or 0.0)}
-        material = _material(table.material, f"{key}.material")
+        material = material_of(table.material, f"{key}.material")
         trajectory = trajectories.of(table, key)
         shape, material = _shape(table, folder, key, material, meshes_of_file, trajectory)
         motion = motion_of(table.motion, f"{key}.motion")
@@ -68,22 +54,10 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file,
             meshes = meshes_of_file(str(folder / table.mesh), unit=table.unit or 1.0)
         return (meshes[0][1] if len(meshes) == 1 else meshes), material
     if table.model is not None:
-        return _model(table, folder, key, trajectory), material
+        return model_along(model_of(table, folder, key), table, key, trajectory), material
     own = {}
     if material is not None and "material" in actor_keywords(table.actor, f"{key}.actor"):
         own["material"], material = material, None
     if trajectory is not None and "trajectory" in actor_keywords(table.actor, f"{key}.actor"):
         own["trajectory"] = trajectory
     return named_actor(table.actor, table.parameters, folder, key, **own), material
-
-
-def _model(table: ObjectTable, folder: Path, key: str, trajectory):
-    """The content of a foreign file; with a way, as it goes along its trajectory."""
-    settings = {name: getattr(table, name) for name in MODEL_KEYS if getattr(table, name) is not None}
-    settings["materials"] = {name: _material(value, f"{key}.materials.{name}") for name, value in table.materials.items()}
-    with blamed(f"{key}.model"):
-        model = load_model(folder / table.model, **settings)
-    if table.way is None:
-        return model
-    with blamed(f"{key}.way"):
-        return model.along(trajectory, way=None if table.way == "auto" else table.way)

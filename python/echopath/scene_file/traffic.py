@@ -2,17 +2,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..arguments.checks import refused
 from ..arguments.names import first_names
 from ..scene.scene import Scene
-from ..readers.names import fit_name
-from ..scene.traffic import add_traffic, chosen_of, following_actors
+from ..scene.traffic import add_traffic, chosen_of, object_names
 from ..trajectories import Trajectory, read_trajectories
-from ..trajectories.kinds import VEHICLES, takes_kind, usual_kind
-from .actors import actor_keywords, actor_maker, named_actor
+from ..trajectories.kinds import of_kind, usual_kind
 from .errors import ToldValueError, blamed
+from .traffic_shapes import TrafficShape, traffic_shape
 from .traffic_tables import TrafficTable
 
 
@@ -20,71 +20,62 @@ class TrafficFiles:
     """What the `[[traffic]]` of a scene file says: where everybody is over time, left out or not."""
 
     def __init__(self, tables: list[TrafficTable], folder: Path):
-        self._tables, self._folder = tables, folder
-        self._found = [_read(table, folder, f"traffic[{index}]") for index, table in enumerate(tables)]
+        self._files = [_File(table, folder, f"traffic[{index}]") for index, table in enumerate(tables)]
 
     def add_to(self, scene: Scene) -> None:
         """Puts an object for each trajectory that is not left out into the scene, under its name."""
-        for index, (table, found) in enumerate(zip(self._tables, self._found)):
-            key = f"traffic[{index}]"
-            makers = {glob: _maker(value, f"{key}.actors.{glob}", self._folder) for glob, value in table.actors.items()}
-            with blamed(key):
-                add_traffic(scene, found, actor_of=makers, exclude=table.exclude, during=table.during)
+        for file in self._files:
+            file.add_to(scene)
 
-    def objects(self) -> list[dict[str, str]]:
-        """{"name", "actor" and "kind", the type in the file} of each object that `add_to` puts into a scene."""
-        found = []
-        for table, trajectories in zip(self._tables, self._found):
-            for name, one in chosen_of(trajectories, table.exclude, table.during).items():
-                value = next((value for glob, value in table.actors.items() if takes_kind(glob, one.kind)),
-                             usual_kind(one.kind).actor)
-                if value is not False:
-                    actor = value if isinstance(value, str) else value.actor
-                    found.append({"name": fit_name(name, "object"), "actor": actor, "kind": one.kind})
+    def objects(self, others: Iterable[str] = ()) -> list[dict[str, str]]:
+        """{"name", "actor" and "kind", the type in the file} of each object that `add_to` puts into a scene of others.
+
+        A model counts as the actor that is usual for its types.
+        """
+        found: list[dict[str, str]] = []
+        for file in self._files:
+            found += file.objects([*others, *(one["name"] for one in found)])
         return found
 
     def of(self, name: str, key: str) -> Trajectory:
         """The trajectory of a name, of the first file that has it; key: that asks for it. Raises ValueError."""
-        for found in self._found:
-            if name in found:
-                return found[name]
-        names = [one for found in self._found for one in found]
+        for file in self._files:
+            if name in file.trajectories:
+                return file.trajectories[name]
+        names = [one for file in self._files for one in file.trajectories]
         raise refused(ToldValueError, key, f"an id of the [[traffic]], which has {first_names(names) or 'none'}", name)
 
 
-def _read(table: TrafficTable, folder: Path, key: str) -> dict[str, Trajectory]:
-    lengths = table.vehicle_length
-    if lengths is None or isinstance(lengths, dict):
-        lengths = (lengths or {}) | {glob: _length(value, f"{key}.actors.{glob}", folder) for glob, value in table.actors.items()
-                                     if glob not in (lengths or {})}
-    with blamed(key, file="file"):
-        return read_trajectories(folder / table.file, origin=table.origin, smoothing=table.smoothing,
-                                 vehicle_length=lengths, goes_on=table.goes_on, outside=table.outside,
-                                 position=table.position, yaw=math.radians(table.yaw_deg))
+class _File:
+    """One `[[traffic]]`; key: of its table."""
 
+    def __init__(self, table: TrafficTable, folder: Path, key: str):
+        self._table, self._key = table, key
+        self._shapes = {glob: traffic_shape(value, glob, f"{key}.actors.{glob}", folder) for glob, value in table.actors.items()}
+        with blamed(key, file="file"):
+            self.trajectories = read_trajectories(
+                folder / table.file, origin=table.origin, smoothing=table.smoothing, vehicle_length=self._vehicle_length(),
+                goes_on=table.goes_on, outside=table.outside, position=table.position, yaw=math.radians(table.yaw_deg))
 
-def _length(value, key: str, folder: Path) -> float:
-    """m, twice from the middle to the front of the actor of a value of `actors`; 0 of those whose middles files have."""
-    if value is False:
-        return 0.0
-    name, parameters = _actor_of(value, key)
-    scene = Scene()
-    scene.add(named_actor(name, parameters, folder, key), name="actor")
-    fronts = [float(scene.world_vertices(mesh.id, 0.0)[:, 0].max()) for mesh in scene.meshes]
-    return 2.0 * max(fronts) if name in VEHICLES else 0.0
+    def add_to(self, scene: Scene) -> None:
+        makers = {glob: shape.maker for glob, shape in self._shapes.items()}
+        with blamed(self._key):
+            add_traffic(scene, self.trajectories, actor_of=makers, exclude=self._table.exclude, during=self._table.during)
 
+    def objects(self, others: list[str]) -> list[dict[str, str]]:
+        chosen = chosen_of(self.trajectories, self._table.exclude, self._table.during)
+        actors = {name: self._actor(one.kind) for name, one in chosen.items()}
+        names = object_names([name for name, actor in actors.items() if actor], others)
+        return [{"name": names[name], "actor": actors[name], "kind": chosen[name].kind} for name in names]
 
-def _maker(value, key: str, folder: Path):
-    """What add_traffic takes for a value of `actors`."""
-    if value is False:
-        return None
-    make = actor_maker(*_actor_of(value, key), folder, key)
-    return lambda _, trajectory: make(trajectory=trajectory)
+    def _actor(self, kind: str) -> str:
+        """The actor of a type, "" for no object."""
+        shape: TrafficShape | None = of_kind(self._shapes.items(), kind, None)
+        return usual_kind(kind).actor if shape is None else shape.actor
 
-
-def _actor_of(value, key: str) -> tuple[str, dict]:
-    """(name, parameters) of a value of `actors` that is an actor. Raises ValueError for one that takes no trajectory."""
-    name, parameters, place = (value, {}, key) if isinstance(value, str) else (value.actor, value.parameters, f"{key}.actor")
-    if "trajectory" not in actor_keywords(name, place):
-        raise refused(ToldValueError, place, f"an actor that takes a trajectory ({', '.join(following_actors())})", name)
-    return name, parameters
+    def _vehicle_length(self):
+        """What read_trajectories takes: m of all vehicles, or of those by globs of their types."""
+        given = self._table.vehicle_length
+        if given is None or isinstance(given, dict):
+            return (given or {}) | {glob: shape.length for glob, shape in self._shapes.items() if glob not in (given or {})}
+        return given

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from ..trajectories.arguments import GOES_ON, Outside
 from ..trajectories.read import length_rule
+from .object_tables import ModelKeys
 from .table import Name, NotNegative, Number, Table, Vector3, broken_rule, by_check
 
 
@@ -15,14 +16,29 @@ class TrafficActorTable(Table):
     parameters: dict = Field({}, description="keywords of the actor")
 
 
+class TrafficModelTable(ModelKeys):
+    """A foreign file that goes along trajectories: its meshes are shared by all that are of the type."""
+
+    model: str = Field(description="a file that load_model reads, relative to the scene file")
+    position: Vector3 = Field((0.0, 0.0, 0.0), description="m, of its origin from the middle of what goes along, x ahead")
+    yaw_deg: Number = Field(0.0, description="degrees about z, so that it looks ahead")
+
+
+def _value_kind(value) -> str:
+    if isinstance(value, (str, bool)):
+        return "<name>" if isinstance(value, str) else "<none>"
+    is_model = isinstance(value, TrafficModelTable) or isinstance(value, dict) and "model" in value
+    return "<model>" if is_model else "<table>"
+
+
 TrafficActorValue = Annotated[
-    Annotated[str, Tag("<name>")] | Annotated[bool, Tag("<none>")] | Annotated[TrafficActorTable, Tag("<table>")],
-    Discriminator(lambda value: {str: "<name>", bool: "<none>"}.get(type(value), "<table>"))]
+    Annotated[str, Tag("<name>")] | Annotated[bool, Tag("<none>")] | Annotated[TrafficActorTable, Tag("<table>")] | Annotated[
+        TrafficModelTable, Tag("<model>")], Discriminator(_value_kind)]
 
 
 def _no_true(value):
     if value is True:
-        raise ValueError("must be the name of an actor, a table, or false: no object")
+        raise ValueError("must be the name of an actor, a table of an actor or a model, or false: no object")
     return value
 
 
@@ -33,7 +49,7 @@ class TrafficTable(Table):
         None, min_length=2, max_length=2,
         description="s, [begin, end]: who is on its way at no time of it is left out; none: all")
     actors: dict[Name, Annotated[TrafficActorValue, AfterValidator(_no_true)]] = Field(
-        {}, description="globs of the types of the file = actor, or false: no object; others as usual")
+        {}, description="globs of the types of the file = actor or model, or false: no object; others as usual")
     position: Vector3 = Field([0.0, 0.0, 0.0], description="m, of the origin of the file")
     yaw_deg: Number = Field(0.0, description="degrees about z, of the +x of the file")
     origin: list[Number] | None = Field(None, description="[latitude, longitude] in degrees, or with a height in m; none: the "

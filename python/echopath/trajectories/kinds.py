@@ -1,8 +1,12 @@
 """What moves along trajectories of files, by the words of its kind."""
 from __future__ import annotations
 
-import re
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple, TypeVar
+
+from .. import _core
+
+T = TypeVar("T")
 
 
 class Kind(NamedTuple):
@@ -27,15 +31,9 @@ _KINDS = {"truck": _TRUCK, "trailer": _TRUCK, "lorry": _TRUCK, "tram": _TRUCK, "
 VEHICLES = "bicycle", "car", "cyclist", "motorcycle", "truck", "van"  # actors whose fronts files have, not their middles
 
 
-def takes(glob: str, name: str) -> bool:
-    """Whether a glob means a name: '*' is any text, '?' one letter, all else itself."""
-    form = re.escape(glob).replace(r"\*", ".*").replace(r"\?", ".")
-    return re.fullmatch(form, name, re.DOTALL) is not None
-
-
-def takes_kind(glob: str, kind: str) -> bool:
-    """Whether a glob means a kind, in whatever case."""
-    return takes(glob.lower(), kind.lower())
+def of_kind(values: Iterable[tuple[str, T]], kind: str, usual: T) -> T:
+    """The value of the first glob that takes the kind, in whatever case; the usual one where none does."""
+    return next((value for glob, value in values if _core.glob_takes(glob.lower(), kind.lower())), usual)
 
 
 def usual_kind(name: str) -> Kind:

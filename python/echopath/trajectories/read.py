@@ -18,7 +18,7 @@ from ..base.counts import counted
 from .arguments import GOES_ON, Outside
 from .doubts import doubts_of
 from .geodesy import east_north_up
-from .kinds import takes_kind, usual_kind
+from .kinds import of_kind, usual_kind
 from .markup import PACKED, read_fcd, read_gpx
 from .samples import Samples, refuse
 from .smoothing import smoothed
@@ -125,7 +125,7 @@ class _Placement(NamedTuple):
 def _length_of(vehicle_length):
     """type -> m"""
     if isinstance(vehicle_length, Mapping):
-        return lambda kind: next((m for glob, m in vehicle_length.items() if takes_kind(glob, kind)), usual_kind(kind).length)
+        return lambda kind: of_kind(vehicle_length.items(), kind, usual_kind(kind).length)
     return lambda kind: usual_kind(kind).length if vehicle_length is None else vehicle_length
 
 

@@ -19,6 +19,10 @@ TEST(Glob, StarsCrossSlashesAndQuestionMarksAreOneCharacter) {
   EXPECT_TRUE(glob_takes("*", "a/b"));
   EXPECT_TRUE(glob_takes("street/*wheel", "street/car/left/wheel"));
   EXPECT_TRUE(glob_takes("arm_?", "arm_l"));
+  EXPECT_TRUE(glob_takes("b?ume", "bäume"));
+  EXPECT_TRUE(glob_takes("*?", "ä"));
+  EXPECT_FALSE(glob_takes("b??ume", "bäume"));
+  EXPECT_FALSE(glob_takes("*??", "ä"));
   EXPECT_TRUE(glob_takes("a*b*c", "aXbYbZc"));
   EXPECT_FALSE(glob_takes("a*b*c", "aXbYbZ"));
   EXPECT_FALSE(glob_takes("arm_?", "arm_"));

@@ -83,22 +83,24 @@ material = "metal"
 
 def test_classes_of_traffic_are_told_by_its_types(tmp_path):
     rows = [f'<vehicle id="{name}" type="{kind}" x="{{0}}" y="{10 * place}" angle="90"/>' for place, (name, kind) in enumerate(
-        {"ego": "passenger", "a/1": "pt_bus", "b": "truck_heavy", "c": "bike", "d": "tram", "e": "taxi", "f": "x"}.items())]
+        {"ego": "passenger", "a/1": "pt_bus", "b": "truck_heavy", "c": "bike", "d": "tram", "e": "taxi", "f": "x", "a*1": "bike"}.items())]
     steps = "".join(f'<timestep time="{time}">{"".join(rows).format(5 * time)}</timestep>' for time in (0, 1))
     (tmp_path / "fcd.xml").write_text(f"<fcd-export>{steps}</fcd-export>")
+    (tmp_path / "taxi.obj").write_text("v -2.15 0 0\nv 2.15 -1 0\nv 2.15 1 0\nf 1 2 3\n")
     traffic = """
 [[traffic]]
 file = "fcd.xml"
 exclude = ["ego"]
-actors = {x = false, truck_heavy = "van"}
+actors = {x = false, truck_heavy = "van", taxi = {model = "taxi.obj"}}
 position = [{uniform = [20.0, 30.0]}, 0.0, 0.0]
 """
     path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + traffic + SCENE)
     template = dataset.Template(path)
     known = classes_of(template.objects(1), {})
-    assert {name: known[name] for name in ("a_1", "b", "c", "d", "e")} == {
-        "a_1": "bus", "b": "van", "c": "cyclist", "d": "train", "e": "car"}
+    assert {name: known[name] for name in ("a_1", "a_1_2", "b", "c", "d", "e")} == {
+        "a_1": "bus", "a_1_2": "cyclist", "b": "van", "c": "cyclist", "d": "train", "e": "car"}
     assert not {"ego", "f"} & set(known)
+    assert set(known) == {name for name in template.scene_file(1).scene if "/" not in name}
     begins = [template.scene_file(number).scene["e"].motion.at(0.0)[0, 3] for number in (0, 1)]
     assert all(20.0 < begin + 2.15 < 30.0 for begin in begins) and begins[0] != begins[1]  # by the front of a car of 4.3 m
 

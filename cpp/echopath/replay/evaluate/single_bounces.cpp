@@ -42,6 +42,8 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
   if (plan.single_bounces.empty()) return;
   sort_by_mesh(plan);
   set_antennas(nodes);
+  scale_[SingleBounceSlots::kCoherent] = radio.coherent_scale();
+  scale_[SingleBounceSlots::kDiffuse] = radio.diffuse_scale();
   const size_t num_nodes = nodes.size();
   out_.resize(channels.nodes.size() * num_nodes * SingleBouncesToEvaluate::kNumRows * kSlots);
   const size_t num_legs = SingleBouncesToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
@@ -80,7 +82,7 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
       see_antennas(mesh_id, preparer, nodes);
       if (axes) see_axes(mesh_id, preparer, nodes);
     }
-    set_slots(points, preparer, radio);
+    set_slots(points, preparer);
     kernels.prepare(trace_, slots_);
     work_.has_coherent &= wanted.with_amplitudes;
     kernels.evaluate(work_);
@@ -172,14 +174,14 @@ void SingleBounceEvaluation::set_mesh(uint32_t mesh_id, const PathPreparer& prep
 }
 
 // Slots behind the last point repeat the last point.
-void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio) {
+void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& preparer) {
   const Paths& paths = preparer.paths();
   const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
   work_.has_coherent = false;
   for (size_t slot = 0; slot < kSlots; ++slot) {
     const SharedLegPlan::SingleBounce& point = *points[std::min(slot, points.size() - 1)];
     set_triangle(*point.hit, mesh, slot, slots_);
-    set_weights(point, slot, paths, radio);
+    set_weights(point, slot, paths);
     const int64_t coherent = point.path[SingleBounceSlots::kCoherent];
     const bool is_coherent = coherent != SharedLegPlan::SingleBounce::kNoPath;
     work_.has_coherent |= is_coherent;
@@ -188,13 +190,11 @@ void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& prepar
 }
 
 // Polarised paths between upright antennas need only one entry of their matrix.
-void SingleBounceEvaluation::set_weights(const SharedLegPlan::SingleBounce& point, size_t slot, const Paths& paths,
-                                         const RadioConstants& radio) {
-  const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
+void SingleBounceEvaluation::set_weights(const SharedLegPlan::SingleBounce& point, size_t slot, const Paths& paths) {
   for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
     const bool is_there = point.has_path(kind);
     const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);
-    const std::complex<double> weight = is_there ? scale[kind] * weight_of(paths, path) : 0.0;
+    const std::complex<double> weight = is_there ? scale_[kind] * weight_of(paths, path) : 0.0;
     const auto set = [&](SingleBounceSlots::Row* rows, std::complex<double> value) {
       rows[0][slot] = value.real();
       rows[1][slot] = value.imag();

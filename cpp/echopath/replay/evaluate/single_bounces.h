@@ -30,8 +30,8 @@ class SingleBounceEvaluation {
   void see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
   void see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
   void set_mesh(uint32_t mesh_id, const PathPreparer& preparer);
-  void set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio);
-  void set_weights(const SharedLegPlan::SingleBounce& point, size_t slot, const Paths& paths, const RadioConstants& radio);
+  void set_slots(Points points, const PathPreparer& preparer);
+  void set_weights(const SharedLegPlan::SingleBounce& point, size_t slot, const Paths& paths);
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;
   void mark_turned(Points points, uint8_t* turned) const;
@@ -42,6 +42,7 @@ class SingleBounceEvaluation {
   std::vector<SingleBounceAntenna> antennas_[2];  // of transmitters, of receivers
   NodeRows seen_[2];                              // [antenna] as seen from the mesh in hand
   NodeRows axes_;                                 // of the world, as seen from the mesh; where polarisations need them
+  double scale_[SingleBounceSlots::kNumKinds];    // of the amplitudes of a kind (RadioConstants)
   SingleBounceTrace trace_;
   SingleBounceSlots slots_;
   SingleBouncesToEvaluate work_;

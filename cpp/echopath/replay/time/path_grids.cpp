@@ -57,6 +57,7 @@ PathGrids::PathGrids(const Paths& paths, const Radar& radar, TimeGrids& grids, P
     const bool moves = paths.scene->is_moving(id) || radar.motion;
     of_mesh_.push_back(moves ? first_of_mesh(id, turn_rate(*paths.scene, id, frame) + of_radar, posed) : GridIndex::still());
   }
+  are_cuts_of_radar_ = std::ranges::all_of(of_mesh_, [](GridIndex grid) { return grid.cuts() == MotionCuts::kOfRadar; });
   join_cuts(grids);
 }
 
@@ -108,9 +109,13 @@ bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
 }
 
 GridIndex PathGrids::first(int64_t path) const {
-  const GridIndex least = radar_moves_ ? GridIndex::polynomial(0) : GridIndex::still();
+  GridIndex first = radar_moves_ ? GridIndex::polynomial(0) : GridIndex::still();
+  if (are_cuts_of_radar_) {
+    visit_grids(path, [&](GridIndex grid) { first = std::max(first, grid); });
+    return first;
+  }
   const Range range = range_of(path);
-  return std::max(least, range.has_one_set_of_cuts() ? range.most : first_in_joined_cuts(path));
+  return std::max(first, range.has_one_set_of_cuts() ? range.most : first_in_joined_cuts(path));
 }
 
 void PathGrids::first(int64_t begin, std::span<GridIndex> first) const {
@@ -118,11 +123,18 @@ void PathGrids::first(int64_t begin, std::span<GridIndex> first) const {
 }
 
 PathGrids::Range PathGrids::range_of(int64_t path) const {
+  const GridIndex of_first = of_mesh_[paths_.hits_of(path)->mesh_id];
+  Range range{of_first, of_first};
+  visit_grids(path, [&](GridIndex grid) { range = {std::min(range.least, grid), std::max(range.most, grid)}; });
+  return range;
+}
+
+// Calls add for the grid of each mesh that the path meets, of some more than once.
+template <class Add>
+void PathGrids::visit_grids(int64_t path, const Add& add) const {
   const GridIndex* const of_mesh = of_mesh_.data();
   const Hit* const hits = paths_.hits_of(path);
   const int num_hits = paths_.num_bounces[path];
-  Range range{of_mesh[hits[0].mesh_id], of_mesh[hits[0].mesh_id]};
-  const auto add = [&](GridIndex grid) { range = {std::min(range.least, grid), std::max(range.most, grid)}; };
   // Most paths have one to four hits, and a branch on the number would be mispredicted: so the last hit is read again in
   // place of those that are missing.
   for (int k = 0; k < num_hits; k += 4) {
@@ -131,7 +143,6 @@ PathGrids::Range PathGrids::range_of(int64_t path) const {
   if (!paths_.passes.empty()) {
     for (const Pass& pass : paths_.passes_of(path)) add(of_mesh[pass.hit.mesh_id]);
   }
-  return range;
 }
 
 // Finds the grid of a path over meshes with several sets of cuts.

@@ -46,6 +46,8 @@ class PathGrids {
   GridIndex first_in_joined_cuts(int64_t path) const;
   struct Range;
   Range range_of(int64_t path) const;
+  template <class Add>
+  void visit_grids(int64_t path, const Add& add) const;
 
   const Paths& paths_;
   const TimeGrids& grids_;
@@ -53,6 +55,7 @@ class PathGrids {
   int num_chirps_;
   bool radar_moves_;
   std::vector<GridIndex> of_mesh_;  // by mesh ID: the first that follows its motion
+  bool are_cuts_of_radar_ = true;   // those of all meshes
 };
 
 }  // namespace echopath

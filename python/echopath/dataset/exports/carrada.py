@@ -15,7 +15,6 @@ from ...arguments.checks import path as folder_rule
 from ...arguments.settings import LabelSettings
 from ...base.files import write_texts, written_whole
 from ...frame.frame import Frame
-from ..classes import classes_of
 from ..opened import Dataset, dataset_rule
 from . import exported
 from .carrada_views import NUM_ANGLES, NUM_RANGES, NUM_VELOCITIES, Instance, instances_of, one_hot, views_of
@@ -82,8 +81,7 @@ def _require(dataset: Dataset) -> None:
 
 def _written_frames(dataset: Dataset, scene: int, folder: Path) -> Iterator[tuple[str, _Annotations]]:
     """Writes the arrays of a scene's frames; yields the name and the annotations of each."""
-    template = dataset.template
-    kinds = classes_of(template.objects(scene), template.settings.classes)
+    kinds = dataset.template.classes(scene)
     told = dataset.sequence(scene).settings["labels"] or {}
     margins = LabelSettings(**{name: told[name] for name in _MARGINS if name in told})
     for one in dataset.of_scene(scene):

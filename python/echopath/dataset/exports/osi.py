@@ -14,7 +14,6 @@ from ...base.antennas import middle_of_antennas
 from ...base.files import written_whole
 from ...base.libraries import needed_module
 from ...detections.detections import Detections
-from ..classes import classes_of
 from ..opened import Dataset, dataset_rule
 from . import are_echoes, cross_sections_dbsm, detections_of, exported
 
@@ -98,9 +97,8 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
 
 def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
     """{name: place} of the road users among the objects of a scene."""
-    objects = dataset.template.objects(scene)
-    kinds = classes_of(objects, dataset.template.settings.classes)
-    return {one["name"]: place for place, one in enumerate(objects) if kinds[one["name"]] != "static"}
+    classes = dataset.template.classes(scene)
+    return {name: place for place, (name, kind) in enumerate(classes.items()) if kind != "static"}
 
 
 def _add_detections(radar: Any, found: Detections, cross_sections: np.ndarray, numbers: dict[str, int]) -> None:

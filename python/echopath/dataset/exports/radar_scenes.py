@@ -21,7 +21,7 @@ from ...base.files import write_texts, written_whole
 from ...base.rates import radar_rate
 from ...detections.detections import Detections
 from ...frame_file.h5 import writing
-from ..classes import CODES, classes_of
+from ..classes import CODES
 from ..opened import Dataset, dataset_rule
 from . import are_echoes, cross_sections_dbsm, detections_of, exported
 
@@ -99,7 +99,7 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, senso
     """Writes one scene of the sensor of a number; returns what sequences.json says of it."""
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
-    classes = classes_of(template.objects(scene), template.settings.classes)
+    classes = template.classes(scene)
     frames = dataset.of_scene(scene)
     points, odometry = [], np.zeros(len(frames), ODOMETRY)
     for row, one in enumerate(frames):

@@ -14,12 +14,12 @@ from ...base.golden import golden_place
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
-from ...scene_file.traffic import TrafficFiles
 from ...scene_file.schema import SceneTable
 from ...scene_file.table import Positive, Table
+from ...scene_file.traffic import TrafficFiles
 from ...sequence import Sequence
 from ...sequence.keep import Keep
-from ..classes import ClassName
+from ..classes import ClassName, classes_of
 from .drawing import Drawing, DrawnObjects
 from .faults import Faults
 
@@ -79,7 +79,7 @@ class Template:
             raise self._faults.told(error) from None
         self._objects = scene.pop("objects", [])
         self._rest = scene
-        self._traffic: dict[str, list[dict[str, str]]] = {}  # objects of the traffic as it was drawn last
+        self._traffic: dict[str, TrafficFiles] = {}  # as it was drawn last
 
     def __repr__(self) -> str:
         made = self.settings
@@ -112,8 +112,13 @@ class Template:
         told = repr(scene.table["traffic"])
         if told not in self._traffic:  # alike in all scenes, mostly
             with self._faults.of(number, scene.table):
-                self._traffic = {told: TrafficFiles(validated(SceneTable, scene.table).traffic, self.folder).objects()}
-        return scene.table["objects"] + self._traffic[told]
+                self._traffic = {told: TrafficFiles(validated(SceneTable, scene.table).traffic, self.folder)}
+        objects = scene.table["objects"]
+        return objects + self._traffic[told].objects(one["name"] for one in objects)
+
+    def classes(self, number: int) -> dict[str, ClassName]:
+        """{name: class} of the objects of scene `number`, by the template's `classes`, else by actors. Raises as `draw`."""
+        return classes_of(self.objects(number), self.settings.classes)
 
     def split_of(self, number: int) -> str:
         """The name of the split that scene `number` (from 0) belongs to. Raises nothing.

@@ -225,7 +225,7 @@ def test_persons_are_not_there_while_they_ride_in_a_vehicle(tmp_path):
     ("", "vehicle_length = -1", r"traffic\[0\].vehicle_length: must be a finite number from 0 to 100 m, got -1"),
     ("", 'actors = {bus = "buss"}', r"traffic\[0\].actors.bus: unknown actor 'buss'"),
     ("", 'actors = {bus = "tree"}', r"traffic\[0\].actors.bus: must be an actor that takes a trajectory .*, got 'tree'"),
-    ("", "actors = {bus = true}", r"traffic\[0\].actors.bus: must be the name of an actor, a table, or false: no object"),
+    ("", "actors = {bus = true}", r"traffic\[0\].actors.bus: must be the name of an actor, a table of an actor or a model, or false: no object"),
     ("", 'actors = {bus = {actor = "van", parameters = {kin = "large"}}}',
      r"traffic\[0\].actors.bus.parameters.kin: unknown key; did you mean 'kind'"),
     ("", 'actors = {bus = {actor = "van", parameters = {kind = "huge"}}}', r"traffic\[0\].actors.bus.parameters: kind: must be"),

@@ -82,8 +82,10 @@ material = "metal"
 
 
 def test_classes_of_traffic_are_told_by_its_types(tmp_path):
-    rows = [f'<vehicle id="{name}" type="{kind}" x="{{0}}" y="{10 * place}" angle="90"/>' for place, (name, kind) in enumerate(
-        {"ego": "passenger", "a/1": "pt_bus", "b": "truck_heavy", "c": "bike", "d": "tram", "e": "taxi", "f": "x", "a*1": "bike"}.items())]
+    kinds = {"ego": "passenger", "a/1": "pt_bus", "b": "truck_heavy", "c": "bike", "d": "tram", "e": "taxi", "f": "x",
+             "a*1": "bike"}
+    rows = [f'<vehicle id="{name}" type="{kind}" x="{{0}}" y="{10 * place}" angle="90"/>'
+            for place, (name, kind) in enumerate(kinds.items())]
     steps = "".join(f'<timestep time="{time}">{"".join(rows).format(5 * time)}</timestep>' for time in (0, 1))
     (tmp_path / "fcd.xml").write_text(f"<fcd-export>{steps}</fcd-export>")
     (tmp_path / "taxi.obj").write_text("v -2.15 0 0\nv 2.15 -1 0\nv 2.15 1 0\nf 1 2 3\n")

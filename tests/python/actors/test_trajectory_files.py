@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 import echopath as ep
 from echopath.trajectories.geodesy import east_north_up
@@ -317,20 +318,7 @@ def test_wrong_arguments_of_traffic_are_named(argument, value):
         ep.add_traffic(**right | {argument: value})
 
 
-SCENE = """
-[radar]
-trajectory = {points = [[0, 0, 1], [30, 0, 1]], speed = 5}
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 20e6
-num_chirps = 16
-chirp_interval = 60e-6
-[[radar.transmitters]]
-position = [0, 0, 0]
-[[radar.receivers]]
-position = [0, 0, 0]
+SCENE = "[radar]\ntrajectory = {points = [[0, 0, 1], [30, 0, 1]], speed = 5}" + WAVEFORM + ANTENNAS + """
 [[objects]]
 name = "box"
 actor = "box"

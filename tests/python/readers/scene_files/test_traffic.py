@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 import echopath as ep
 
@@ -45,19 +46,7 @@ def fcd() -> str:
     return f"<fcd-export>{text}</timestep></fcd-export>"
 
 
-SCENE = """
-[radar]
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 20e6
-num_chirps = 16
-chirp_interval = 60e-6
-[[radar.transmitters]]
-position = [0, 0, 0]
-[[radar.receivers]]
-position = [0, 0, 0]
+SCENE = "[radar]\n" + WAVEFORM + ANTENNAS + """
 [[objects]]
 name = "ground"
 actor = "ground"

@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 import echopath as ep
 
@@ -32,19 +33,7 @@ def fcd() -> str:
     return "".join(f'<timestep time="{time}">{rows(time)}</timestep>' for time in STEP * np.arange(5))
 
 
-SCENE = """
-[radar]
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 20e6
-num_chirps = 16
-chirp_interval = 60e-6
-[[radar.transmitters]]
-position = [0, 0, 0]
-[[radar.receivers]]
-position = [0, 0, 0]
+SCENE = WAVEFORM + ANTENNAS + """
 [[traffic]]
 file = "fcd.xml"
 """

@@ -1,7 +1,8 @@
 """How much longer this machine takes than the one that limits in seconds are stated for, by a program of others: FINUFFT.
 
 Rented and shared machines differ by a factor of three, and one of them by a half from hour to hour. The transform is one of
-those that `echopath bench speed` sets beside our synthesis, and its time on the reference machine is the one in README.md.
+those that `echopath bench speed` sets beside our synthesis, and its time on the reference machine is the one in
+python/docs/measurements.md.
 """
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from echopath.bench.physics import DEFAULT, Variant, _point, _slope, plate_pairs
 from echopath.bench.physics.report import describe
 from echopath.cli import main
 
-MULTI_BOUNCE_DB = 0.2   # what the README promises of corners
+MULTI_BOUNCE_DB = 0.2   # what python/docs/measurements.md promises of corners
 MEAN_DB = 0.1           # mean power of diffuse targets and mirrors
 PLATE_DB = 0.3          # beyond the first null
 INTEGRAL = 1e-5    # relative: a sum of 4000 points, and a radar at 1 km

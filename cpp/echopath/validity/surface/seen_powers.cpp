@@ -10,8 +10,11 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kSearchRays = 1 << 17;      // over all times and antennas
-constexpr int64_t kMinSearchRays = 1 << 12;   // of one look
+// Rays of the search over all times and antennas: some for each ray of the record, than which it need not know surface
+// much better.
+constexpr int64_t kSearchRaysPerRay = 2;
+constexpr int64_t kLeastSearchRays = 1 << 14, kMostSearchRays = 1 << 17;
+constexpr int64_t kLeastRaysOfLook = 1 << 12;
 constexpr uint64_t kSearchSeed = 0x6c6f6f6b;  // combined with the trace's seed, so that the lattice differs from the trace's
 
 // Holds what one look sees of an object: everything, and new surface.
@@ -64,8 +67,9 @@ std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& ra
   const auto num_base = static_cast<size_t>(check.times().num_base);
   const size_t num_pairs = check.num_antenna_pairs();
   SurfaceSearchSettings look;
-  look.num_rays =
-      std::max(kMinSearchRays, kSearchRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * times.size())));
+  const int64_t num_looks = std::max<int64_t>(1, static_cast<int64_t>(num_pairs * times.size()));
+  const int64_t num_wanted = kSearchRaysPerRay * settings_like(paths.frame).num_rays;
+  look.num_rays = std::max(kLeastRaysOfLook, std::clamp(num_wanted, kLeastSearchRays, kMostSearchRays) / num_looks);
   look.seed = paths.frame.seed ^ kSearchSeed;
   const BandSum::Band band(radar.waveform);
   KeptGeometry then, now;

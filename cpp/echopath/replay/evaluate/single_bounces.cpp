@@ -41,11 +41,29 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
                                         const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
   if (plan.single_bounces.empty()) return;
   sort_by_mesh(plan);
+  begin(preparer, nodes, radio, channels);
+  const SingleBounceKernels& kernels = single_bounce_kernels(work_.stride);
+  for (size_t first = 0; first < sorted_.size();) {
+    const Points points = next_points(first);
+    const uint32_t mesh_id = points.front()->hit->mesh_id;
+    if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) enter_mesh(mesh_id, preparer, nodes);
+    set_slots(points, preparer);
+    kernels.prepare(trace_, slots_);
+    work_.has_coherent &= wanted.with_amplitudes;
+    kernels.evaluate(work_);
+    put_all(points, channels, wanted);
+    first += points.size();
+  }
+}
+
+// Sets what all points share.
+void SingleBounceEvaluation::begin(const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
+                                   const ChannelSpan& channels) {
   set_antennas(nodes);
   scale_[SingleBounceSlots::kCoherent] = radio.coherent_scale();
   scale_[SingleBounceSlots::kDiffuse] = radio.diffuse_scale();
   const size_t num_nodes = nodes.size();
-  out_.resize(channels.nodes.size() * num_nodes * SingleBouncesToEvaluate::kNumRows * kSlots);
+  out_.resize(channels.nodes.size() * num_nodes * kOfNode);
   const size_t num_legs = SingleBouncesToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
   legs_.resize(num_legs * SingleBouncesToEvaluate::kNumLegRows * kSlots);
   double* axes = nullptr;  // of the world, as seen from the mesh, where polarisations need them
@@ -70,30 +88,32 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
            turned_,
            radio.mirror_scale(),
            unfiltered_};
-  const SingleBounceKernels& kernels = single_bounce_kernels(work_.stride);
-  for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
-    const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
-    count = 1;
-    while (count < kSlots && first + count < sorted_.size() && sorted_[first + count]->hit->mesh_id == mesh_id) ++count;
-    const Points points(sorted_.data() + first, count);
-    if (first == 0 || sorted_[first - 1]->hit->mesh_id != mesh_id) {
-      set_mesh(mesh_id, preparer);
-      work_.facet_area = preparer.facet_area(mesh_id);
-      see_antennas(mesh_id, preparer, nodes);
-      if (axes) see_axes(mesh_id, preparer, nodes);
-    }
-    set_slots(points, preparer);
-    kernels.prepare(trace_, slots_);
-    work_.has_coherent &= wanted.with_amplitudes;
-    kernels.evaluate(work_);
-    const double* values = out_.data();
-    for (const ChannelNodes& to : channels.nodes) {
-      put(points, to, values);
-      values += num_nodes * kOfNode;
-    }
-    if (wanted.turned) mark_turned(points, wanted.turned);
-    if (wanted.unfiltered) mark_unfiltered(points, wanted.unfiltered);
+}
+
+// Returns the points from `first` on that are evaluated together: those of one mesh, as many as there are slots.
+SingleBounceEvaluation::Points SingleBounceEvaluation::next_points(size_t first) const {
+  size_t count = 1;
+  while (count < kSlots && first + count < sorted_.size() &&
+         sorted_[first + count]->hit->mesh_id == sorted_[first]->hit->mesh_id)
+    ++count;
+  return {sorted_.data() + first, count};
+}
+
+void SingleBounceEvaluation::enter_mesh(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes) {
+  set_mesh(mesh_id, preparer);
+  work_.facet_area = preparer.facet_area(mesh_id);
+  see_antennas(mesh_id, preparer, nodes);
+  if (work_.axes) see_axes(mesh_id, preparer, nodes);
+}
+
+void SingleBounceEvaluation::put_all(Points points, const ChannelSpan& channels, const Wanted& wanted) const {
+  const double* values = out_.data();
+  for (const ChannelNodes& to : channels.nodes) {
+    put(points, to, values);
+    values += work_.num_nodes * kOfNode;
   }
+  if (wanted.turned) mark_turned(points, wanted.turned);
+  if (wanted.unfiltered) mark_unfiltered(points, wanted.unfiltered);
 }
 
 void SingleBounceEvaluation::sort_by_mesh(const SharedLegPlan& plan) {

@@ -25,6 +25,11 @@ class SingleBounceEvaluation {
  private:
   using Points = std::span<const SharedLegPlan::SingleBounce* const>;
   void sort_by_mesh(const SharedLegPlan& plan);
+  void begin(const PathPreparer& preparer, const PosedNodes& nodes, const RadioConstants& radio,
+             const ChannelSpan& channels);
+  Points next_points(size_t first) const;
+  void enter_mesh(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
+  void put_all(Points points, const ChannelSpan& channels, const Wanted& wanted) const;
   void set_antennas(const PosedNodes& nodes);
   bool is_monostatic(const PosedNodes& nodes) const;
   void see_antennas(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);

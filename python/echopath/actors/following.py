@@ -1,6 +1,7 @@
 """How actors follow a trajectory: wheels that roll its way, parts that move as a function of time."""
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -41,37 +42,87 @@ class Rolling:
     ahead: float = 0.0
 
 
-def rolling_along(trajectory: Trajectory, radius: float, *, y: float = 0.0, wheelbase: float | None = None):
-    """The CurveMotion of a wheel of a `radius` in m that rolls as the trajectory of its vehicle goes, about its own place.
+class Wheels:
+    """The wheels of what goes along a trajectory: how it goes is worked out once for all that ask for nearly the same times.
 
-    y: m, of the wheel to the left of the vehicle's middle, by which its way differs in curves; wheelbase: m, of a wheel that
-    steers, None: it does not
+    junctions: s, where the rolling is not smooth
     """
-    track = trajectory._track
-    rolling = Rolling(track.rolled(), track.yaws)
-    return _core.CurveMotion(rotation=roll(trajectory, rolling, radius, y=y, wheelbase=wheelbase, junctions=track.junctions()))
 
+    def __init__(self, trajectory: Trajectory, rolling: Rolling, junctions):
+        self._track, self._rolling, self._junctions = trajectory._track, rolling, junctions
+        self._ways: dict[float | None, tuple] = {}
+        self._yaw_at_begin = rolling.yaw(np.array([rolling.rolled.begin]))[0][0]
 
-def roll(trajectory: Trajectory, rolling: Rolling, radius: float, *, y: float, wheelbase: float | None, junctions):
-    """The Curve of the rotations of a wheel; radius, y, wheelbase as of rolling_along; junctions: s, where all is not smooth."""
-    track, rolled = trajectory._track, rolling.rolled
-    yaw_at_begin = rolling.yaw(np.array([rolled.begin]))[0][0]
+    def curve(self, radius: float, *, y: float = 0.0, wheelbase: float | None = None) -> _core.Curve:
+        """The Curve of the rotations of a wheel of a `radius` in m that rolls about its own place.
 
-    def rotation(times):
-        way, speed, _ = rolled.at(times)
-        yaw, yaw_rate = rolling.yaw(times)
-        angle, rate = (way - y * (yaw - yaw_at_begin)) / radius, (speed - y * yaw_rate) / radius
-        steer, steer_rate = (0.0 * way, 0.0 * way) if wheelbase is None else _steering(track, times, wheelbase, rolling.ahead)
+        y: m, of the wheel to the left of the vehicle's middle, by which its way differs in curves; wheelbase: m, of a wheel
+        that steers, None: it does not
+        """
+        if wheelbase not in self._ways:
+            self._ways[wheelbase] = Repeated(lambda times: self._way(times, wheelbase)), self._junctions_of(wheelbase)
+        repeated, junctions = self._ways[wheelbase]
+        ways = repeated.anew()
+
+        def rotation(times):
+            way, speed, yaw, yaw_rate, steer, steer_rate = ways(times)
+            return turned(steer, steer_rate, (way - y * (yaw - self._yaw_at_begin)) / radius, (speed - y * yaw_rate) / radius)
+        return curve_through(rotation, junctions, WHEEL_TOLERANCE)
+
+    def _way(self, times, wheelbase: float | None):
+        """[6, N]: way in m, yaw and angle of a wheel that steers in rad at times [N] in s, and the rate of each behind it."""
+        rolling = self._rolling
+        way, speed, _ = rolling.rolled.at(times)
+        steer, steer_rate = np.zeros((2, len(way)))
+        if wheelbase is not None:
+            steer, steer_rate = _steering(self._track, times, wheelbase, rolling.ahead)
         if rolling.turn is not None:
             turn, turn_rate = rolling.turn(times)
             steer, steer_rate = steer + turn, steer_rate + turn_rate
-        return turned(steer, steer_rate, angle, rate)
+        return np.stack([way, speed, *rolling.yaw(times), steer, steer_rate])
 
-    if wheelbase is not None:
-        near = np.concatenate([track.path.junctions - STEERING_WAY, track.path.junctions + STEERING_WAY]) - rolling.ahead
+    def _junctions_of(self, wheelbase: float | None):
+        """Times in s at which wheels do not turn smoothly."""
+        if wheelbase is None:
+            return self._junctions
+        track = self._track
+        near = np.concatenate([track.path.junctions - STEERING_WAY, track.path.junctions + STEERING_WAY]) - self._rolling.ahead
         ends = track.profile.at(np.array([track.profile.begin, track.profile.end]))[0]
-        junctions = np.concatenate([junctions, track.time_at(near[(near > ends[0]) & (near < ends[1])])])
-    return curve_through(rotation, junctions, WHEEL_TOLERANCE)
+        return np.concatenate([self._junctions, track.time_at(near[(near > ends[0]) & (near < ends[1])])])
+
+
+class Repeated:
+    """A function of times that one after the other asks for, call by call at nearly the same times: the first one's are kept.
+
+    function: times [N] -> values [C, N], each of its own time alone
+    """
+
+    def __init__(self, function: Callable):
+        self._function = function
+        self._kept: list[tuple] = []       # of each call: times, ascending, and values
+
+    def anew(self) -> Callable:
+        """The function for the next one that asks."""
+        calls = itertools.count()
+        return lambda times: self._at(next(calls), times)
+
+    def _at(self, call: int, times):
+        if call == len(self._kept):
+            values = self._function(times)
+            order = np.argsort(times)
+            self._kept.append((times[order], values[:, order]))
+            return values
+        known, values = self._kept[call]
+        place = np.minimum(np.searchsorted(known, times), len(known) - 1)
+        found, is_new = values[:, place], known[place] != times
+        found[:, is_new] = self._function(times[is_new])
+        return found
+
+
+def wheels_along(trajectory: Trajectory) -> Wheels:
+    """The Wheels of a vehicle that is carried by its trajectory."""
+    track = trajectory._track
+    return Wheels(trajectory, Rolling(track.rolled(), track.yaws), track.junctions())
 
 
 def turned(yaw, yaw_rate, angle=0.0, rate=0.0):

@@ -29,18 +29,17 @@ def curve_through(function: Function, junctions, tolerance: float) -> _core.Curv
     which it need not be smooth
     """
     begins, ends = _intervals(np.unique(np.asarray(junctions, float)))
-    done: list[np.ndarray] = []
+    done: list[list[np.ndarray]] = []
     while len(begins):
-        is_good = _are_good(function, begins, ends, tolerance) | (ends - begins < SHORTEST)
-        done.append(np.stack([begins[is_good], ends[is_good]]))
+        cubics, is_good = _tried(function, begins, ends, tolerance)
+        is_good |= ends - begins < SHORTEST
+        done.append([one[is_good] for one in (begins, ends, *cubics)])
         begins, ends = begins[~is_good], ends[~is_good]
         cuts = _cuts(begins, ends)
         begins, ends = np.concatenate([begins, cuts]), np.concatenate([cuts, ends])
         if len(begins) > MOST_KEYS:
             raise _too_many_keys()
-    begins, ends = np.concatenate(done, axis=1)
-    order = np.argsort(begins)
-    return _curve(function, begins[order], ends[order])
+    return _curve(*(np.concatenate(column) for column in zip(*done)))
 
 
 def _intervals(junctions):
@@ -68,29 +67,26 @@ def _cuts(begins, ends):
     return (np.floor(begins / steps) + 1.0) * steps
 
 
-def _are_good(function: Function, begins, ends, tolerance: float):
-    """Whether the cubic of each interval is within the tolerance at all CHECKS; those that fail one are not asked again."""
-    values, rates = _inner_ends(function, begins, ends)
+def _tried(function: Function, begins, ends, tolerance: float):
+    """((values, rates at the begin, values, rates at the end) of the cubic of each interval, whether it is within the tolerance
+    at all CHECKS); those that fail one check are not asked again."""
     span = (ends - begins)[:, None]
-    values = values[0] - INSIDE * span * rates[0], values[1] + INSIDE * span * rates[1]
+    (first, leaving), (last, arriving) = (function(at) for at in (begins + INSIDE * span[:, 0], ends - INSIDE * span[:, 0]))
+    cubics = first - INSIDE * span * leaving, leaving, last + INSIDE * span * arriving, arriving
     left = np.arange(len(begins))
     for s in CHECKS:
-        (y0, y1), (m0, m1), h = ([one[left] for one in values], [one[left] for one in rates], span[left])
+        y0, m0, y1, m1, h = (one[left] for one in (*cubics, span))
         cubic = ((1 + 2 * s) * (1 - s) ** 2 * y0 + s * (1 - s) ** 2 * h * m0 + s**2 * (3 - 2 * s) * y1 + s**2 * (s - 1) * h * m1)
         exact = function(begins[left] + s * h[:, 0])[0]
         left = left[np.max(np.abs(cubic - exact), axis=1) < tolerance]
-    return np.isin(np.arange(len(begins)), left)
+    is_good = np.zeros(len(begins), bool)
+    is_good[left] = True
+    return cubics, is_good
 
 
-def _inner_ends(function: Function, begins, ends):
-    """(values, rates), each of both ends of intervals, just within these."""
-    inside = INSIDE * (ends - begins)
-    return zip(function(begins + inside), function(ends - inside))
-
-
-def _curve(function: Function, begins, ends) -> _core.Curve:
-    first, last = function(begins)[0], function(ends)[0]
-    _, (leaving, arriving) = _inner_ends(function, begins, ends)
+def _curve(begins, ends, first, leaving, last, arriving) -> _core.Curve:
+    order = np.argsort(begins)
     still = np.zeros((1, first.shape[1]))
-    return _core.Curve(np.append(begins, ends[-1]), np.concatenate([first, last[-1:]]), "hermite",
-                       in_tangents=np.concatenate([still, arriving]), out_tangents=np.concatenate([leaving, still]))
+    return _core.Curve(np.append(begins[order], ends[order[-1]]), np.concatenate([first[order], last[order[-1:]]]), "hermite",
+                       in_tangents=np.concatenate([still, arriving[order]]),
+                       out_tangents=np.concatenate([leaving[order], still]))

@@ -15,13 +15,14 @@ class Profile:
 
     def __init__(self, times, coefficients):
         self.times, self.coefficients = np.asarray(times, float), np.asarray(coefficients, float)
+        self._columns = np.ascontiguousarray(self.coefficients.T)
         self.begin, self.end = float(self.times[0]), float(self.times[-1])
 
     def at(self, times):
         """(distance in m, speed in m/s, acceleration in m/s^2) at times [N], each [N]."""
-        inside = np.clip(times, self.begin, self.end)
-        k = np.clip(np.searchsorted(self.times, inside, side="right") - 1, 0, len(self.times) - 2)
-        c, t = self.coefficients[k].T, inside - self.times[k]
+        inside = np.minimum(np.maximum(times, self.begin), self.end)
+        k = np.minimum(np.searchsorted(self.times, inside, side="right") - 1, len(self.times) - 2)
+        c, t = self._columns[:, k], inside - self.times[k]
         moves = np.asarray(times) == inside
         distance = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
         speed = c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])

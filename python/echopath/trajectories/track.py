@@ -77,11 +77,13 @@ class Track:
         """First times [N] in s at which distances [N] are reached, to a nanosecond or so, by bisection."""
         knots = self.profile.times
         at_knots = self.profile.at(knots)[0]
-        k = np.clip(np.searchsorted(at_knots, distances, side="left"), 1, len(knots) - 1)
-        low, high = knots[k - 1].copy(), knots[k].copy()
+        k = np.clip(np.searchsorted(at_knots, distances, side="left"), 1, len(knots) - 1) - 1
+        begin, low, high = knots[k], knots[k], knots[k + 1]
+        c = np.ascontiguousarray(self.profile.coefficients[k].T)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            is_before = self.profile.at(middle)[0] < distances
+            t = middle - begin
+            is_before = c[0] + t * (c[1] + t * (c[2] + t * c[3])) < distances
             low, high = np.where(is_before, middle, low), np.where(is_before, high, middle)
         return high
 

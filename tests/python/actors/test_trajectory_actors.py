@@ -20,6 +20,10 @@ def angle_about_y(rotation):
     return np.arctan2(rotation[..., 0, 2], rotation[..., 2, 2])
 
 
+def about_z(angle):
+    return np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+
+
 def assert_same_angle(found, expected):
     assert np.abs(np.angle(np.exp(1j * (found - expected)))).max() < ANGLE
 
@@ -43,6 +47,21 @@ def test_wheels_of_the_outer_side_go_farther(car):
     way = DRIVE.length - wheel.position[1] * np.pi / 2
     assert wheel.position[1] < -0.6
     assert_same_angle(angle_about_y(wheel.motion.at(DRIVE.end)[:3, :3]), way / (0.632 / 2))
+
+
+def test_all_four_wheels_roll_their_own_arcs_all_along(car):
+    """Left and right share what is worked out of their vehicle: turned by the way less y times the yaw, at any time."""
+    times = np.linspace(DRIVE.begin, DRIVE.end, 397)
+    for part in car.parts:
+        if part.name.endswith("/tyre"):
+            steer = np.array([part.motion.at(time)[:3, :3] for time in times])
+            spin = np.array([about_z(-math.atan2(-one[0, 1], one[1, 1])) @ one for one in steer])
+            assert_same_angle(angle_about_y(spin), (DRIVE.distance(times) - part.position[1] * DRIVE.yaw(times)) / (0.632 / 2))
+
+
+def test_cars_of_a_kind_share_their_meshes(car):
+    other = ep.actors.car(trajectory=DRIVE.shifted(1.0))
+    assert all(one.mesh is two.mesh for one, two in zip(car.parts, other.parts, strict=True))
 
 
 def test_front_wheels_steer_as_the_curve_asks(car):

@@ -16,7 +16,7 @@ from ... import _core
 from ...trajectories.knots import curve_through
 from ...trajectories.profile import Profile, hermite_pieces
 from ...trajectories.trajectory import TOLERANCE
-from ..following import WHEEL_TOLERANCE, Rolling, roll, turned
+from ..following import WHEEL_TOLERANCE, Rolling, Wheels, turned
 
 STEP = 2.0**-6         # s, of the trailer's angle
 SIDE = 1e-6            # of a step: rates on this side of its ends
@@ -100,11 +100,13 @@ class Unit:
 
     def wheel(self, radius: float, *, center, wheelbase: float | None = None) -> Any:
         """The motion of a wheel of a `radius` at `center` [3] in m; wheelbase: m, of one that steers, or None."""
+        return _core.CurveMotion(self._translation(center), self._wheels.curve(radius, y=float(center[1]), wheelbase=wheelbase))
+
+    @cached_property
+    def _wheels(self) -> Wheels:
         _, turn = self._relative()
-        ahead = self._towing.coupling.drive_axle
-        rolling = Rolling(self._rolled, lambda times: self._moved(times)[2:], turn, ahead)
-        return _core.CurveMotion(self._translation(center), roll(self._towing.trajectory, rolling, radius, y=float(center[1]),
-                                                                 wheelbase=wheelbase, junctions=self._towing.junctions))
+        rolling = Rolling(self._rolled, lambda times: self._moved(times)[2:], turn, self._towing.coupling.drive_axle)
+        return Wheels(self._towing.trajectory, rolling, self._towing.junctions)
 
     @cached_property
     def _rolled(self) -> Profile:

@@ -12,7 +12,7 @@ from ... import _core
 from ...arguments.checks import checked, flag, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
-from ..following import rolling_along, trajectory_rule
+from ..following import trajectory_rule, wheels_along
 from ..limits import size_rule
 from ..shapes import ellipsoid
 from ..solids import block, ring, tube
@@ -162,7 +162,7 @@ def _crank(ride, ahead):
                    tube(end + [0, 0.07 * sign, 0], end + [0, (PEDAL_Y - 0.2 * PEDAL[1]) * sign, 0], 0.007, segments=6)]
     motion = None
     if ride.trajectory is not None:
-        motion = rolling_along(ride.trajectory, DEVELOPMENT / (2.0 * np.pi))
+        motion = _core.CurveMotion(rotation=wheels_along(ride.trajectory).curve(DEVELOPMENT / (2.0 * np.pi)))
     elif ahead or ride.cadence:
         motion = _core.LinearMotion(velocity=(ahead, 0.0, 0.0), angular_velocity=(0.0, ride.cadence, 0.0))
     return Part("crank", _mesh(*pieces), "metal", motion, (0.0, 0.0, BRACKET_HEIGHT), smooth=True)

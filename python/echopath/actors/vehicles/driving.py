@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from ... import _core
-from ..following import refuse_beside_trajectory, rolling_along
+from ..following import Wheels, refuse_beside_trajectory, wheels_along
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,11 @@ class Driving:
         wheelbase: m, of a wheel that steers along a trajectory, or None
         """
         if self.trajectory is not None:
-            return rolling_along(self.trajectory, radius, y=float(center[1]), wheelbase=wheelbase)
+            return _core.CurveMotion(rotation=self._wheels.curve(radius, y=float(center[1]), wheelbase=wheelbase))
         if self.speed == 0.0:
             return None
         return _core.LinearMotion(velocity=(self.ahead, 0.0, 0.0), angular_velocity=(0.0, self.speed / radius, 0.0))
+
+    @cached_property
+    def _wheels(self) -> Wheels:
+        return wheels_along(self.trajectory)

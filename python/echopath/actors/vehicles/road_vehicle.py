@@ -1,5 +1,6 @@
 """What cars and vans share: the body of an outline, and its wheels."""
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,11 +12,17 @@ from .outline import full_cells, lattice_points
 from .panels import label_of
 from .wheel import Wheel, wheel_parts
 
+
 def drive(outline, driving):
     """The Actor of an outline whose wheels roll as it drives (driving.Driving)."""
+    return Actor(driving.carried(list(_shell(outline))) + four_wheels(outline, driving), driving.trajectory)
+
+
+@lru_cache(maxsize=32)
+def _shell(outline):
+    """All at rest but the wheels, which the vehicles of one outline share: a tuple of parts."""
     parts, cage = body_parts(outline)
-    parts += plates(cage) + mirrors(outline)
-    return Actor(driving.carried(parts) + four_wheels(outline, driving), driving.trajectory)
+    return (*parts, *plates(cage), *mirrors(outline))
 
 
 def body_parts(outline):

@@ -3,6 +3,7 @@
 A wheel's mesh lies about its centre with the axle along y; its outer side is +y.
 """
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -36,14 +37,15 @@ def wheel_parts(wheel, name, center, driving, *, outer=1.0, wheelbase=None):
     tyre, rim = _meshes(wheel, outer)
     motion = driving.wheel(wheel.radius, center=center, wheelbase=wheelbase)
     place = tuple(float(value) for value in center)
-    return [Part(f"{name}/tyre", _core.Mesh(*tyre), "rubber", motion, place, smooth=True),
-            Part(f"{name}/rim", _core.Mesh(*rim), "metal", motion, place, smooth=True)]
+    return [Part(f"{name}/tyre", tyre, "rubber", motion, place, smooth=True),
+            Part(f"{name}/rim", rim, "metal", motion, place, smooth=True)]
 
 
+@lru_cache(maxsize=64)
 def _meshes(wheel, outer):
-    """(vertices, triangles) of tyre and rim; the wheel of the right side is that of the left one, turned about z."""
+    """Meshes of tyre and rim, which wheels share; the wheel of the right side is that of the left one, turned about z."""
     turn = np.array([outer, outer, 1.0])
-    return [(vertices * turn, triangles) for vertices, triangles in (_tyre(wheel), _rim(wheel))]
+    return [_core.Mesh(vertices * turn, triangles) for vertices, triangles in (_tyre(wheel), _rim(wheel))]
 
 
 def _tyre(wheel):

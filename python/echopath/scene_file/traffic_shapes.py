@@ -38,8 +38,9 @@ def traffic_shape(value, glob: str, key: str, folder: Path) -> TrafficShape:
 
 def _of_model(table: TrafficModelTable, actor: str, key: str, folder: Path) -> TrafficShape:
     model = model_of(table, folder, key)
-    with blamed(key):
-        model = model.placed(position=table.position, yaw=math.radians(table.yaw_deg))
+    if table.yaw_deg != 0.0 or any(table.position):      # else its meshes have the names that they have in Python
+        with blamed(key):
+            model = model.placed(position=table.position, yaw=math.radians(table.yaw_deg))
     length = 2.0 * _front_of(model) if actor in VEHICLES else 0.0
     return TrafficShape(lambda _, trajectory: model_along(model, table, key, trajectory), actor, length)
 

@@ -90,6 +90,13 @@ def test_models_stand_for_types_in_python(folder):
         assert np.ptp(reach) == pytest.approx(4.4, abs=TOLERANCE)
 
 
+def test_meshes_have_the_same_names_in_scene_files_and_in_python(load, folder):
+    scene = ep.Scene()
+    model = ep.load_model(folder / "taxi.obj")
+    ep.add_traffic(scene, ep.read_trajectories(folder / "fcd.xml"), actor_of={"taxi*": model})
+    assert list(load('{model = "taxi.obj"}').scene) == list(scene)
+
+
 def test_a_model_is_turned_before_it_is_moved(folder):
     scene = ep.Scene()
     scene.add(ep.load_model(folder / "taxi.obj").placed(position=(1.0, 2.0, 3.0), yaw=math.radians(30.0)), name="taxi")

@@ -152,9 +152,9 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     trajectories: {name: Trajectory}, such as read_trajectories returns
     actor_of: (name, trajectory) -> what Scene.add takes, such as `ep.actors.car(kind="suv", trajectory=trajectory)`; what does
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
-        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car. Or a dict {glob of kinds:
-        such a callable, a Model, whose meshes all share, the name of an actor, or None: no object}, of which the first that
-        takes the kind counts, in whatever case; kinds that none takes are as usual:
+        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car; persons of SUMO
+        are no vehicles. Or a dict {glob of kinds: such a callable, a Model, whose meshes all share, the name of an actor, or
+        None: no object}, of which the first that takes the kind counts, in whatever case; kinds that none takes are as usual:
         `{"police*": ep.load_model("police.glb"), "taxi": "car", "tram*": None}`
     exclude: globs of names that are left out, such as the car that carries the radar; each must take one
     during: (begin, end) in s, outside of which nothing is of interest: who is on its way at no time of it is left out. None: all
@@ -211,7 +211,7 @@ def _require_new(scene, names, parent: str | None) -> None:
 
 def usual_actor(name: str, trajectory: Trajectory):
     """The actor that is usual for the kind of a trajectory, which follows it."""
-    actor, keywords, _ = usual_kind(trajectory.kind)
+    actor, keywords, _ = usual_kind(trajectory.kind, trajectory._is_person)
     if actor == "pedestrian" and usual_speed(trajectory._track) > 2.0:
         actor = "runner"
     return getattr(actors, actor)(trajectory=trajectory, **keywords)

@@ -64,14 +64,16 @@ class _File:
 
     def objects(self, others: list[str]) -> list[dict[str, str]]:
         chosen = chosen_of(self.trajectories, self._table.exclude, self._table.during)
-        actors = {name: self._actor(one.kind) for name, one in chosen.items()}
+        actors = {name: self._actor(one) for name, one in chosen.items()}
         names = object_names([name for name, actor in actors.items() if actor], others)
         return [{"name": names[name], "actor": actors[name], "kind": chosen[name].kind} for name in names]
 
-    def _actor(self, kind: str) -> str:
-        """The actor of a type, "" for no object."""
-        shape: TrafficShape | None = of_kind(self._shapes.items(), kind, None)
-        return usual_kind(kind).actor if shape is None else shape.actor
+    def _actor(self, trajectory: Trajectory) -> str:
+        """The actor of what goes along a trajectory, "" for no object."""
+        shape: TrafficShape | None = of_kind(self._shapes.items(), trajectory.kind, None)
+        if shape is None or shape.actor is None:
+            return usual_kind(trajectory.kind, trajectory._is_person).actor
+        return shape.actor
 
     def _vehicle_length(self):
         """What read_trajectories takes: m of all vehicles, or of those by globs of their types."""

@@ -18,12 +18,12 @@ from .traffic_tables import TrafficModelTable
 class TrafficShape(NamedTuple):
     """What a type of traffic looks like.
 
-    maker: what `add_traffic` takes, None: no object; actor: its name, or that for which it stands; length: m, twice from the
-    middle to the front, 0 of those whose middles files have
+    maker: what `add_traffic` takes, None: no object; actor: its name, "" of no object, None: a model, which stands for what is
+    usual; length: m, twice from the middle to the front, 0 of those whose middles files have
     """
 
     maker: ActorOf | None
-    actor: str
+    actor: str | None
     length: float
 
 
@@ -42,7 +42,7 @@ def _of_model(table: TrafficModelTable, actor: str, key: str, folder: Path) -> T
         with blamed(key):
             model = model.placed(position=table.position, yaw=math.radians(table.yaw_deg))
     length = 2.0 * _front_of(model) if actor in VEHICLES else 0.0
-    return TrafficShape(lambda _, trajectory: model_along(model, table, key, trajectory), actor, length)
+    return TrafficShape(lambda _, trajectory: model_along(model, table, key, trajectory), None, length)
 
 
 def _of_actor(value, key: str, folder: Path) -> TrafficShape:

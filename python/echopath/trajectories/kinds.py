@@ -36,7 +36,11 @@ def of_kind(values: Iterable[tuple[str, T]], kind: str, usual: T) -> T:
     return next((value for glob, value in values if _core.glob_takes(glob.lower(), kind.lower())), usual)
 
 
-def usual_kind(name: str) -> Kind:
-    """What is usual for a kind of that name, as files have it; a compact car where no word of it is known."""
+def usual_kind(name: str, is_person: bool = False) -> Kind:
+    """What is usual for a kind of that name, as files have it; where no word of it is known a compact car, or a pedestrian.
+
+    is_person: whether the file says that it is no vehicle
+    """
     name = name.lower()
-    return next((kind for word, kind in _KINDS.items() if word in name), _CAR)
+    found = next((kind for word, kind in _KINDS.items() if word in name), _CAR)
+    return _PERSON if is_person and found.actor in VEHICLES else found

@@ -117,7 +117,7 @@ def _add_vehicle(path, line, tag, attributes, time, tracks, length_of) -> None:
     z = of("z", 1e7) if "z" in attributes else 0.0
     kind = attributes.get("type", "") or ("pedestrian" if tag == "person" else "")
     back = 0.5 * length_of(kind) if tag == "vehicle" else 0.0
-    samples = tracks.setdefault(_attribute(path, line, tag, attributes, "id"), Samples(kind=kind))
+    samples = tracks.setdefault(_attribute(path, line, tag, attributes, "id"), Samples(kind, tag == "person"))
     samples.lines.append(line)
     samples.times.append(time)
     samples.places.append((x - back * math.cos(yaw), y - back * math.sin(yaw), z))

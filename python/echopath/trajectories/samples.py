@@ -21,6 +21,7 @@ class Samples:
     """
 
     kind: str = ""
+    is_person: bool = False
     lines: list[int] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
     places: list[tuple[float, float, float]] = field(default_factory=list)

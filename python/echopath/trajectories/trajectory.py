@@ -52,6 +52,8 @@ class Trajectory(_core.CurveMotion):
     less than 10 micrometres, and the rotation by less than 4 microradians. Raises TypeError or ValueError naming the argument.
     """
 
+    _is_person = False
+
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
              yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
              acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
@@ -199,6 +201,13 @@ class Trajectory(_core.CurveMotion):
     def __repr__(self) -> str:
         kind = f"'{self.kind}', " if self.kind else ""
         return f"Trajectory({kind}{self.length:.6g} m from {self.begin:g} to {self.end:g} s)"
+
+
+def person_along(**arguments) -> Trajectory:
+    """The Trajectory of these arguments of a person of SUMO, who is no vehicle, whatever the name of the type."""
+    made = Trajectory(**arguments)
+    made._is_person, made._made = True, (person_along, made._made[1])
+    return made
 
 
 def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):

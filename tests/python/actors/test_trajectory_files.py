@@ -1,6 +1,7 @@
 """Trajectories of files: tables, SUMO's floating car data, GPX, scene files; what is wrong is refused by file and line."""
 import gzip
 import math
+import pickle
 import re
 from fractions import Fraction
 
@@ -308,6 +309,17 @@ def test_kinds_become_actors(tmp_path):
     found = ep.read_trajectories(write(tmp_path, "fcd.xml", FCD))
     parts = {name: {part.name for part in usual_actor(name, one).parts} for name, one in found.items()}
     assert "trailer/doors" in parts["south"] and "wheel/front_left/tyre" in parts["flow/0"] and "leg_left/foot" in parts["walker"]
+
+
+@pytest.mark.filterwarnings("ignore:.*single position")
+def test_persons_of_any_type_are_no_vehicles(tmp_path):
+    text = FCD.replace('<person id="walker"', '<person id="walker" type="bus_rider"')
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", text))
+    copies = [found["walker"], found["walker"].shifted(5.0), pickle.loads(pickle.dumps(found["walker"]))]
+    scene = ep.Scene()
+    ep.add_traffic(scene, {str(number): one for number, one in enumerate(copies)})
+    assert all(one.kind == "bus_rider" for one in copies)
+    assert {"0/leg_left/foot", "1/leg_left/foot", "2/leg_left/foot"} <= set(scene)
 
 
 @pytest.mark.parametrize("argument, value", [("actor_of", 5), ("actor_of", ep.Actor), ("trajectories", [1]), ("parent", 5),

@@ -83,7 +83,7 @@ material = "metal"
 
 def test_classes_of_traffic_are_told_by_its_types(tmp_path):
     kinds = {"ego": "passenger", "a/1": "pt_bus", "b": "truck_heavy", "c": "bike", "d": "tram", "e": "taxi", "f": "x",
-             "a*1": "bike"}
+             "a*1": "bike", "g": "model_bike"}
     rows = [f'<vehicle id="{name}" type="{kind}" x="{{0}}" y="{10 * place}" angle="90"/>'
             for place, (name, kind) in enumerate(kinds.items())]
     steps = "".join(f'<timestep time="{time}">{"".join(rows).format(5 * time)}</timestep>' for time in (0, 1))
@@ -93,14 +93,14 @@ def test_classes_of_traffic_are_told_by_its_types(tmp_path):
 [[traffic]]
 file = "fcd.xml"
 exclude = ["ego"]
-actors = {x = false, truck_heavy = "van", taxi = {model = "taxi.obj"}}
+actors = {x = false, truck_heavy = "van", taxi = {model = "taxi.obj"}, "m*" = {model = "taxi.obj"}}
 position = [{uniform = [20.0, 30.0]}, 0.0, 0.0]
 """
     path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + traffic + SCENE)
     template = dataset.Template(path)
     known = classes_of(template.objects(1), {})
-    assert {name: known[name] for name in ("a_1", "a_1_2", "b", "c", "d", "e")} == {
-        "a_1": "bus", "a_1_2": "cyclist", "b": "van", "c": "cyclist", "d": "train", "e": "car"}
+    assert {name: known[name] for name in ("a_1", "a_1_2", "b", "c", "d", "e", "g")} == {
+        "a_1": "bus", "a_1_2": "cyclist", "b": "van", "c": "cyclist", "d": "train", "e": "car", "g": "cyclist"}
     assert not {"ego", "f"} & set(known)
     assert set(known) == {name for name in template.scene_file(1).scene if "/" not in name}
     begins = [template.scene_file(number).scene["e"].motion.at(0.0)[0, 3] for number in (0, 1)]

@@ -98,6 +98,7 @@ position = [{uniform = [20.0, 30.0]}, 0.0, 0.0]
 """
     path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + traffic + SCENE)
     template = dataset.Template(path)
+    assert dataset.Template(str(path)).objects(1) == template.objects(1)
     known = classes_of(template.objects(1), {})
     assert {name: known[name] for name in ("a_1", "a_1_2", "b", "c", "d", "e", "g")} == {
         "a_1": "bus", "a_1_2": "cyclist", "b": "van", "c": "cyclist", "d": "train", "e": "car", "g": "cyclist"}

@@ -64,8 +64,9 @@ class Template:
     added, and scenes that are added, change no other.
     """
 
-    def __init__(self, path: Path, folder: Path | None = None):
-        self.path, self.folder = path, folder or path.parent
+    def __init__(self, path: str | Path, folder: str | Path | None = None):
+        path = Path(path)
+        self.path, self.folder = path, path.parent if folder is None else Path(folder)
         self.table = parse(path)
         scene = copy.deepcopy(self.table)
         self._faults = Faults(path, self.table)

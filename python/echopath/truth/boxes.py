@@ -31,19 +31,45 @@ def boxes_at(scene, globs_of_objects, time: float, duration: float) -> Boxes:
 
     globs_of_objects: list [N] of lists of globs; duration: s, of the frame about that time, which differences stay within
     """
-    rows = [_Body(scene, globs).box(time, step_within(duration)) for globs in globs_of_objects]
+    named = _NamedScene(scene)
+    rows = [_Body(named, globs).box(time, step_within(duration)) for globs in globs_of_objects]
     columns = zip(*rows) if rows else [[]] * len(Boxes._fields)
     shapes = {"rotation": (-1, 3, 3)}
     return Boxes(*(np.array(column, float).reshape(shapes.get(name, (-1, 3))) for name, column in zip(Boxes._fields, columns)))
 
 
+class _NamedScene:
+    """A scene whose nodes and meshes are listed once for all of its objects: many that each look through all are slow."""
+
+    def __init__(self, scene):
+        self.scene, self.nodes, self._meshes = scene, scene.nodes, scene.meshes
+        self._node_of = {node.name: index for index, node in enumerate(self.nodes)}
+        self._below: dict[str, list] = {}
+        for mesh in self._meshes:
+            steps = mesh.name.split("/")
+            for count in range(1, len(steps) + 1):
+                self._below.setdefault("/".join(steps[:count]), []).append(mesh)
+
+    def meshes(self, globs) -> list:
+        """The meshes that globs take, in the order of the scene."""
+        if len(globs) == 1 and not set(globs[0]) & set("*?"):
+            return self._below.get(globs[0], [])
+        return [mesh for mesh in self._meshes if any(_core.glob_takes(glob, mesh.name) for glob in globs)]
+
+    def common_node(self, globs, meshes) -> int:
+        """Index of the node that a single name means, or the lowest that all meshes are at or below; -1: none."""
+        if len(globs) == 1 and globs[0] in self._node_of:
+            return self._node_of[globs[0]]
+        name = posixpath.commonpath([mesh.name for mesh in meshes]) if meshes else ""
+        return self._node_of.get(name, -1)
+
+
 class _Body:
     """The meshes of one object and the node whose axes its box has."""
 
-    def __init__(self, scene, globs):
-        self._scene, self._nodes = scene, scene.nodes
-        self._meshes = [mesh for mesh in scene.meshes if any(_core.glob_takes(glob, mesh.name) for glob in globs)]
-        self._node = _common_node(self._nodes, globs, self._meshes)
+    def __init__(self, named: _NamedScene, globs):
+        self._scene, self._nodes, self._meshes = named.scene, named.nodes, named.meshes(globs)
+        self._node = named.common_node(globs, self._meshes)
 
     def box(self, time: float, step: float) -> tuple:
         """One row of Boxes."""
@@ -118,11 +144,3 @@ def _placed(node, time: float):
     placed[:3, 3] = node.placement[:3, 3] + step[:3, 3]
     return placed
 
-
-def _common_node(nodes, globs, meshes) -> int:
-    """Index of the node that a single name means, or the lowest that all meshes are at or below; -1: none."""
-    index_of = {node.name: index for index, node in enumerate(nodes)}
-    if len(globs) == 1 and globs[0] in index_of:
-        return index_of[globs[0]]
-    name = posixpath.commonpath([mesh.name for mesh in meshes]) if meshes else ""
-    return index_of.get(name, -1)

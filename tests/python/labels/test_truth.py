@@ -78,6 +78,23 @@ def test_objects_of_several_nodes_stand_in_the_axes_above_them():
     assert both.size[0, 1] == pytest.approx(4.0 + np.cos(0.5) + np.sin(0.5))
 
 
+def test_names_are_those_of_whole_objects_and_the_scene_is_listed_once(monkeypatch):
+    from echopath.truth import boxes
+
+    scene, listed = ep.Scene(), []
+    for place, name in enumerate(("car", "car_2", "cart")):
+        scene.add(name=name, position=(10.0 + 5.0 * place, 0, 0))
+        for part, side in (("body", 1.0), ("wheel", -1.0)):
+            scene.add(ep.actors.box(1.0 + place), name=part, material="metal", parent=name, position=(0, side * (2.0 + place), 0))
+    alike = {"name": ["car"], "glob": ["ca?"], "both": ["car/body", "car/wheel"], "part": ["car_2/wheel"], "none": ["cart"]}
+    named = boxes._NamedScene
+    monkeypatch.setattr(boxes, "_NamedScene", lambda scene: listed.append(scene) or named(scene))
+    found = boxes.boxes_at(scene, list(alike.values()), 0.0, 1e-3)
+    assert found.size == pytest.approx(np.array([[1, 5, 1], [1, 5, 1], [1, 5, 1], [2, 2, 2], [3, 11, 3]]))
+    assert found.centre == pytest.approx(np.array([[10, 0, 0], [10, 0, 0], [10, 0, 0], [15, -3, 0], [20, 0, 0]]))
+    assert len(listed) == 1
+
+
 # --- motions ---
 
 def test_velocity_of_what_goes_straight():

@@ -28,6 +28,7 @@ from .scene_file import SceneFile
 from .radar_tables import RadarTable
 from .run_tables import FOUND, AngleTable
 from .schema import SceneTable
+from .table import yaw_of
 from .trajectories import Trajectories
 
 
@@ -179,13 +180,13 @@ def _place(table: RadarTable, trajectories: Trajectories, key: str) -> dict:
     position, motion = tuple(table.position), motion_of(table.motion, f"{key}.motion") or trajectories.of(table, key)
     if table.rides_on is not None:
         position, motion = (0.0, 0.0, 0.0), trajectories.traffic.of(table.rides_on, f"{key}.rides_on").motion(position)
-    return {"position": position, "yaw": math.radians(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
+    return {"position": position, "yaw": yaw_of(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
             "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
 
 
 def _antenna(antenna, radar: RadarTable, pattern):
     direction = {"orientation": tuple(antenna.orientation)} if antenna.orientation is not None else {
-        "yaw": math.radians(antenna.yaw_deg or 0.0), "pitch": math.radians(antenna.pitch_deg or 0.0)}
+        "yaw": yaw_of(antenna.yaw_deg), "pitch": math.radians(antenna.pitch_deg or 0.0)}
     return _core.Antenna(tuple(antenna.position), **direction,
                          pattern=pattern, polarization=tuple(antenna.polarization or radar.polarization))
 

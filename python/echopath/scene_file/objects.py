@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from pathlib import Path
 
 from .. import _core
@@ -13,6 +12,7 @@ from .errors import blamed
 from .models import material_of, model_along, model_of
 from .object_tables import ObjectTable
 from .schema import SceneTable
+from .table import yaw_of
 from .trajectories import Trajectories
 
 
@@ -32,7 +32,7 @@ def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
     for index, table in enumerate(settings.objects):
         key = f"objects[{index}]"
         placement = {"transform": table.transform} if table.transform is not None else {
-            "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": math.radians(table.yaw_deg or 0.0)}
+            "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": yaw_of(table.yaw_deg)}
         material = material_of(table.material, f"{key}.material")
         trajectory = trajectories.of(table, key)
         shape, material = _shape(table, folder, key, material, meshes_of_file, trajectory)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import sys
 from typing import Annotated
 
@@ -29,6 +30,12 @@ def nearest_key(key: str, candidates) -> str:
     if near:
         return f"did you mean '{near}'?"
     return "known keys: " + ", ".join(candidates)
+
+
+def yaw_of(degrees: float | None) -> float:
+    """The yaw in rad of a key in degrees, without whole turns beyond the first, which a caller in rad would be warned of."""
+    degrees = degrees or 0.0
+    return math.radians(math.fmod(degrees, 360.0) if abs(degrees) > 360.0 else degrees)
 
 
 def is_number(value) -> bool:

@@ -1,7 +1,6 @@
 """The traffic of a scene file: an object for each trajectory of a file, and radars that ride on one."""
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from ..trajectories import Trajectory, read_trajectories
 from ..trajectories.kinds import of_kind, usual_kind
 from .errors import ToldValueError, blamed
 from .traffic_shapes import TrafficShape, traffic_shape
+from .table import yaw_of
 from .traffic_tables import TrafficTable
 
 
@@ -55,7 +55,7 @@ class _File:
         with blamed(key, file="file"):
             self.trajectories = read_trajectories(
                 folder / table.file, origin=table.origin, smoothing=table.smoothing, vehicle_length=self._vehicle_length(),
-                goes_on=table.goes_on, outside=table.outside, position=table.position, yaw=math.radians(table.yaw_deg))
+                goes_on=table.goes_on, outside=table.outside, position=table.position, yaw=yaw_of(table.yaw_deg))
 
     def add_to(self, scene: Scene) -> None:
         makers = {glob: shape.maker for glob, shape in self._shapes.items()}

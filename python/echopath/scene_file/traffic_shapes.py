@@ -1,7 +1,6 @@
 """What goes along the trajectories of a type of traffic, as a scene file says: an actor, a model, or nothing."""
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from ..trajectories.kinds import VEHICLES, usual_kind
 from .actors import actor_keywords, actor_maker, named_actor
 from .errors import ToldValueError, blamed
 from .models import model_along, model_of
+from .table import yaw_of
 from .traffic_tables import TrafficModelTable
 
 
@@ -40,7 +40,7 @@ def _of_model(table: TrafficModelTable, actor: str, key: str, folder: Path) -> T
     model = model_of(table, folder, key)
     if table.yaw_deg != 0.0 or any(table.position):      # else its meshes have the names that they have in Python
         with blamed(key):
-            model = model.placed(position=table.position, yaw=math.radians(table.yaw_deg))
+            model = model.placed(position=table.position, yaw=yaw_of(table.yaw_deg))
     length = 2.0 * _front_of(model) if actor in VEHICLES else 0.0
     return TrafficShape(lambda _, trajectory: model_along(model, table, key, trajectory), None, length)
 

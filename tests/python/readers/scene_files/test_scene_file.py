@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,17 @@ def test_the_radar_and_its_antennas_stand_and_look_as_the_file_says(write):
     np.testing.assert_allclose(radar.world_from_radar(0.0)[:3, 0], (0.0, np.cos(radar.pitch), np.sin(radar.pitch)), atol=ROUNDING)
     antenna = radar.receivers[0]
     np.testing.assert_allclose((antenna.yaw, antenna.pitch), np.radians((-30.0, 5.0)), atol=ROUNDING)
+
+
+def test_turns_in_degrees_are_angles_without_a_word_on_rad(write):
+    radar = RADAR.replace("position = [0.0, 0.01, 1.0]", "position = [0.0, 0.01, 1.0]\nyaw_deg = 390.0")
+    path = write(mesh_object('material = "concrete"\nyaw_deg = 900.0'), radar=f"{radar}[radar]\nyaw_deg = -450.0\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        loaded = ep.load_scene(path)
+    assert loaded.radar.yaw == pytest.approx(-math.pi / 2) and loaded.radar.receivers[0].yaw == pytest.approx(math.pi / 6)
+    name = next(iter(loaded.scene))
+    assert loaded.scene[name].yaw == pytest.approx(math.pi)
 
 
 @pytest.mark.parametrize("key, line", [("pitch_deg", "pitch_deg = 91.0"), ("yaw_deg", "yaw_deg = inf"),

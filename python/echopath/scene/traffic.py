@@ -13,6 +13,7 @@ from ..arguments.checks import an, anything, array, checked, optional, real, ref
 from ..arguments.names import first_names
 from ..arguments.objects import listed
 from ..arguments.shown import writable
+from ..base.callers import warn_user
 from ..base.counts import counted
 from ..base.made_by import made_by
 from ..readers.model import Model
@@ -161,11 +162,16 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     parent: full name of the object whose axes the trajectories are in; None: the world
     time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
     Returns the Traffic. Raises TypeError or ValueError naming the argument, also where the scene has an object of such a
-    name, as after the same call before; nothing is added then.
+    name, as after the same call before; nothing is added then. Warns (RuntimeWarning) of a span in which nobody is on the way.
     """
     time = None if time is None else real(unit="s")("time", time)
     maker = actor_of if callable(actor_of) else usual_actor
-    made = {name: _made(maker, name, one) for name, one in chosen_of(trajectories, list(exclude), during).items()}
+    chosen = chosen_of(trajectories, list(exclude), during)
+    if during is not None and trajectories and not chosen:
+        ways = trajectories.values()
+        warn_user(f"during: nobody is on the way from {during[0]:g} to {during[1]:g} s; trajectories are from "
+                  f"{min(one.begin for one in ways):g} to {max(one.end for one in ways):g} s")
+    made = {name: _made(maker, name, one) for name, one in chosen.items()}
     present = {name: actor for name, actor in made.items() if actor is not None}
     _require_new(scene, present, parent)
     above, added = _above(parent), {}

@@ -302,6 +302,14 @@ def test_traffic_that_is_there_is_not_added_twice():
     assert list(ep.add_traffic(scene, found, actor_of=box_of)) == ["car", "a_b"]
 
 
+def test_a_span_in_which_nobody_is_on_the_way_is_told():
+    ways = {"a": ep.Trajectory([(0, 0), (10, 0)], times=[1, 3]), "b": ep.Trajectory([(0, 5), (10, 5)], times=[2, 4.5])}
+    scene = ep.Scene()
+    with pytest.warns(RuntimeWarning, match="^during: nobody is on the way from 600 to 700 s; trajectories are from 1 to 4.5 s"):
+        assert not ep.add_traffic(scene, ways, during=(600, 700))
+    assert list(ep.add_traffic(scene, ways, during=(4.5, 700))) == ["b"]
+
+
 @pytest.mark.filterwarnings("ignore:.*single position")
 def test_kinds_become_actors(tmp_path):
     from echopath.scene.traffic import usual_actor

@@ -114,10 +114,13 @@ def _lengths(paths, tx: int, rx: int):
 
 
 def turning_of(paths, time: float, tx: int = 0, rx: int = 0) -> np.ndarray:
-    """Rate [P] in Hz by which the phase of each amplitude falls at a time in s; tx, rx: indices of the antennas."""
+    """Rate [P] in Hz by which the phase of each amplitude falls at a time in s, 0 of one that is 0; tx, rx: indices of the
+    antennas."""
     half = 0.5 * TURNING_STEP * paths.radar.waveform.chirp_duration
     before, after = (paths._echoes_at_receivers(at, tx, [rx])[1][0] for at in (time - half, time + half))
-    return np.angle(before * np.conj(after)) / (4.0 * np.pi * half)
+    turned = before * np.conj(after)
+    turned[turned == 0.0] = 1.0  # zeros have signs, by which their angle may be half a turn
+    return np.angle(turned) / (4.0 * np.pi * half)
 
 
 def chirp_times(paths, tx: int = 0) -> np.ndarray:

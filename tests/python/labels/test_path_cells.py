@@ -140,6 +140,23 @@ def test_what_the_anti_alias_filter_removes_does_not_come_back_in_front():
     assert np.all(ep.path_cells(paths, ep.range_doppler(cube, radar)).range_index == -1)
 
 
+def test_paths_that_bring_nothing_are_no_faster_than_what_moves():
+    """Antennas see nothing behind them, where a wall mirrors a box that moves at 1 m/s: of the paths over it most bring
+    nothing. Of four bounces two at most are on the box, each of which makes an echo faster by 1 m/s at most."""
+    antenna = ep.Antenna((0.1, 0, 1.4), pattern=ep.CosinePower(1))
+    radar = build_radar([antenna], [antenna], num_samples=128, num_chirps=64)
+    concrete = ep.materials["concrete"].replace(mirror=True)
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(8, 2.6), name="behind", material=concrete, yaw=-0.5 * np.pi)
+    scene.add(ep.actors.wall(8, 2.6), name="beside", material=concrete, position=(2, 1.5, 0))
+    rough = ep.Material(permittivity=4 - 0.3j, scattering=0.5)
+    scene.add(ep.actors.box(0.3), name="box", material=rough, position=(2, 0.3, 1), yaw=0.5, speed=1.0)
+    paths = ep.trace(scene, radar, num_rays=1000)
+    cells = ep.path_cells(paths, ep.range_doppler(ep.synthesize(paths, radar), radar))
+    assert np.count_nonzero(paths.power == 0.0) > paths.num_paths / 3
+    assert np.abs(cells.velocity).max() < 2.0
+
+
 def test_no_paths_give_no_cells():
     paths = traced(radar_of(False, 1)).select("T .{3} R")
     cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))

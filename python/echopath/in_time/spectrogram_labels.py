@@ -66,9 +66,11 @@ class SpectrogramLabels(PartCells):
     __hash__ = None
 
     def __repr__(self) -> str:
-        counts = (f"{name}: {counted(np.count_nonzero(self.dominant == number), 'cell')}"
-                  for number, name in enumerate(self.part_names))
-        return f"SpectrogramLabels({list(self.whole.shape)}, {np.count_nonzero(self.mask)} labelled, {', '.join(counts)})"
+        cells = [np.count_nonzero(self.dominant == number) for number in range(len(self.part_names))]
+        told = [f"{name}: {counted(count, 'cell')}" for name, count in zip(self.part_names, cells) if count]
+        empty = [f"{counted(cells.count(0), 'part')} without cells"] if 0 in cells else []
+        labelled = f"{np.count_nonzero(self.mask)} labelled"
+        return f"SpectrogramLabels({', '.join([str(list(self.whole.shape)), labelled, *told, *empty])})"
 
 
 def _parts_rule(argument: str, value) -> dict:

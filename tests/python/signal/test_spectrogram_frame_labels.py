@@ -47,6 +47,14 @@ def found(frames) -> ep.Spectrogram:
     return ep.spectrogram(frames, window_length=32, hop=16, labels=True)
 
 
+def test_parts_without_cells_are_counted_and_not_named(found):
+    """Of a room there are a hundred families, most of which make no cell."""
+    labels = found.labels["objects"]
+    assert "ghosts" in labels.part_names and "ghosts" not in repr(labels) and "fast: " in repr(labels)
+    num_empty = len(labels.part_names) - len(np.unique(labels.dominant[labels.dominant >= 0]))
+    assert repr(labels).endswith(f", {num_empty} parts without cells)")
+
+
 def test_each_object_owns_the_cells_of_its_velocity(found):
     labels = found.labels["objects"]
     assert labels.part_names[:2] == ["slow", "fast"] and labels.part_names[-1] == "other"

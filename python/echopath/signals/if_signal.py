@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, Progress, an, checked, one_of, optional, real
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
+from ..base.callers import warn_user
 from ..receiver.chain import transmitted_code
+from ..receiver.filters import has_filters
 from ..tracing.faint_paths import warn_of_other_noise
 from ..transmit import code_signal, is_coded, radar_of_noise, slots_radar, synthesize_slots
 from .silence import warn_of_silence
@@ -86,8 +88,14 @@ def add_noise(cube: ArrayLike, radar: _core.Radar, *, seed: int, start_time: flo
         that frames in a row have one seed and noise of their own, and each the same noise whether it is made alone or not.
         Without start_time every frame has the noise of one that starts at 0: the same in all frames of one seed
     Returns a new cube of that shape in sqrt(W). Raises TypeError or ValueError naming the argument, also unless the cube has
-    the shape that the radar gives it.
+    the shape that the radar gives it. Warns (RuntimeWarning) where filters of `radar.receiver` would shape the noise, as
+    those of sensor files do: `receive` gives the signal and the noise behind them.
     """
+    receiver = radar.receiver
     if is_coded(radar) and np.shape(cube)[0] == 1:
         radar = radar_of_noise(radar)
-    return _core.add_noise(cube, radar, seed=seed, start_time=start_time)
+    noisy = _core.add_noise(cube, radar, seed=seed, start_time=start_time)
+    if receiver is not None and has_filters(receiver):
+        warn_user("radar: has a receiver whose filters shape its noise, which is white here, so that detections that go by this "
+                  "radar find false ones; take ep.receive(cube, radar, seed=1).cube, or radar.replace(receiver=None) for all")
+    return noisy

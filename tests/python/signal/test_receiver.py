@@ -37,6 +37,18 @@ def test_an_ideal_receiver_keeps_every_bit():
     np.testing.assert_array_equal(ep.receive(cube, radar.replace(receiver=ep.Receiver()), seed=5).cube, plain)
 
 
+@pytest.mark.parametrize("filters", [{"high_pass": [175e3]}, {"low_pass": 5e6}])
+def test_white_noise_for_a_receiver_with_filters_is_warned_of(filters):
+    radar = one_channel(receiver=ep.Receiver(**filters))
+    with pytest.warns(RuntimeWarning, match=r"radar: .* filters shape its noise, .* ep.receive\(cube, radar, seed=1\).cube"):
+        ep.add_noise(tone(33.3), radar, seed=5)
+
+
+@pytest.mark.filterwarnings("error")
+def test_white_noise_for_a_receiver_without_filters_is_not():
+    ep.add_noise(tone(33.3), one_channel(receiver=ep.Receiver(iq_gain_db=0.2, compression_dbm=-12.0)), seed=5)
+
+
 @pytest.mark.parametrize("distance", [3.0, 10.0, 30.0, 60.0])
 @pytest.mark.parametrize("offset", [1.25e6, 3e6])
 def test_phase_noise_falls_by_the_range_correlation(distance, offset):

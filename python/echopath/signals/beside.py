@@ -17,8 +17,13 @@ def cubes_beside(frame) -> dict:
     """{name: [tx, rx, chirp, sample]} in sqrt(W) of what a frame has of it, each transmitter alone, without faults of the
     receiver; what codes leave has the errors of the transmitters."""
     received = {INTERFERENCE: frame.interference_cube, RAIN: frame.rain_cube, LEAKAGE: _leaked(frame.radar)}
-    apart = {name: demultiplex(cube, frame.radar) for name, cube in received.items() if cube is not None}
-    return apart | ({RESIDUE: _residue(frame)} if _leaves_residue(frame) else {})
+    received = {name: cube for name, cube in received.items() if cube is not None}
+    leaves_residue = _leaves_residue(frame)
+    if not received and not leaves_residue:
+        return {}
+    apart = _as_the_whole(frame)
+    cubes = {name: apart(cube) for name, cube in received.items()}
+    return cubes | ({RESIDUE: apart(frame.coded_cube) - _own(frame)} if leaves_residue else {})
 
 
 def leakage_map(radar, window, zero_pad: int):
@@ -38,13 +43,20 @@ def _leaves_residue(frame) -> bool:
     return leaves and len(radar.transmitters) > 1 and frame.coded_cube is not None
 
 
-def _residue(frame):
-    """What `demultiplex` leaves in the signal of each transmitter of the echoes of the others, [tx, rx, chirp, sample]."""
+def _as_the_whole(frame):
+    """Function that takes a cube of the frame apart as `demultiplex` does all that the receivers have. With "ddm" it depends on
+    all that is there which transmitter a cell is given to."""
+    radar = frame.radar
+    if radar.multiplexing != "ddm" or frame.coded_cube is None:
+        return lambda cube: demultiplex(cube, radar)
+    whole = frame.received.cube[0]
+    return lambda cube: undo_doppler_division(cube[0], radar, whole)
+
+
+def _own(frame):
+    """The echoes of each transmitter behind its errors, [tx, rx, chirp, sample]."""
     factors = None if frame.radar.receiver is None else transmitter_factors(frame.radar.receiver, frame.radar)
-    own = frame.cube if factors is None else factors[:, None, None, None] * frame.cube
-    if frame.radar.multiplexing == "ddm":  # which transmitter a cell is given to depends on all that is there
-        return undo_doppler_division(frame.coded_cube[0], frame.radar, frame.received.cube[0]) - own
-    return demultiplex(frame.coded_cube, frame.radar) - own
+    return frame.cube if factors is None else factors[:, None, None, None] * frame.cube
 
 
 def _leaked(radar):

@@ -194,3 +194,26 @@ def test_scenes_hold_other_radars_as_values():
         scene.interferers = TONE
     with pytest.raises(TypeError, match="^radar: must be"):
         ep.Interferer(radar="other.cfg")
+
+
+def test_what_takes_transmitters_apart_gives_the_interference_the_cells_that_the_map_shows():
+    """By the empty shares of "ddm" noise and echoes decide which transmitter a cell of the interference is given to, which, being
+    one tone in each chirp, leaves none empty. Where the map is far above the noise and no echo is near, it is interference."""
+    waveform = ep.ChirpSequence(start_frequency=60e9, bandwidth=1.5e9, num_samples=128, sampling_rate=5e6, num_chirps=64,
+                                chirp_interval=60e-6)
+    half = 0.5 * waveform.wavelength
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 4 * half * n, 0)) for n in range(3)],
+                     receivers=[ep.Antenna((0, half * n, 0)) for n in range(4)], transmit_power=0.015, multiplexing="ddm")
+    other = radar.replace(position=(5.9, 1, 0.8), yaw=np.pi, multiplexing="tdm", waveform=waveform.replace(bandwidth=2e9))
+    scene = ep.Scene(interferers=[ep.Interferer(radar=other, offset=3e-6)])
+    scene.add(ep.actors.sphere(0.1), name="ball", material="metal", smooth=True, position=(4, 1, 0), speed=1.3)
+    frame = ep.simulate(scene, radar, num_rays=1000, labels=True, detections=True, guard=False)
+    maps = frame.spectrum, frame.beside_spectra["interference"]
+    power, beside = (np.mean(np.abs(one.values) ** 2, axis=(0, 1)) for one in maps)
+    is_far = np.abs(frame.range - np.hypot(4, 1)) > 0.6
+    strong = (power > 30.0 * ep.noise_power(radar)) & is_far
+    assert strong.sum() > 50
+    assert np.abs(10.0 * np.log10(beside[strong] / power[strong])).max() < 2.0  # noise 15 dB below
+    found = frame.detections
+    assert len(found.range) > 40 and np.count_nonzero(found.is_noise) < 0.05 * len(found.range)
+    assert np.all(found.part[found.object == ""][~found.is_noise[found.object == ""]] == "interference")

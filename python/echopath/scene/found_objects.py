@@ -60,11 +60,20 @@ def _names_of(scene: Scene, radar: _core.Radar, usual: Things, time: float) -> l
     found = []
     for child in _everything(scene, time).parts(depth=1):
         own = child.among(of_usual)
-        found += _things_among([own], keeps_larger=True) if own.meshes else []
+        found += _things_of_usual(own, child) if own.meshes else []
         rest = child.without(of_usual)
         found += _things_among(rest.parts()) if rest.meshes and not child.is_thing else []
     mirrors = {mesh.id for mesh in scene.meshes if mesh.material.mirror}.union(large_planes(scene, radar, time))
     return [part.name for part in found if part.name in usual or mirrors.isdisjoint(part.meshes)]
+
+
+def _things_of_usual(own: _Part, child: _Part) -> list[_Part]:
+    """Of a usual object, some or all of a child of the root: a child of which the rest are mirrors, as a room, is as little an
+    object as one around the radar, where its parts stand apart."""
+    below = own.parts()
+    if len(own.meshes) < len(child.meshes) and (len(below) == 1 or _stand_apart([one.box for one in below])):
+        return _things_among(below)
+    return _things_among([own], keeps_larger=True)
 
 
 class _Part(NamedTuple):

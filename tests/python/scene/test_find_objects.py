@@ -113,3 +113,20 @@ objects = "found"
     found = ep.load_scene(tmp_path / "scene.toml")
     named = (("visitor", ("visitor",)), ("van", ("town/van",)), ("bin", ("town/bin",)))
     assert set(found.labels.objects) == set(named) and found.truth.objects == {name: globs[0] for name, globs in named}
+
+
+def test_what_stands_in_a_room_is_found_before_and_after_its_walls_are_marked():
+    """In a room of 6 m by 5 m, read as one, all furniture together is no larger than a lorry."""
+    scene = ep.Scene()
+    scene.add(None, name="room")
+    for name, side, position, yaw in (("left", 6.0, (3.0, 2.5, 0.0), 0.0), ("right", 6.0, (3.0, -2.5, 0.0), np.pi),
+                                      ("back", 5.0, (6.0, 0.0, 0.0), -0.5 * np.pi)):
+        scene.add(ep.actors.wall(side, 2.6), name=name, material="concrete", position=position, yaw=yaw, parent="room")
+    _add(scene, "room", "cupboard", (1.0, 0.8, 1.9), (5.4, -2.0, 1.0))
+    _add(scene, "room", "table", (1.4, 0.8, 0.04), (2.9, 1.3, 0.72))
+    _add(scene, "room", "sofa", (1.6, 1.0, 0.4), (5.0, 1.7, 0.3))
+    found = {name: f"room/{name}" for name in ("cupboard", "table", "sofa")}
+    radar = make_radar().replace(position=(0.1, 0.0, 1.4))
+    assert ep.find_objects(scene, radar) == found
+    assert len(ep.mark_mirrors(scene, radar)) == 3
+    assert ep.find_objects(scene, radar) == found

@@ -1,7 +1,9 @@
 #include "echopath/posed/enclosures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/solid_angle.h"
@@ -12,22 +14,43 @@ namespace {
 
 constexpr double kWholeSphere = 0.99;  // of 4 pi sr; seams between the parts of a body may be open by less
 
-bool encloses(const Scene& scene, const PosedScene& pose, const Body& body, const Vec3& eye) {
-  if (!body.box.contains(eye)) return false;
+// Returns the solid angles that the triangles of a mesh fill, seen from `eye`; those that face it the other way count
+// negative.
+double angle_of(const Scene& scene, const PosedScene& pose, uint32_t mesh, const Vec3& eye) {
+  if (scene.node_of(mesh).material->is_sheet()) return 0.0;
+  const auto count = static_cast<uint32_t>(scene.node_of(mesh).mesh->triangles().size());
   double angle = 0.0;
-  for (const uint32_t id : body.meshes) {
-    if (scene.node_of(id).material->is_sheet()) continue;
-    const auto count = static_cast<uint32_t>(scene.node_of(id).mesh->triangles().size());
-    for (uint32_t triangle = 0; triangle < count; ++triangle) angle += solid_angle(pose.world_triangle(id, triangle), eye);
-  }
-  return std::abs(angle) > kWholeSphere * 4.0 * kPi;
+  for (uint32_t triangle = 0; triangle < count; ++triangle) angle += solid_angle(pose.world_triangle(mesh, triangle), eye);
+  return angle;
 }
 
-bool is_anything_outside(const std::vector<Body>& bodies, const Body& body) {
-  for (const Body& other : bodies) {
-    if (&other != &body && !body.box.contains(other.box)) return true;
+bool is_whole_sphere(double angle) { return std::abs(angle) > kWholeSphere * 4.0 * kPi; }
+
+bool is_anything_outside(const std::vector<Body>& bodies, const Eigen::AlignedBox3d& box) {
+  return std::ranges::any_of(bodies, [&](const Body& body) { return !box.contains(body.box); });
+}
+
+// Returns whether some other body or mesh is wholly beside the box of a mesh; a frame that reaches through a wall of its
+// room is not.
+bool is_anything_beside(const PosedScene& pose, const std::vector<Body>& bodies, const Body& of_mesh,
+                        const Eigen::AlignedBox3d& box) {
+  return std::ranges::any_of(of_mesh.meshes, [&](uint32_t id) { return !box.intersects(box_of(pose, id)); }) ||
+         std::ranges::any_of(bodies, [&](const Body& body) { return &body != &of_mesh && !box.intersects(body.box); });
+}
+
+// Returns the node of what holds `eye`, -1: nothing. That is the body or, of a body of many things, as a room with its
+// furniture, the one mesh.
+int around(const Scene& scene, const PosedScene& pose, const std::vector<Body>& bodies, const Body& body, const Vec3& eye) {
+  if (!body.box.contains(eye)) return -1;
+  std::vector<double> angles;
+  for (const uint32_t id : body.meshes) angles.push_back(angle_of(scene, pose, id, eye));
+  if (is_whole_sphere(std::reduce(angles.begin(), angles.end())) && is_anything_outside(bodies, body.box)) return body.node;
+  for (size_t i = 0; i < angles.size(); ++i) {
+    const uint32_t id = body.meshes[i];
+    if (is_whole_sphere(angles[i]) && is_anything_beside(pose, bodies, body, box_of(pose, id)))
+      return scene.meshes()[id].node;
   }
-  return false;
+  return -1;
 }
 
 }  // namespace
@@ -41,7 +64,8 @@ std::vector<Enclosure> enclosures(const Scene& scene, const PosedScene& pose, co
     if (antennas.empty()) continue;
     const Vec3 eye = world_from_radar * antennas.front().position;
     for (const Body& body : bodies) {
-      if (encloses(scene, pose, body, eye) && is_anything_outside(bodies, body)) found.push_back({body.node, of_receivers});
+      const int node = around(scene, pose, bodies, body, eye);
+      if (node >= 0) found.push_back({node, of_receivers});
     }
   }
   return found;

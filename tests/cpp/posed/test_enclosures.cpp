@@ -87,6 +87,33 @@ TEST(Enclosures, NoneWhereNothingIsOutside) {
   EXPECT_EQ(enclosures_at(room, kInside, 0.0).size(), 1u) << "a box that reaches out of the room";
 }
 
+// A cupboard that came with its room, as one object: wound as the walls or against them, the solid angles of both
+// are 8 pi or 0.
+TEST(Enclosures, AMeshOfABodyOfManyHoldsWhatIsInside) {
+  for (const bool is_inward : {false, true}) {
+    Scene scene;
+    const int room = add(scene, "room", nullptr, Vec3::Zero());
+    const int cupboard = add(scene, "cupboard", box(12, is_inward), Vec3::Zero(), room);
+    add(scene, "table", box(), Vec3(0, 4, 0), room);
+    std::vector<Vec3> corners = box()->vertices();
+    for (Vec3& corner : corners) corner *= 10;
+    add(scene, "walls", std::make_shared<const Mesh>(corners, box()->triangles()), Vec3::Zero(), room);
+    add(scene, "person", box(), Vec3(5, 0, 0));
+    const auto found = enclosures_at(scene, kInside, 0.0);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].node, cupboard);
+    EXPECT_TRUE(enclosures_at(scene, radar_at({3, 0, 0}, {3, 1, 0}), 0.0).empty()) << "between the walls alone";
+  }
+}
+
+TEST(Enclosures, AMeshThroughTheWallOfItsRoomIsNotOutside) {
+  Scene scene;
+  const int room = add(scene, "room", nullptr, Vec3::Zero());
+  add(scene, "walls", box(), Vec3::Zero(), room);
+  add(scene, "frame", box(), Vec3(1.5, 0, 0), room);
+  EXPECT_TRUE(enclosures_at(scene, radar_at({-0.5, 0, 0}, {-0.5, 0, 0.1}), 0.0).empty());
+}
+
 // Two open halves that close each other, below one parent; a pane in place of one of them lets waves out.
 TEST(Enclosures, PartsCloseABodyTogetherAndSheetsOpenIt) {
   const auto half = [](bool is_rear) {

@@ -29,3 +29,14 @@ def test_a_radar_on_its_car_sees_what_is_ahead_without_a_word():
         warnings.simplefilter("error")
         paths = ep.trace(road_with_car((-2.1, 0.0, 0.5)), RADAR, num_rays=2000)
     assert paths.select("T 'ball' R").num_paths > 0
+
+
+def test_a_radar_in_a_cupboard_of_a_room_that_is_one_object_is_told():
+    scene = ep.Scene()
+    scene.add(name="room")
+    for name, side, material in (("walls", 20.0, "concrete"), ("cupboard", 1.2, "metal")):
+        scene.add(ep.actors.box(side), name=name, parent="room", material=material, position=(0.0, 0.0, 0.5))
+    scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(4.0, 0.0, 0.5), smooth=True)
+    with pytest.warns(RuntimeWarning, match="stands inside of 'room/cupboard', which is closed"):
+        paths = ep.trace(scene, RADAR, num_rays=2000)
+    assert paths.select("T 'ball' R").num_paths == 0

@@ -89,9 +89,15 @@ void ProbedChirp::add(const ProbedChirp& other) {
   for (size_t s = 0; s < value.size(); ++s) value[s] += other.value[s];
   amplitude_sum += other.amplitude_sum;
   num_echoes += other.num_echoes;
-  phase_error = std::max(phase_error, other.phase_error);
+  const double power = compared_power + other.compared_power;
+  const auto of_both = [&](double error, double other_error) {
+    if (power == 0.0) return std::max(error, other_error);
+    return std::sqrt((error * error * compared_power + other_error * other_error * other.compared_power) / power);
+  };
+  phase_error = of_both(phase_error, other.phase_error);
   largest_phase_error = std::max(largest_phase_error, other.largest_phase_error);
-  amplitude_error = std::max(amplitude_error, other.amplitude_error);
+  amplitude_error = of_both(amplitude_error, other.amplitude_error);
+  compared_power = power;
   for (size_t i = 0; i < shares.size(); ++i) {
     for (size_t s = 0; s < shares[i].field.size(); ++s) shares[i].field[s] += other.shares[i].field[s];
     shares[i].power += other.shares[i].power;
@@ -284,6 +290,7 @@ void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Jo
     chirp.largest_phase_error = std::max(chirp.largest_phase_error, phase);
   }
   chirp.num_echoes = std::ssize(paths);
+  chirp.compared_power = power > 0.0 ? power : of_amplitude;
   if (power > 0.0) {
     chirp.phase_error = std::sqrt(of_phase / power);
     chirp.amplitude_error = std::sqrt(of_amplitude / power);

@@ -35,13 +35,15 @@ struct ProbedChirp {
   double phase_error = 0.0;          // rad at the start frequency, rms weighted by the power of the echoes
   double largest_phase_error = 0.0;  // rad
   double amplitude_error = 0.0;      // rms of the differences over rms of the amplitudes
+  double compared_power = 0.0;       // W, sum of |amplitude|^2 of these echoes; where all are 0, of the differences
   // These are the shares of halves 0 and 1 (half_of_ray) of the rays of each batch in turn, and last of the image method's
   // paths: 2 batches + 1.
   std::vector<RayShare> shares;
   double power_sum = 0.0;  // W, of |amplitude|^2 of all paths
   double strongest = 0.0;  // W, of the strongest path that rays found
 
-  // Adds the same chirp and samples of another record, whose echoes add up with these.
+  // Adds the same chirp and samples of another record, whose echoes add up with these. Errors count by the power compared,
+  // so that those of a record that brings next to nothing do not stand for all.
   void add(const ProbedChirp& other);
 };
 

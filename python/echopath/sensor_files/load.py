@@ -83,8 +83,8 @@ def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal
     Returns a SensorConfig. Raises ep.FileError naming the line, ValueError for boards.
     """
     lines = read_lines(Path(path))
-    chosen = _board(lines, board)
     plans = plans_of(lines)
+    chosen = _board(lines, board)
     radars = tuple(_radar(lines, chosen, plan, ideal) for plan in plans)
     return SensorConfig(radars, tuple(plan.start_time for plan in plans), plans[0].interval, plans[0].num_frames, chosen.name,
                         lines.others)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+from typing import NamedTuple
 
 import numpy as np
 
@@ -94,17 +95,38 @@ class Hidden:
 def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
     """Objects of which something else hides a part from the first antennas at a time in s."""
     names = [name for name in dict.fromkeys(object_of(mesh.name) for mesh in scene.meshes) if scene[name].visible]
-    found = (_hidden(scene, radar, name, names, time, progress) for name in names)
+    facing = [_facing(scene, radar, name, names, time) for name in names]
+    if not facing:
+        return []
+    places = np.concatenate([one.points.at(scene, time) for one in facing])  # together: each search finds the scene's edges anew
+    ways = [ways_to(scene, radar, end, places, time, progress=progress) for end in _first_antennas(radar)]
+    stops = np.cumsum([len(one.points) for one in facing])
+    found = [_hidden(one, [{key: values[stop - len(one.points):stop] for key, values in way.items()} for way in ways])
+             for one, stop in zip(facing, stops)]
     return [one for one in found if one.is_hidden.any()]
 
 
-def _hidden(scene, radar, name, names, time, progress) -> Hidden:
+class _Facing(NamedTuple):
+    """An object, the scene without the others, and the points of it that face the radar."""
+
+    name: str
+    alone: _core.Scene
+    points: SurfacePoints
+
+
+def _facing(scene, radar, name, names, time) -> _Facing:
     alone = _alone(scene, name, names)
     points = surface_points(scene, [mesh for mesh in scene.meshes if object_of(mesh.name) == name], time, NUM_POINTS)
-    places, ends = points.at(scene, time), (radar.transmitters[0], radar.receivers[0])
-    facing = np.all([_is_free(ways_to(alone, radar, end, places, time, edges=False)) for end in ends], axis=0)
-    ways = tuple(ways_to(scene, radar, end, places[facing], time, progress=progress) for end in ends)
-    return Hidden(name, alone, points[facing], ways, ~np.all([_is_free(way) for way in ways], axis=0))
+    ways = [ways_to(alone, radar, end, points.at(scene, time), time, edges=False) for end in _first_antennas(radar)]
+    return _Facing(name, alone, points[np.all([_is_free(way) for way in ways], axis=0)])
+
+
+def _hidden(facing: _Facing, ways) -> Hidden:
+    return Hidden(*facing, tuple(ways), ~np.all([_is_free(way) for way in ways], axis=0))
+
+
+def _first_antennas(radar) -> tuple:
+    return radar.transmitters[0], radar.receivers[0]
 
 
 def _told(scene, radar, hidden: Hidden, time, num_rays, progress) -> AroundCorner:

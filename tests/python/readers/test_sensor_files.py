@@ -177,6 +177,12 @@ def test_bad_lines_are_errors_with_their_numbers(written, lines, told):
         ep.load_radar(written(**lines))
 
 
+def test_what_is_no_configuration_is_told_before_a_board_is_asked_for(tmp_path):
+    (tmp_path / "room.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    with pytest.raises(ep.FileError, match="room.obj: has no frameCfg"):
+        ep.load_radar(tmp_path / "room.obj")
+
+
 def test_boards_that_nobody_names_are_asked_for(written):
     with pytest.raises(ValueError, match="^board: must be given, one of .*: the file says nothing"):
         ep.load_radar(written(CONFIGURATION.replace("% Platform : xWR68xx\n", "")))

@@ -9,8 +9,8 @@ namespace {
 bool begins_character(char byte) { return (byte & 0xc0) != 0x80; }
 
 size_t end_of_character(std::string_view name, size_t n) {
-  while (++n < name.size() && !begins_character(name[n])) {
-  }
+  do ++n;
+  while (n < name.size() && !begins_character(name[n]));
   return n;
 }
 

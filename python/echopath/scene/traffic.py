@@ -217,7 +217,7 @@ def _require_new(scene, names, parent: str | None) -> None:
 
 def usual_actor(name: str, trajectory: Trajectory):
     """The actor that is usual for the kind of a trajectory, which follows it."""
-    actor, keywords, _ = usual_kind(trajectory.kind, trajectory._is_person)
+    actor, keywords, _ = usual_kind(trajectory.kind, trajectory.is_person)
     if actor == "pedestrian" and usual_speed(trajectory._track) > 2.0:
         actor = "runner"
     return getattr(actors, actor)(trajectory=trajectory, **keywords)

@@ -71,8 +71,10 @@ class _File:
     def _actor(self, trajectory: Trajectory) -> str:
         """The actor of what goes along a trajectory, "" for no object."""
         shape: TrafficShape | None = of_kind(self._shapes.items(), trajectory.kind, None)
+        if shape is not None and shape.maker is None:
+            return ""
         if shape is None or shape.actor is None:
-            return usual_kind(trajectory.kind, trajectory._is_person).actor
+            return usual_kind(trajectory.kind, trajectory.is_person).actor
         return shape.actor
 
     def _vehicle_length(self):

@@ -18,8 +18,8 @@ from .traffic_tables import TrafficModelTable
 class TrafficShape(NamedTuple):
     """What a type of traffic looks like.
 
-    maker: what `add_traffic` takes, None: no object; actor: its name, "" of no object, None: a model, which stands for what is
-    usual; length: m, twice from the middle to the front, 0 of those whose middles files have
+    maker: what `add_traffic` takes, None: no object; actor: its name, None where it has none, as a model; length: m, twice from
+    the middle to the front, 0 of those whose middles files have
     """
 
     maker: ActorOf | None
@@ -30,7 +30,7 @@ class TrafficShape(NamedTuple):
 def traffic_shape(value, glob: str, key: str, folder: Path) -> TrafficShape:
     """That of a value of `actors`. glob: of the types; key: of the value. Raises ValueError and ep.FileError naming the key."""
     if value is False:
-        return TrafficShape(None, "", 0.0)
+        return TrafficShape(None, None, 0.0)
     if isinstance(value, TrafficModelTable):
         return _of_model(value, usual_kind(glob).actor, key, folder)
     return _of_actor(value, key, folder)
@@ -50,7 +50,7 @@ def _of_actor(value, key: str, folder: Path) -> TrafficShape:
     if "trajectory" not in actor_keywords(name, place):
         raise refused(ToldValueError, place, f"an actor that takes a trajectory ({', '.join(following_actors())})", name)
     make = actor_maker(name, parameters, folder, key)
-    front = _front_of(named_actor(name, parameters, folder, key))
+    front = _front_of(named_actor(name, parameters, folder, key))  # which tells of wrong parameters at once, too
     length = 2.0 * front if name in VEHICLES else 0.0
     return TrafficShape(lambda _, trajectory: make(trajectory=trajectory), name, length)
 

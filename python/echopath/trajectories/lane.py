@@ -117,12 +117,12 @@ class Lane:
     @checked(self=anything, speed=anything, offset=real(-WIDEST, WIDEST, "m"), changes=anything, reverse=flag, stops=anything,
              acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
              speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=GOES_ON,
-             outside=one_of(Outside), pitch=flag, kind=text)
+             outside=one_of(Outside), pitch=flag, kind=text, is_person=flag)
     def trajectory(self, *, speed: ArrayLike, offset: float = 0.0, changes: ArrayLike = (), reverse: bool = False,
                    stops: ArrayLike = (), acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
                    lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
                    start_time: float = 0.0, goes_on: float = 0.0, outside: Outside = "stands", pitch: bool = False,
-                   kind: str = "") -> Trajectory:
+                   kind: str = "", is_person: bool = False) -> Trajectory:
         """Drives along the lane, or so far beside it: a Trajectory.
 
         offset: m to the left of the centre line as its points go; `lane.width` is the middle of the next lane on the left
@@ -130,7 +130,7 @@ class Lane:
             in m; a quintic, which begins and ends without sideways speed and acceleration
         reverse: whether it drives against the points; then distances count from the last one
         speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time, goes_on, outside, pitch,
-            kind: as of Trajectory; distances of `speed` and `stops` are those that it travels
+            kind, is_person: as of Trajectory; distances of `speed` and `stops` are those that it travels
         Returns a Trajectory. Raises TypeError or ValueError naming the argument.
         """
         arguments = {name: value for name, value in locals().items() if name != "self"}
@@ -142,7 +142,7 @@ class Lane:
         profile = profile_along(path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time)
         trajectory = Trajectory.__new__(Trajectory)
         trajectory._follow(Track(path, profile), goes_on=goes_on, outside=outside, pitch=pitch, kind=kind,
-                           made=(self.trajectory, arguments))
+                           is_person=is_person, made=(self.trajectory, arguments))
         return trajectory
 
     def __eq__(self, other: object) -> bool:

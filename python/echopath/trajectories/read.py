@@ -23,7 +23,7 @@ from .markup import PACKED, read_fcd, read_gpx
 from .samples import Samples, refuse
 from .smoothing import smoothed
 from .table import read_table
-from .trajectory import Trajectory, person_along
+from .trajectory import Trajectory
 
 MOST_SECONDS = 1e6     # from which on times are taken to count from some day long ago
 SUFFIXES = (".csv", ".txt", ".tsv", ".xml", ".xml.gz", ".gpx")
@@ -153,9 +153,8 @@ def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: flo
         doubts += [f"'{name[:60]}' {words}" for words in doubts_of(np.array(samples.times), places, samples.yaws, samples.speeds)]
         try:
             places = placement.places(smoothed(np.array(samples.times), places, smoothing))
-            make = person_along if samples.is_person else Trajectory
-            found[name] = make(points=places, times=samples.times, yaw=placement.yaws(samples.yaws) or None,
-                               speed=samples.speeds or None, kind=samples.kind, **ends)
+            found[name] = Trajectory(points=places, times=samples.times, yaw=placement.yaws(samples.yaws) or None,
+                                     speed=samples.speeds or None, kind=samples.kind, is_person=samples.is_person, **ends)
         except ValueError as error:
             refuse(path, samples.lines[0], f"'{name[:60]}': {error}")
     if doubts:

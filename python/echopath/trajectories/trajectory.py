@@ -47,24 +47,23 @@ class Trajectory(_core.CurveMotion):
         (`scene[name].lifetime`), as vehicles that come and go; a radar stands there all the same
     pitch: whether its nose follows the slope of the path; else it stays level
     kind: what moves, as files tell ("passenger")
+    is_person: whether it is a person, who is no vehicle whatever the word of the kind, as the persons of SUMO
 
     What the core follows are cubics through positions and velocities (`translation`, `rotation`) at times at which they err by
     less than 10 micrometres, and the rotation by less than 4 microradians. Raises TypeError or ValueError naming the argument.
     """
 
-    _is_person = False
-
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
              yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
              acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
              speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=GOES_ON,
-             outside=one_of(Outside), pitch=flag, kind=text)
+             outside=one_of(Outside), pitch=flag, kind=text, is_person=flag)
     def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,
                  yaw: ArrayLike | None = None, turn_radius: float | None = None, stops: ArrayLike = (),
                  acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
                  lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
                  start_time: float = 0.0, goes_on: float = 0.0, outside: Outside = "stands", pitch: bool = False,
-                 kind: str = ""):
+                 kind: str = "", is_person: bool = False):
         arguments = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if times is None:
             if yaw is not None:
@@ -74,12 +73,14 @@ class Trajectory(_core.CurveMotion):
                                               start_time))
         else:
             track = _timed(arguments)
-        self._follow(track, goes_on=goes_on, outside=outside, pitch=pitch, kind=kind, made=(Trajectory, arguments))
+        self._follow(track, goes_on=goes_on, outside=outside, pitch=pitch, kind=kind, is_person=is_person,
+                     made=(Trajectory, arguments))
 
-    def _follow(self, track: Track, *, goes_on: float, outside: Outside, pitch: bool, kind: str, made: tuple) -> None:
+    def _follow(self, track: Track, *, goes_on: float, outside: Outside, pitch: bool, kind: str, is_person: bool,
+                made: tuple) -> None:
         """Becomes the motion of a track. made: (what makes it, its keywords), for copies."""
         self._track = Track(track.path, track.profile.going_on(goes_on), track.headings)
-        self._has_pitch, self._kind, self._made, self._outside = pitch, kind, made, outside
+        self._has_pitch, self._kind, self._is_person, self._made, self._outside = pitch, kind, is_person, made, outside
         junctions = self._track.junctions()
         translation = curve_through(self._track.places, junctions, TOLERANCE)
         rotation = curve_through(lambda t: self._track.rotations(t, pitch), junctions, ROTATION_TOLERANCE)
@@ -109,6 +110,11 @@ class Trajectory(_core.CurveMotion):
     def kind(self) -> str:
         """What moves, "" where nothing is known."""
         return self._kind
+
+    @property
+    def is_person(self) -> bool:
+        """Whether it is a person, who is no vehicle whatever the word of the kind."""
+        return self._is_person
 
     def motion(self, position: ArrayLike = (0.0, 0.0, 0.0)) -> _core.CurveMotion:
         """The CurveMotion that the core follows; scenes keep it in the place of the trajectory.
@@ -193,7 +199,8 @@ class Trajectory(_core.CurveMotion):
 
     def __eq__(self, other: object) -> bool:
         return super().__eq__(other) and (not isinstance(other, Trajectory) or
-                                          (self.kind, self.lifetime) == (other.kind, other.lifetime))
+                                          (self.kind, self.is_person, self.lifetime) ==
+                                          (other.kind, other.is_person, other.lifetime))
 
     def __hash__(self) -> int:
         return super().__hash__()
@@ -201,13 +208,6 @@ class Trajectory(_core.CurveMotion):
     def __repr__(self) -> str:
         kind = f"'{self.kind}', " if self.kind else ""
         return f"Trajectory({kind}{self.length:.6g} m from {self.begin:g} to {self.end:g} s)"
-
-
-def person_along(**arguments) -> Trajectory:
-    """The Trajectory of these arguments of a person of SUMO, who is no vehicle, whatever the name of the type."""
-    made = Trajectory(**arguments)
-    made._is_person, made._made = True, (person_along, made._made[1])
-    return made
 
 
 def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):

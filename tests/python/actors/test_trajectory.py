@@ -184,6 +184,8 @@ def test_copies_are_equal_and_change():
         np.testing.assert_allclose(later.position(later.end), one.position(one.end))
     assert corner(speed=5.0) == corner(speed=5.0) != corner(speed=6.0)
     assert corner(speed=5.0).replace(speed=6.0) == corner(speed=6.0)
+    assert corner(speed=5.0, kind="bus").replace(is_person=True) == corner(speed=5.0, kind="bus", is_person=True) \
+        != corner(speed=5.0, kind="bus")
 
 
 def test_a_scene_and_a_radar_take_it():

@@ -326,7 +326,7 @@ def test_persons_of_any_type_are_no_vehicles(tmp_path):
     copies = [found["walker"], found["walker"].shifted(5.0), pickle.loads(pickle.dumps(found["walker"]))]
     scene = ep.Scene()
     ep.add_traffic(scene, {str(number): one for number, one in enumerate(copies)})
-    assert all(one.kind == "bus_rider" for one in copies)
+    assert all(one.kind == "bus_rider" and one.is_person for one in copies)
     assert {"0/leg_left/foot", "1/leg_left/foot", "2/leg_left/foot"} <= set(scene)
 
 

@@ -10,7 +10,7 @@ import echopath as ep
 STEP = 0.5  # s
 SPEED = 8.0  # m/s
 TOLERANCE = 1e-5  # m: rows have six digits behind the point
-# A box of 4.4 m that looks along the +y of its file, with its origin 1 m behind its middle, on the ground, and a wall behind it.
+# A box of 4.4 m that looks along the +y of its file, with its origin 1 m behind its middle, on the ground.
 BOX = np.array([(x, y, z) for x in (-0.9, 0.9) for y in (-1.2, 3.2) for z in (0.0, 1.5)])
 FACES = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
 HEADINGS = {"north": ("taxi_a", 0.0), "east": ("Taxi_b", 90.0), "slant": ("taxi_c", 215.0), "other": ("passenger", 90.0)}

@@ -18,7 +18,7 @@ from ..base.counts import counted
 from ..base.made_by import made_by
 from ..readers.model import Model
 from ..readers.names import fit_name, unique
-from ..trajectories.kinds import of_kind, usual_kind
+from ..trajectories.kinds import of_kind, require_kinds, usual_kind
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 
@@ -90,9 +90,20 @@ def _is_maker(value) -> bool:
     return callable(value) and not isinstance(value, type)
 
 
-def _maker_of_kinds(argument: str, makers: Mapping) -> ActorOf:
+class _MakerOfKinds:
+    """Makes actors by the kinds of trajectories. makers: of globs of kinds, None: no object."""
+
+    def __init__(self, makers: dict[str, ActorOf | None]):
+        self.makers = makers
+
+    def __call__(self, name: str, trajectory: Trajectory):
+        maker = of_kind(self.makers.items(), trajectory.kind, usual_actor)
+        return None if maker is None else maker(name, trajectory)
+
+
+def _maker_of_kinds(argument: str, makers: Mapping) -> _MakerOfKinds:
     """The maker of a dict {glob of kinds: maker, model, name of an actor or None}."""
-    found = []
+    found = {}
     for glob, maker in makers.items():
         place = f"{argument}['{text(argument, glob)}']"
         if isinstance(maker, str):
@@ -101,12 +112,8 @@ def _maker_of_kinds(argument: str, makers: Mapping) -> ActorOf:
             maker = _always(maker)
         elif maker is not None and not _is_maker(maker):
             raise refused(TypeError, place, "a callable (name, trajectory), a Model, the name of an actor, or None", maker)
-        found.append((glob, maker))
-
-    def made(name: str, trajectory: Trajectory):
-        maker = of_kind(found, trajectory.kind, usual_actor)
-        return None if maker is None else maker(name, trajectory)
-    return made
+        found[glob] = maker
+    return _MakerOfKinds(found)
 
 
 def _always(model: Model) -> ActorOf:
@@ -155,7 +162,8 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
         `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car; persons of SUMO
         are no vehicles. Or a dict {glob of kinds: such a callable, a Model, whose meshes all share, the name of an actor, or
-        None: no object}, of which the first that takes the kind counts, in whatever case; kinds that none takes are as usual:
+        None: no object}, of which the first that takes the kind counts, in whatever case; each glob must take one, and kinds
+        that none takes are as usual:
         `{"police*": ep.load_model("police.glb"), "taxi": "car", "tram*": None}`
     exclude: globs of names that are left out, such as the car that carries the radar; each must take one
     during: (begin, end) in s, outside of which nothing is of interest: who is on its way at no time of it is left out. None: all
@@ -166,6 +174,8 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     """
     time = None if time is None else real(unit="s")("time", time)
     maker = actor_of if callable(actor_of) else usual_actor
+    if isinstance(maker, _MakerOfKinds):
+        require_kinds("actor_of", maker.makers, (one.kind for one in trajectories.values()))
     chosen = chosen_of(trajectories, list(exclude), during)
     if during is not None and trajectories and not chosen:
         ways = trajectories.values()

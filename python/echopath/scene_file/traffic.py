@@ -8,8 +8,9 @@ from ..arguments.checks import refused
 from ..arguments.names import first_names
 from ..scene.scene import Scene
 from ..scene.traffic import add_traffic, chosen_of, object_names
-from ..trajectories import Trajectory, read_trajectories
-from ..trajectories.kinds import of_kind, usual_kind
+from ..trajectories import Trajectory
+from ..trajectories.kinds import of_kind, require_kinds, usual_kind
+from ..trajectories.read import read_along
 from .errors import ToldValueError, blamed
 from .traffic_shapes import TrafficShape, traffic_shape
 from .table import yaw_of
@@ -53,9 +54,12 @@ class _File:
         self._table, self._key = table, key
         self._shapes = {glob: traffic_shape(value, glob, f"{key}.actors.{glob}", folder) for glob, value in table.actors.items()}
         with blamed(key, file="file"):
-            self.trajectories = read_trajectories(
+            self.trajectories = read_along(
                 folder / table.file, origin=table.origin, smoothing=table.smoothing, vehicle_length=self._vehicle_length(),
                 goes_on=table.goes_on, outside=table.outside, position=table.position, yaw=yaw_of(table.yaw_deg))
+            kinds = [one.kind for one in self.trajectories.values()]
+            require_kinds("actors", self._shapes, kinds)
+            require_kinds("vehicle_length", table.vehicle_length if isinstance(table.vehicle_length, dict) else (), kinds)
 
     def add_to(self, scene: Scene) -> None:
         makers = {glob: shape.maker for glob, shape in self._shapes.items()}
@@ -78,7 +82,7 @@ class _File:
         return shape.actor
 
     def _vehicle_length(self):
-        """What read_trajectories takes: m of all vehicles, or of those by globs of their types."""
+        """What read_along takes: m of all vehicles, or of those by globs of their types."""
         given = self._table.vehicle_length
         if given is None or isinstance(given, dict):
             return (given or {}) | {glob: shape.length for glob, shape in self._shapes.items() if glob not in (given or {})}

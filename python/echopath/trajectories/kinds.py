@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple, TypeVar
 
 from .. import _core
+from ..arguments.checks import refused
+from ..arguments.names import first_names
 
 T = TypeVar("T")
 
@@ -31,9 +33,23 @@ _KINDS = {"truck": _TRUCK, "trailer": _TRUCK, "lorry": _TRUCK, "tram": _TRUCK, "
 VEHICLES = "bicycle", "car", "cyclist", "motorcycle", "truck", "van"  # actors whose fronts files have, not their middles
 
 
+def takes_kind(glob: str, kind: str) -> bool:
+    """Whether a glob takes a kind, in whatever case."""
+    return _core.glob_takes(glob.lower(), kind.lower())
+
+
 def of_kind(values: Iterable[tuple[str, T]], kind: str, usual: T) -> T:
-    """The value of the first glob that takes the kind, in whatever case; the usual one where none does."""
-    return next((value for glob, value in values if _core.glob_takes(glob.lower(), kind.lower())), usual)
+    """The value of the first glob that takes the kind; the usual one where none does."""
+    return next((value for glob, value in values if takes_kind(glob, kind)), usual)
+
+
+def require_kinds(argument: str, globs: Iterable[str], kinds: Iterable[str]) -> None:
+    """Raises ValueError naming the argument and the first glob that takes none of the kinds that there are."""
+    there = list(dict.fromkeys(kinds))
+    for glob in globs:
+        if not any(takes_kind(glob, kind) for kind in there):
+            raise refused(ValueError, argument, "globs of kinds of which each takes one of "
+                          f"{first_names([kind for kind in there if kind]) or 'none'}", glob)
 
 
 def usual_kind(name: str, is_person: bool = False) -> Kind:

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments.checks import array, checked, is_writable, one_of, real, refused, vector
+from ..arguments.checks import Rule, array, checked, is_writable, one_of, real, refused, vector
 from ..arguments.checks import file as file_rule
 from ..base.callers import warn_user
 from ..base.counts import counted
 from .arguments import GOES_ON, Outside
 from .doubts import doubts_of
 from .geodesy import east_north_up
-from .kinds import of_kind, usual_kind
+from .kinds import of_kind, require_kinds, usual_kind
 from .markup import PACKED, read_fcd, read_gpx
 from .samples import Samples, refuse
 from .smoothing import smoothed
@@ -47,8 +47,12 @@ def length_rule(argument: str, value):
     return None if value is None else rule(argument, value)
 
 
-@checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=length_rule, goes_on=GOES_ON,
-         outside=one_of(Outside), position=vector, yaw=real(unit="rad"))
+_RULES: dict[str, Rule] = {
+    "path": file_rule, "origin": _origin_rule, "smoothing": real(0.0, unit="m"), "vehicle_length": length_rule,
+    "goes_on": GOES_ON, "outside": one_of(Outside), "position": vector, "yaw": real(unit="rad")}
+
+
+@checked(**_RULES)
 def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None = None, smoothing: float = 0.0,
                       vehicle_length: float | Mapping[str, float] | None = None, goes_on: float = 0.0,
                       outside: Outside = "absent", position: ArrayLike = (0.0, 0.0, 0.0),
@@ -68,7 +72,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all
     vehicle_length: m, or {glob of types: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which
         its files tell; None, and types that none takes: as long as the actor that `add_traffic` takes for the type, so that
-        its front is where the file has it (with an `actor_of` of one's own, give the lengths of its actors)
+        its front is where the file has it (with an `actor_of` of one's own, give the lengths of its actors). Each glob must
+        take a type of the file
     goes_on: s, so long they go straight on before their first and behind their last positions; outside: "absent": nobody is
         there before and behind that, or "stands"; both as of Trajectory
     position, yaw: [3] m and rad (left positive), where the origin and the +x of the file are in the world: a point p of the file
@@ -80,6 +85,18 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     degrees do.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
+    found = read_along(path, origin=origin, smoothing=smoothing, vehicle_length=vehicle_length, goes_on=goes_on,
+                       outside=outside, position=position, yaw=yaw)
+    if isinstance(vehicle_length, Mapping):
+        require_kinds("vehicle_length", vehicle_length, (one.kind for one in found.values()))
+    return found
+
+
+@checked(**_RULES)
+def read_along(path: str | os.PathLike[str], *, origin: ArrayLike | None, smoothing: float,
+               vehicle_length: float | Mapping[str, float] | None, goes_on: float, outside: Outside, position: ArrayLike,
+               yaw: float) -> dict[str, Trajectory]:
+    """As `read_trajectories`, with lengths by globs of which some may take no type of the file."""
     _core.warn_of_turns(yaw)
     path = Path(path)
     suffix = path.suffix.lower()

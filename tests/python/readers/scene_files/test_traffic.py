@@ -212,6 +212,10 @@ def test_persons_are_not_there_while_they_ride_in_a_vehicle(tmp_path):
     ("", "during = [3, 2]", r"traffic\[0\].during: must be \[begin, end\] in s"),
     ("", "excluded = []", r"traffic\[0\].excluded: unknown key; did you mean 'exclude'"),
     ("", "vehicle_length = -1", r"traffic\[0\].vehicle_length: must be a finite number from 0 to 100 m, got -1"),
+    ("", 'actors = {"bus*" = "van", bus = "van"}', r"traffic\[0\]: actors: must be globs of kinds of which each takes one of "
+     r"passenger, truck_heavy, bus_city and 4 more, got 'bus'"),
+    ("", 'actors = {"tram*" = false}', r"traffic\[0\]: actors: must be globs of kinds .*, got 'tram\*'"),
+    ("", "vehicle_length = {motorcycle = 2.2, truck = 7.1}", r"traffic\[0\]: vehicle_length: must be globs .*, got 'truck'"),
     ("", 'actors = {bus = "buss"}', r"traffic\[0\].actors.bus: unknown actor 'buss'"),
     ("", 'actors = {bus = "tree"}', r"traffic\[0\].actors.bus: must be an actor that takes a trajectory .*, got 'tree'"),
     ("", "actors = {bus = true}",
@@ -239,13 +243,15 @@ def test_python_takes_actors_by_types_and_leaves_out_names(folder):
     made = ep.add_traffic(scene, found, actor_of={"truck*": "bicycle", "PASS*": None, "bus*": lambda name, one: ep.actors.cyclist(
         trajectory=one)}, exclude="walker*", during=(0.0, 0.2))
     assert list(made) == ["flow_1", "flow_2", "flow_3"]
+    with pytest.raises(ValueError, match="^actor_of: must be globs of kinds .* passenger, .* and 4 more, got 'lorry'"):
+        ep.add_traffic(ep.Scene(), found, actor_of={"TRUCK*": "bicycle", "lorry": None})
     names = {mesh.name for mesh in scene.meshes}
     assert "flow_1/wheel_front/tyre" in names and any(name.startswith("flow_2/rider/") for name in names)
 
 
 @pytest.mark.parametrize("argument, value", [
     ("exclude", 5), ("exclude", [""]), ("exclude", ["nobody"]), ("during", (2, 1)), ("during", 3), ("actor_of", {"a": 5}),
-    ("actor_of", {"a": "tree"})])
+    ("actor_of", {"a": "tree"}), ("actor_of", {"": "car", "taxi": "car"})])
 def test_wrong_arguments_of_traffic_are_named(argument, value):
     with pytest.raises((TypeError, ValueError), match=rf"^{argument}(\['a'\])?: must be"):
         ep.add_traffic(ep.Scene(), {"a": ep.Trajectory([(0, 0), (9, 0)], speed=1)}, **{argument: value})

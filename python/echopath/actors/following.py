@@ -49,7 +49,7 @@ class Wheels:
     """
 
     def __init__(self, trajectory: Trajectory, rolling: Rolling, junctions):
-        self._track, self._rolling, self._junctions = trajectory._track, rolling, junctions
+        self._trajectory, self._track, self._rolling, self._junctions = trajectory, trajectory._track, rolling, junctions
         self._ways: dict[float | None, tuple] = {}
         self._yaw_at_begin = rolling.yaw(np.array([rolling.rolled.begin]))[0][0]
 
@@ -60,7 +60,8 @@ class Wheels:
         that steers, None: it does not
         """
         if wheelbase not in self._ways:
-            self._ways[wheelbase] = Repeated(lambda times: self._way(times, wheelbase)), self._junctions_of(wheelbase)
+            self._ways[wheelbase] = (Repeated(lambda times: self._way(times, wheelbase)),
+                                     self._trajectory._within_details(self._junctions_of(wheelbase)))
         repeated, junctions = self._ways[wheelbase]
         ways = repeated.anew()
 
@@ -122,7 +123,7 @@ class Repeated:
 def wheels_along(trajectory: Trajectory) -> Wheels:
     """The Wheels of a vehicle that is carried by its trajectory."""
     track = trajectory._track
-    return Wheels(trajectory, Rolling(track.rolled(), track.yaws), track.junctions())
+    return Wheels(trajectory, Rolling(track.rolled, track.yaws), track.junctions())
 
 
 def turned(yaw, yaw_rate, angle=0.0, rate=0.0):
@@ -152,10 +153,11 @@ def _steering(track, times, wheelbase: float, ahead: float = 0.0):
 def key_times(trajectory: Trajectory, rate: float):
     """Times [T] in s, multiples of a power of two of a second, at least `rate` a second while it moves."""
     step = 2.0 ** -np.ceil(np.log2(rate))
-    if (trajectory.end - trajectory.begin) / step > MOST_KEYS:
+    begin, *_, end = trajectory._within_details([])
+    if (end - begin) / step > MOST_KEYS:
         raise refused(ValueError, "trajectory", f"at most {MOST_KEYS * step:g} s long at such a keyframe_rate", trajectory)
-    grid = np.arange(np.ceil(trajectory.begin / step), np.floor(trajectory.end / step) + 1.0) * step
-    times = np.unique(np.concatenate([[trajectory.begin], grid, [trajectory.end]]))
+    grid = np.arange(np.ceil(begin / step), np.floor(end / step) + 1.0) * step
+    times = np.unique(np.concatenate([[begin], grid, [end]]))
     close = np.flatnonzero(np.diff(times) < 1e-3 * step)
     times = np.delete(times, np.where(close == 0, 1, close))
     moves = trajectory.speed(times) > 0.0

@@ -27,7 +27,7 @@ def model_along(model: Model, trajectory, way: float | None) -> Model:
     if way is None:
         raise ValueError("way: must be given, in m of a loop, for a model whose animation neither goes ahead nor has feet that "
                          "stand, got None")
-    player = _Player(trajectory._track, period, way)
+    player = _Player(trajectory, period, way)
     nodes = [dataclasses.replace(node, motion=player.motion(node.motion), deformation=player.deformation(node.deformation))
              for node in model.nodes]
     note = f"its animation of {period:g} s is played once in {way:.3g} m of the trajectory"
@@ -60,10 +60,10 @@ def _periods(moving):
 
 
 class _Player:
-    """Motions as they are along a Track; what nodes share is made once."""
+    """Motions as they are along a Trajectory; what nodes share is made once."""
 
-    def __init__(self, track, period: float, way: float):
-        self._track, self._period, self._way = track, period, way
+    def __init__(self, trajectory, period: float, way: float):
+        self._trajectory, self._period, self._way = trajectory, period, way
         self._made: dict[int, tuple] = {}
 
     def motion(self, motion):
@@ -90,7 +90,7 @@ class _Player:
         """A loop begins with its first pose where the trajectory begins, whatever its offset."""
         if curve is None:
             return None
-        return PlayedCurve(curve, self._period, is_rotation).along(self._track, self._way)
+        return PlayedCurve(curve, self._period, is_rotation).along(self._trajectory, self._way)
 
 
 def _way_of(model: Model, period: float) -> tuple[float | None, float]:

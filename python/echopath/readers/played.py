@@ -56,10 +56,12 @@ class PlayedCurve:
         unit = values / length
         return unit, (rates - np.sum(rates * unit, axis=-1, keepdims=True) * unit) / length
 
-    def along(self, track, way: float):
-        """The Curve over time of a Track (trajectories/track.py) by whose distance, `way` m a loop, it is played."""
-        begin, end = track.profile.begin, track.profile.end
-        first, last = track.profile.at(np.array([begin, end]))[0] / way
+    def along(self, trajectory, way: float):
+        """The Curve over the details of a Trajectory by whose distance, `way` m a loop, it is played."""
+        track = trajectory._track
+        junctions = trajectory._within_details(track.profile.times)
+        begin = junctions[0]
+        first, last = track.profile.at(junctions[[0, -1]])[0] / way
         loops = np.arange(np.floor(first), np.ceil(last) + 1.0)
         passed = (loops[:, None] + self.phases).ravel()
         passed = passed[(passed > first) & (passed < last)]
@@ -73,7 +75,7 @@ class PlayedCurve:
             distance, speed, _ = track.profile.at(at)
             values, rates = self.at(distance / way)
             return values, rates * (speed / way)[:, None]
-        return curve_through(played, np.concatenate([track.profile.times, times]), TOLERANCE)
+        return curve_through(played, np.concatenate([junctions, times]), TOLERANCE)
 
 
 def _keys(curve, is_rotation: bool):

@@ -3,22 +3,22 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from .. import _core, actors
 from ..actors.laid_line import usual_speed
-from ..arguments.checks import an, anything, array, checked, optional, real, refused, text
+from ..arguments.checks import an, anything, checked, optional, real, refused, text
 from ..arguments.names import first_names
 from ..arguments.objects import listed
 from ..arguments.shown import writable
-from ..base.callers import warn_user
 from ..base.counts import counted
 from ..base.made_by import made_by
 from ..readers.model import Model
 from ..readers.names import fit_name, unique
-from ..trajectories.kinds import of_kind, require_kinds, usual_kind
+from ..trajectories.arguments import optional_span
+from ..trajectories.kinds import of_kind, usual_kind, warn_of_unused_kinds
+from ..trajectories.track_file import W, on_the_way, warn_of_nobody
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 
@@ -142,15 +142,8 @@ def _globs_rule(argument: str, value) -> list[str]:
     return globs
 
 
-def _span_rule(argument: str, value) -> tuple[float, float]:
-    begin, end = (float(one) for one in array("[2]", finite=True)(argument, value))
-    if begin > end:
-        raise refused(ValueError, argument, "(begin, end) in s, the end not before the begin", value)
-    return begin, end
-
-
 @checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, exclude=_globs_rule,
-         during=optional(_span_rule), parent=optional(text), time=optional(anything))
+         during=optional_span, parent=optional(text), time=optional(anything))
 def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | ActorOfKinds | None = None,
                 exclude: str | Iterable[str] = (), during: tuple[float, float] | None = None, parent: str | None = None,
                 time: float | None = None) -> Traffic:
@@ -162,26 +155,25 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
         `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car; persons of SUMO
         are no vehicles. Or a dict {glob of kinds: such a callable, a Model, whose meshes all share, the name of an actor, or
-        None: no object}, of which the first that takes the kind counts, in whatever case; each glob must take one, and kinds
-        that none takes are as usual:
+        None: no object}, of which the first that takes the kind counts, in whatever case; kinds that none takes are as
+        usual:
         `{"police*": ep.load_model("police.glb"), "taxi": "car", "tram*": None}`
     exclude: globs of names that are left out, such as the car that carries the radar; each must take one
-    during: (begin, end) in s, outside of which nothing is of interest: who is on its way at no time of it is left out. None: all
+    during: (begin, end) in s, outside of which nothing is of interest: who is on the way at no time of it is left out, and the
+        others' wheels, trailers and limbs move in it alone (`Trajectory.detailed`), which is faster for long ways. None: all
     parent: full name of the object whose axes the trajectories are in; None: the world
     time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
     Returns the Traffic. Raises TypeError or ValueError naming the argument, also where the scene has an object of such a
-    name, as after the same call before; nothing is added then. Warns (RuntimeWarning) of a span in which nobody is on the way.
+    name, as after the same call before; nothing is added then. Warns (RuntimeWarning) of a span in which nobody is on the way,
+    and of globs that take no kind of the trajectories.
     """
     time = None if time is None else real(unit="s")("time", time)
     maker = actor_of if callable(actor_of) else usual_actor
     if isinstance(maker, _MakerOfKinds):
-        require_kinds("actor_of", maker.makers, (one.kind for one in trajectories.values()))
+        warn_of_unused_kinds("actor_of", maker.makers, (one.kind for one in trajectories.values()))
     chosen = chosen_of(trajectories, list(exclude), during)
-    if during is not None and trajectories and not chosen:
-        ways = trajectories.values()
-        warn_user(f"during: nobody is on the way from {during[0]:g} to {during[1]:g} s; trajectories are from "
-                  f"{min(one.begin for one in ways):g} to {max(one.end for one in ways):g} s")
-    made = {name: _made(maker, name, one) for name, one in chosen.items()}
+    warn_of_nobody(trajectories, during)
+    made = {name: _made(maker, name, one if during is None else one.detailed(*during)) for name, one in chosen.items()}
     present = {name: actor for name, actor in made.items() if actor is not None}
     _require_new(scene, present, parent)
     above, added = _above(parent), {}
@@ -197,15 +189,13 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     return traffic
 
 
-def chosen_of(trajectories: Mapping[str, Trajectory], exclude: list[str], during) -> dict[str, Trajectory]:
-    """Those that are not left out by their names or their times."""
+def chosen_of(ways: Mapping[str, W], exclude: Iterable[str], during: tuple[float, float] | None) -> dict[str, W]:
+    """Those that are not left out by their names or their times. Raises ValueError of globs that take none of the names."""
     for glob in exclude:
-        if not any(_core.glob_takes(glob, name) for name in trajectories):
-            raise refused(ValueError, "exclude", f"globs of which each takes one of {first_names(list(trajectories)) or 'none'}",
-                          glob)
-    begin, end = during or (-math.inf, math.inf)
-    return {name: one for name, one in trajectories.items()
-            if not any(_core.glob_takes(glob, name) for glob in exclude) and one.begin <= end and begin <= one.end}
+        if not any(_core.glob_takes(glob, name) for name in ways):
+            raise refused(ValueError, "exclude", f"globs of which each takes one of {first_names(list(ways)) or 'none'}", glob)
+    return {name: one for name, one in on_the_way(ways, during).items()
+            if not any(_core.glob_takes(glob, name) for glob in exclude)}
 
 
 def _made(maker: ActorOf, name: str, trajectory: Trajectory):

@@ -21,6 +21,7 @@ from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
 from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
+from ..trajectories.rows import KeptRows
 from .errors import blamed, validated
 from .foreign import foreign_scene
 from .objects import build_scene, motion_of
@@ -43,15 +44,16 @@ def read_scene(path: Path, options: ReadOptions) -> SceneFile:
     return scene_file_of(parse(path), path)
 
 
-def scene_file_of(table: dict, path: Path, folder: Path | None = None) -> SceneFile:
-    """What a scene file says, of its table; path: of the file, for messages; folder: of what it names, None: that of the file.
+def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: KeptRows | None = None) -> SceneFile:
+    """What a scene file says, of its table; path: of the file, for messages; folder: of what it names, None: that of the file;
+    rows: of files of trajectories that it names, None: they are read.
 
     Raises ValueError as `load_scene` does.
     """
     try:
         settings = validated(SceneTable, table)
         folder = folder or path.parent
-        trajectories = Trajectories(folder, settings.traffic)
+        trajectories = Trajectories(folder, settings.traffic, rows or KeptRows())
         scene = build_scene(settings, folder, trajectories)
         trajectories.traffic.add_to(scene)
         scene.interferers = _build_interferers(settings, folder, trajectories)

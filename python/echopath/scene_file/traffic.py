@@ -7,10 +7,11 @@ from pathlib import Path
 from ..arguments.checks import refused
 from ..arguments.names import first_names
 from ..scene.scene import Scene
-from ..scene.traffic import add_traffic, chosen_of, object_names
+from ..scene.traffic import add_traffic, chosen_of, object_names, usual_actor
 from ..trajectories import Trajectory
-from ..trajectories.kinds import of_kind, require_kinds, usual_kind
-from ..trajectories.read import read_along
+from ..trajectories.kinds import of_kind, usual_kind
+from ..trajectories.rows import KeptRows
+from ..trajectories.track_file import TrackFile, Way, warn_of_nobody
 from .errors import ToldValueError, blamed
 from .traffic_shapes import TrafficShape, traffic_shape
 from .table import yaw_of
@@ -20,8 +21,8 @@ from .traffic_tables import TrafficTable
 class TrafficFiles:
     """What the `[[traffic]]` of a scene file says: where everybody is over time, left out or not."""
 
-    def __init__(self, tables: list[TrafficTable], folder: Path):
-        self._files = [_File(table, folder, f"traffic[{index}]") for index, table in enumerate(tables)]
+    def __init__(self, tables: list[TrafficTable], folder: Path, rows: KeptRows):
+        self._files = [_File(table, folder, f"traffic[{index}]", rows) for index, table in enumerate(tables)]
 
     def add_to(self, scene: Scene) -> None:
         """Puts an object for each trajectory that is not left out into the scene, under its name."""
@@ -41,48 +42,73 @@ class TrafficFiles:
     def of(self, name: str, key: str) -> Trajectory:
         """The trajectory of a name, of the first file that has it; key: that asks for it. Raises ValueError."""
         for file in self._files:
-            if name in file.trajectories:
-                return file.trajectories[name]
-        names = [one for file in self._files for one in file.trajectories]
+            if name in file.ways:
+                return file.trajectories([name])[name]
+        names = [one for file in self._files for one in file.ways]
         raise refused(ToldValueError, key, f"an id of the [[traffic]], which has {first_names(names) or 'none'}", name)
 
 
 class _File:
     """One `[[traffic]]`; key: of its table."""
 
-    def __init__(self, table: TrafficTable, folder: Path, key: str):
+    def __init__(self, table: TrafficTable, folder: Path, key: str, rows: KeptRows):
         self._table, self._key = table, key
         self._shapes = {glob: traffic_shape(value, glob, f"{key}.actors.{glob}", folder) for glob, value in table.actors.items()}
+        path = folder / table.file
         with blamed(key, file="file"):
-            self.trajectories = read_along(
-                folder / table.file, origin=table.origin, smoothing=table.smoothing, vehicle_length=self._vehicle_length(),
+            self._tracks = TrackFile(
+                path, origin=table.origin, smoothing=table.smoothing, vehicle_length=self._vehicle_length(), rows=rows.of(path),
                 goes_on=table.goes_on, outside=table.outside, position=table.position, yaw=yaw_of(table.yaw_deg))
-            kinds = [one.kind for one in self.trajectories.values()]
-            require_kinds("actors", self._shapes, kinds)
-            require_kinds("vehicle_length", table.vehicle_length if isinstance(table.vehicle_length, dict) else (), kinds)
+        self.ways = self._tracks.ways
+
+    def trajectories(self, names: Iterable[str]) -> dict[str, Trajectory]:
+        with blamed(self._key, file="file"):
+            return self._tracks.trajectories(names)
 
     def add_to(self, scene: Scene) -> None:
-        makers = {glob: shape.maker for glob, shape in self._shapes.items()}
+        self._warn()
+        trajectories = self.trajectories(self._chosen())
         with blamed(self._key):
-            add_traffic(scene, self.trajectories, actor_of=makers, exclude=self._table.exclude, during=self._table.during)
+            add_traffic(scene, trajectories, actor_of=self._made, during=self._table.during)
+
+    def _warn(self) -> None:
+        """Warns (RuntimeWarning) of what the table says and the file has nobody for."""
+        self._tracks.warn_of_unused(f"{self._key}.actors", self._shapes)
+        if isinstance(self._table.vehicle_length, dict):
+            self._tracks.warn_of_unused(f"{self._key}.vehicle_length", self._table.vehicle_length)
+        warn_of_nobody(self.ways, self._table.during)
+
+    def _chosen(self) -> dict[str, Way]:
+        """Those who are not left out."""
+        with blamed(self._key):
+            return chosen_of(self.ways, self._table.exclude, self._table.during)
+
+    def _made(self, name: str, trajectory: Trajectory):
+        """What goes along a trajectory, None: no object."""
+        shape = self._shape_of(trajectory)
+        maker = usual_actor if shape is None else shape.maker
+        return None if maker is None else maker(name, trajectory)
+
+    def _shape_of(self, way: Way | Trajectory) -> TrafficShape | None:
+        return of_kind(self._shapes.items(), way.kind, None)
 
     def objects(self, others: list[str]) -> list[dict[str, str]]:
-        chosen = chosen_of(self.trajectories, self._table.exclude, self._table.during)
+        chosen = self._chosen()
         actors = {name: self._actor(one) for name, one in chosen.items()}
         names = object_names([name for name, actor in actors.items() if actor], others)
         return [{"name": names[name], "actor": actors[name], "kind": chosen[name].kind} for name in names]
 
-    def _actor(self, trajectory: Trajectory) -> str:
-        """The actor of what goes along a trajectory, "" for no object."""
-        shape: TrafficShape | None = of_kind(self._shapes.items(), trajectory.kind, None)
+    def _actor(self, way: Way) -> str:
+        """The actor of what goes along a way, "" for no object."""
+        shape = self._shape_of(way)
         if shape is not None and shape.maker is None:
             return ""
         if shape is None or shape.actor is None:
-            return usual_kind(trajectory.kind, trajectory.is_person).actor
+            return usual_kind(way.kind, way.is_person).actor
         return shape.actor
 
     def _vehicle_length(self):
-        """What read_along takes: m of all vehicles, or of those by globs of their types."""
+        """What read_trajectories takes: m of all vehicles, or of those by globs of their types."""
         given = self._table.vehicle_length
         if given is None or isinstance(given, dict):
             return (given or {}) | {glob: shape.length for glob, shape in self._shapes.items() if glob not in (given or {})}

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..arguments.checks import array, real, refused
+from ..arguments.checks import array, optional, real, refused
 from .path import Path, SplinePath, turned_path
 from .profile import Profile, hermite_coefficients, slopes_of
 
@@ -45,6 +45,17 @@ def checked_times(argument: str, value) -> np.ndarray:
     if len(times) < 2 or np.any(np.diff(times) < 1e-6) or np.abs(times).max() > LATEST:
         raise refused(ValueError, argument, f"at least 2 numbers, ascending by 1e-6 s or more, up to {LATEST:g} s", value)
     return times
+
+
+def span(argument: str, value) -> tuple[float, float]:
+    """(begin, end) in s."""
+    begin, end = (float(one) for one in array("[2]", finite=True)(argument, value))
+    if begin > end:
+        raise refused(ValueError, argument, "(begin, end) in s, the end not before the begin", value)
+    return begin, end
+
+
+optional_span = optional(span)
 
 
 def checked_stops(argument: str, value) -> np.ndarray:

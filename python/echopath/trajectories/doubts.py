@@ -13,12 +13,13 @@ LEAST_STEP = 0.2       # m, of positions that tell a direction
 BETTER = 0.05          # mean cosine by which yaws in degrees lie nearer to the way than they do in rad
 
 
-def doubts_of(times: NDArray[np.float64], places: NDArray[np.float64], yaws: list[float], speeds: list[float]) -> list[str]:
+def doubts_of(times: NDArray[np.float64], places: NDArray[np.float64], yaws: NDArray[np.float64],
+              speeds: NDArray[np.float64]) -> list[str]:
     """What is said of an object of a file, none where its columns agree.
 
     times: [P] s; places: [P, 3] m; yaws: [P] rad or empty; speeds: [P] m/s or empty
     """
-    said = [_of_speeds(times, places, np.array(speeds)) if speeds else "", _of_yaws(places, np.array(yaws)) if yaws else ""]
+    said = [_of_speeds(times, places, speeds) if len(speeds) else "", _of_yaws(places, yaws) if len(yaws) else ""]
     return [words for words in said if words]
 
 

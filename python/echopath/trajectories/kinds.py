@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple, TypeVar
 
 from .. import _core
-from ..arguments.checks import refused
 from ..arguments.names import first_names
+from ..base.callers import warn_user
 
 T = TypeVar("T")
 
@@ -43,13 +43,14 @@ def of_kind(values: Iterable[tuple[str, T]], kind: str, usual: T) -> T:
     return next((value for glob, value in values if takes_kind(glob, kind)), usual)
 
 
-def require_kinds(argument: str, globs: Iterable[str], kinds: Iterable[str]) -> None:
-    """Raises ValueError naming the argument and the first glob that takes none of the kinds that there are."""
+def warn_of_unused_kinds(argument: str, globs: Iterable[str], kinds: Iterable[str]) -> None:
+    """Warns (RuntimeWarning) of globs that take none of the kinds that there are, as those with a typo."""
     there = list(dict.fromkeys(kinds))
-    for glob in globs:
-        if not any(takes_kind(glob, kind) for kind in there):
-            raise refused(ValueError, argument, "globs of kinds of which each takes one of "
-                          f"{first_names([kind for kind in there if kind]) or 'none'}", glob)
+    unused = [glob for glob in globs if not any(takes_kind(glob, kind) for kind in there)]
+    if unused:
+        take = "takes" if len(unused) == 1 else "take"
+        known = first_names([kind for kind in there if kind]) or "of the file, which tells none"
+        warn_user(f"{argument}: {first_names(unused)} {take} none of the kinds {known}")
 
 
 def usual_kind(name: str, is_person: bool = False) -> Kind:

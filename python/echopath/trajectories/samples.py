@@ -3,30 +3,44 @@ from __future__ import annotations
 
 import datetime
 import math
+from array import array
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import NoReturn
+
+import numpy as np
 
 from .. import _core
 
 MOST_SAMPLES = 20_000_000
 MAX_BYTES = 2**31
 
+_numbers = partial(array, "d")  # 8 bytes each: files have millions
+
 
 @dataclass
 class Samples:
-    """Of one object: rows of time in s, coordinates and, where the file has them, yaw in rad and speed in m/s.
+    """Of one object, a row for each time at which the file has it.
 
-    lines: those of the file; places: (x, y, z) in m, or (latitude, longitude, height) in degrees and m
+    is_person: who is no vehicle, whatever the kind; has_fronts: whether places are those of the front bumper, not of the middle
+    lines: [P], of the file; times: [P] s; coordinates: [3 P], of each row (x, y, z) in m, or (latitude, longitude, height) in
+    degrees and m; yaws: [P] rad, speeds: [P] m/s, or empty where the file has none
     """
 
     kind: str = ""
     is_person: bool = False
-    lines: list[int] = field(default_factory=list)
-    times: list[float] = field(default_factory=list)
-    places: list[tuple[float, float, float]] = field(default_factory=list)
-    yaws: list[float] = field(default_factory=list)
-    speeds: list[float] = field(default_factory=list)
+    has_fronts: bool = False
+    lines: array = field(default_factory=partial(array, "q"))
+    times: array = field(default_factory=_numbers)
+    coordinates: array = field(default_factory=_numbers)
+    yaws: array = field(default_factory=_numbers)
+    speeds: array = field(default_factory=_numbers)
+
+    @property
+    def places(self) -> np.ndarray:
+        """[P, 3], the coordinates by rows."""
+        return np.array(self.coordinates).reshape(-1, 3)
 
 
 def refuse(path: Path, line: int, what: str) -> NoReturn:

@@ -131,7 +131,7 @@ def _add(path: Path, line: int, row: dict[str, str], units: dict[str, float], tr
     most = {"latitude": 90.0, "longitude": 360.0, "height": 1e5}
     names = ("latitude", "longitude", "height") if is_geographic else ("x", "y", "z")
     place = [of(key, most.get(key, 1e7)) if row.get(key, "").strip() or key in names[:2] else 0.0 for key in names]
-    samples.places.append((place[0], place[1], place[2]))
+    samples.coordinates.extend(place)
     if "yaw" in row or "yaw_deg" in row:
         key = "yaw" if "yaw" in row else "yaw_deg"
         value = of(key, 1e9)

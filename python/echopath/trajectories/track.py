@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -87,6 +88,7 @@ class Track:
             low, high = np.where(is_before, middle, low), np.where(is_before, high, middle)
         return high
 
+    @cached_property
     def rolled(self) -> Profile:
         """The way ahead in m over time, as wheels roll it: backwards where it goes against the direction it looks in."""
         if self.headings is None:

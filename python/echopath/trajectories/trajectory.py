@@ -20,6 +20,7 @@ from .track import Track
 
 TOLERANCE = 2e-6          # m, of positions at the places where curves are held against the trajectory
 ROTATION_TOLERANCE = 1e-6  # of quaternions: a point 2.5 m from the origin errs by no more than 5 micrometres
+LEAST_DETAIL = 1e-3       # s
 ACCELERATION, DECELERATION = 2.0, 3.0   # m/s^2, of cars in traffic
 
 
@@ -81,6 +82,7 @@ class Trajectory(_core.CurveMotion):
         """Becomes the motion of a track. made: (what makes it, its keywords), for copies."""
         self._track = Track(track.path, track.profile.going_on(goes_on), track.headings)
         self._has_pitch, self._kind, self._is_person, self._made, self._outside = pitch, kind, is_person, made, outside
+        self._details: tuple[float, float] | None = None
         junctions = self._track.junctions()
         translation = curve_through(self._track.places, junctions, TOLERANCE)
         rotation = curve_through(lambda t: self._track.rotations(t, pitch), junctions, ROTATION_TOLERANCE)
@@ -174,6 +176,35 @@ class Trajectory(_core.CurveMotion):
             return self._track.time_at(np.minimum(distances, reached[1]))
         return _each(distance, found, "distance")
 
+    @property
+    def details(self) -> tuple[float, float]:
+        """(begin, end) in s, between which alone what follows it moves in itself, too: wheels, trailers and limbs."""
+        begin, end = self._details or (self.begin, self.end)
+        return min(max(begin, self.begin), self.end), max(min(end, self.end), self.begin)
+
+    def detailed(self, begin: float, end: float) -> Trajectory:
+        """The same, whose followers move in themselves from `begin` to `end` alone; before and after, their wheels, trailers and
+        limbs are held as they are then. The time that actors take to be made is by that span, no longer by the whole way.
+
+        begin, end: s. Raises TypeError or ValueError naming the argument.
+        """
+        begin = real(-LATEST, LATEST, "s")("begin", begin)
+        return self._with_details((begin, real(begin, LATEST, "s")("end", end)))
+
+    def _within_details(self, times: ArrayLike) -> np.ndarray:
+        """Those of the times [T] in s at which what follows it moves in itself, with the begin and the end of that, ascending."""
+        begin, end = self.details
+        if end - begin < LEAST_DETAIL:  # of a way that ends where the details begin
+            begin, end = max(self.begin, begin - LEAST_DETAIL), min(self.end, end + LEAST_DETAIL)
+        times = np.asarray(times, float)
+        return np.unique(np.concatenate([[begin], times[(times > begin) & (times < end)], [end]]))
+
+    def _with_details(self, details: tuple[float, float] | None) -> Trajectory:
+        made = Trajectory.__new__(Trajectory)
+        _core.CurveMotion.__init__(made, self.translation, self.rotation)
+        made.__dict__.update(self.__dict__, _details=details)
+        return made
+
     def shifted(self, seconds: float) -> Trajectory:
         """The same, so many s later.
 
@@ -182,8 +213,10 @@ class Trajectory(_core.CurveMotion):
         seconds = real(-LATEST, LATEST, "s")("seconds", seconds)
         arguments = self._made[1]
         if arguments.get("times") is not None:
-            return self.replace(times=np.asarray(arguments["times"], float) + seconds)
-        return self.replace(start_time=arguments["start_time"] + seconds)
+            later = self.replace(times=np.asarray(arguments["times"], float) + seconds)
+        else:
+            later = self.replace(start_time=arguments["start_time"] + seconds)
+        return later if self._details is None else later.detailed(*(time + seconds for time in self._details))
 
     def replace(self, **changes: object) -> Trajectory:
         """A copy with other values of some arguments.
@@ -192,10 +225,10 @@ class Trajectory(_core.CurveMotion):
         Raises TypeError or ValueError as these do.
         """
         maker, arguments = self._made
-        return maker(**arguments | changes)
+        return _remade(maker, arguments | changes, self._details)
 
     def __reduce__(self):
-        return _remade, self._made
+        return _remade, (*self._made, self._details)
 
     def __eq__(self, other: object) -> bool:
         return super().__eq__(other) and (not isinstance(other, Trajectory) or
@@ -266,5 +299,6 @@ def _each(values: ArrayLike, function, argument: str = "time"):
     return found if given.ndim else found[0]
 
 
-def _remade(maker, arguments: dict):
-    return maker(**arguments)
+def _remade(maker, arguments: dict, details: tuple[float, float] | None) -> Trajectory:
+    made = maker(**arguments)
+    return made if details is None else made._with_details(details)

@@ -1,5 +1,6 @@
 """Datasets: every frame is there once, with the same bits, whoever makes it."""
 import json
+import pickle
 import shutil
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from echopath.cli import main
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import SceneRecord, damaged_files, scene_folder, write_manifest
 from echopath.dataset.unresolved import UnresolvedEchoes, summary, unresolved_in
+from echopath.trajectories import rows
+from echopath.trajectories.fcd import read_fcd
 from support.files.small_dataset import HEAD, SCENE, bytes_of, make, written
 
 
@@ -106,6 +109,26 @@ position = [{uniform = [20.0, 30.0]}, 0.0, 0.0]
     assert set(known) == {name for name in template.scene_file(1).scene if "/" not in name}
     begins = [template.scene_file(number).scene["e"].motion.at(0.0)[0, 3] for number in (0, 1)]
     assert all(20.0 < begin + 2.15 < 30.0 for begin in begins) and begins[0] != begins[1]  # by the front of a car of 4.3 m
+
+
+def test_files_of_traffic_are_read_once_for_all_scenes(tmp_path, monkeypatch):
+    """Until they change: then scenes are as the new file says."""
+    def write(x):
+        steps = "".join(f'<timestep time="{time}"><vehicle id="a" type="car" x="{x + 5 * time}" y="0" angle="90"/></timestep>'
+                        for time in (0, 1))
+        (tmp_path / "fcd.xml").write_text(f"<fcd-export>{steps}</fcd-export>")
+
+    reads = []
+    monkeypatch.setattr(rows, "read_fcd", lambda path: reads.append(path) or read_fcd(path))
+    write(20)
+    traffic = '[[traffic]]\nfile = "fcd.xml"\nposition = [{uniform = [1.0, 2.0]}, 0.0, 0.0]\n'
+    template = dataset.Template(written(tmp_path, HEAD.replace("scenes = 6", "scenes = 3") + traffic + SCENE))
+    fronts = [template.scene_file(number).scene["a"].motion.at(0.0)[0, 3] + 2.15 for number in range(3)]
+    assert template.classes(1)["a"] == "car" and len(reads) == 1
+    assert all(21.0 < front < 22.0 for front in fronts) and len(set(fronts)) == 3
+    write(400)
+    assert template.scene_file(0).scene["a"].motion.at(0.0)[0, 3] == pytest.approx(fronts[0] - 2.15 + 380.0)
+    assert len(reads) == 2 and pickle.loads(pickle.dumps(template)).classes(1) == template.classes(1)
 
 
 def test_frames_are_those_of_the_drawn_scene(small_dataset):

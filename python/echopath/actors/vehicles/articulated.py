@@ -128,7 +128,7 @@ class Unit:
         motions = self.__dict__.setdefault("_motions", {})
         if position not in motions:
             _, turn = self._relative()
-            rotation = curve_through(lambda times: turned(*turn(times)), self._towing.junctions, WHEEL_TOLERANCE)
+            rotation = curve_through(lambda times: turned(*turn(times)), self._detailed_junctions, WHEEL_TOLERANCE)
             motions[position] = _core.CurveMotion(self._translation(position), rotation)
         return motions[position]
 
@@ -141,7 +141,11 @@ class Unit:
             (shift, velocity), (angle, rate) = place(times), turn(times)
             offset, swing = _level(p, angle), _level(p, angle + 0.5 * np.pi)
             return shift + offset + [0.0, 0.0, p[2]] - p, velocity + rate[:, None] * swing
-        return curve_through(moved, self._towing.junctions, TOLERANCE)
+        return curve_through(moved, self._detailed_junctions, TOLERANCE)
+
+    @cached_property
+    def _detailed_junctions(self):
+        return self._towing.trajectory._within_details(self._towing.junctions)
 
     def _relative(self):
         """(times -> (place [N, 3] of the vehicle's origin, velocity), times -> (turn [N], rate)) in the trajectory's axes."""

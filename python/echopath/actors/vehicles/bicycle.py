@@ -48,7 +48,7 @@ class Ride:
     def crank_angle(self, times):
         """Angle [T] in rad of the left crank past its top, ahead positive."""
         if self.trajectory is not None:
-            return self.phase + 2.0 * np.pi / DEVELOPMENT * self.trajectory._track.rolled().at(times)[0]
+            return self.phase + 2.0 * np.pi / DEVELOPMENT * self.trajectory._track.rolled.at(times)[0]
         return self.phase + self.cadence * np.asarray(times, dtype=float)
 
     def pedal(self, times, sign):

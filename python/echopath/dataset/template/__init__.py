@@ -17,6 +17,7 @@ from ...scene_file.load import parse, scene_file_of
 from ...scene_file.schema import SceneTable
 from ...scene_file.table import Positive, Table
 from ...scene_file.traffic import TrafficFiles
+from ...trajectories.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
 from ..classes import ClassName, classes_of
@@ -81,6 +82,7 @@ class Template:
         self._objects = scene.pop("objects", [])
         self._rest = scene
         self._traffic: dict[str, TrafficFiles] = {}  # as it was drawn last
+        self._rows = KeptRows()
 
     def __repr__(self) -> str:
         made = self.settings
@@ -113,7 +115,7 @@ class Template:
         told = repr(scene.table["traffic"])
         if told not in self._traffic:  # alike in all scenes, mostly
             with self._faults.of(number, scene.table):
-                self._traffic = {told: TrafficFiles(validated(SceneTable, scene.table).traffic, self.folder)}
+                self._traffic = {told: TrafficFiles(validated(SceneTable, scene.table).traffic, self.folder, self._rows)}
         objects = scene.table["objects"]
         return objects + self._traffic[told].objects(one["name"] for one in objects)
 
@@ -159,4 +161,4 @@ class Template:
 
     def _scene_file_of(self, scene: DrawnScene) -> SceneFile:
         with self._faults.of(scene.number, scene.table):
-            return scene_file_of(scene.table, self.path, self.folder)
+            return scene_file_of(scene.table, self.path, self.folder, self._rows)

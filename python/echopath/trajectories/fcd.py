@@ -1,0 +1,136 @@
+"""Floating car data of SUMO: where its vehicles and persons are, step by step."""
+from __future__ import annotations
+
+import math
+import re
+from array import array
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+
+from .. import _core
+from .markup import attribute, parse
+from .samples import MOST_SAMPLES, Samples, number, refuse
+
+_GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
+_IN_DEGREES = "places are in degrees (--fcd-output.geo), must be in m: write them without that option"
+LEAST_WAY, SMALLEST_SHARE = 10.0, 0.01  # m by speed, from which on places that go less than that share of it are no metres
+MOST_METRES, MOST_DEGREES = 1e7, 1e6    # of places and angles
+
+
+def read_fcd(path: Path) -> dict[str, Samples]:
+    """{name: Samples} of a file of SUMO's --fcd-output. Raises FileError.
+
+    x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
+    Persons are left out while they ride in a vehicle; one who gets off is another from there on, "name_2".
+    Longitudes and latitudes are refused: by the options that the file names, or where all go much less far than their speeds say.
+    """
+    reader = _Fcd(path)
+    parse(path, reader.begin, comment=reader.comment)
+    reader.refuse_degrees()
+    return reader.tracks
+
+
+class _Fcd:
+    """Gathers the rows of a file."""
+
+    def __init__(self, path: Path):
+        self.tracks: dict[str, Samples] = {}
+        self._path, self._root, self._time, self._count = path, "", math.nan, 0
+        self._on_foot = _OnFoot()
+        self._told_speeds: dict[str, array] = {}  # m/s, nan where a row has none: what follows a way is as fast as its places
+
+    def begin(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
+        if not self._root:
+            self._root = tag
+            if tag != "fcd-export":
+                refuse(self._path, line, f"must begin with <fcd-export>, got <{tag[:60]}>")
+        if tag in ("vehicle", "person"):
+            self._row(tag, attributes, line)
+        elif tag == "timestep":
+            self._time = number(self._path, line, "time", attribute(self._path, line, tag, attributes, "time"), 1e9)
+
+    def comment(self, words: str, line: int) -> None:
+        if _GEO_OPTION.search(words):
+            refuse(self._path, line, _IN_DEGREES)
+
+    def _row(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
+        self._count += 1
+        if self._count > MOST_SAMPLES or self._time != self._time:  # no timestep yet
+            refuse(self._path, line, f"<{tag}>: must stand in a <timestep>, at most {MOST_SAMPLES} in all")
+        name = attribute(self._path, line, tag, attributes, "id")
+        if tag == "person":
+            name = self._on_foot.name_of(name, rides=bool(attributes.get("vehicle")))
+            if not name:
+                return
+        x, y, z, angle = self._numbers(tag, attributes, line)
+        samples = self.tracks.get(name)
+        if samples is None:
+            samples = self._begun(name, tag, attributes)
+        samples.lines.append(line)
+        samples.times.append(self._time)
+        samples.coordinates.extend((x, y, z))
+        samples.yaws.append(math.radians(90.0 - angle))
+        try:
+            speed = float(attributes.get("speed", "nan"))
+        except ValueError:
+            speed = math.nan
+        self._told_speeds[name].append(speed)
+
+    def _begun(self, name: str, tag: str, attributes: Mapping[str, str]) -> Samples:
+        """The Samples of somebody who is new."""
+        is_person = tag == "person"
+        kind = attributes.get("type", "") or ("pedestrian" if is_person else "")
+        self._told_speeds[name] = array("d")
+        return self.tracks.setdefault(name, Samples(kind, is_person, has_fronts=not is_person))
+
+    def _numbers(self, tag: str, attributes: Mapping[str, str], line: int) -> tuple[float, float, float, float]:
+        """(x, y, z in m, angle in degrees) of a row."""
+        try:
+            x, y, angle = float(attributes["x"]), float(attributes["y"]), float(attributes["angle"])
+            z = float(attributes.get("z", 0.0))
+            if abs(x) <= MOST_METRES and abs(y) <= MOST_METRES and abs(z) <= MOST_METRES and abs(angle) <= MOST_DEGREES:
+                return x, y, z, angle
+        except (KeyError, ValueError):
+            pass
+        self._refuse_numbers(tag, attributes, line)
+
+    def _refuse_numbers(self, tag: str, attributes: Mapping[str, str], line: int) -> NoReturn:
+        """Raises FileError naming the first of the numbers of a row that is missing or wrong."""
+        for name, most in (("x", MOST_METRES), ("y", MOST_METRES), ("angle", MOST_DEGREES), ("z", MOST_METRES)):
+            if name != "z" or name in attributes:
+                number(self._path, line, name, attribute(self._path, line, tag, attributes, name), most)
+        raise AssertionError("a row without fault was refused")
+
+    def refuse_degrees(self) -> None:
+        """Raises FileError where the places can be no metres, by the speeds beside them: a degree is 111 km."""
+        by_place = by_speed = 0.0
+        for name, samples in self.tracks.items():
+            places, speeds = samples.places[:, :2], np.abs(np.array(self._told_speeds[name]))[1:]
+            if np.any(np.abs(places) > (180.0, 90.0)):
+                return
+            is_told = np.isfinite(speeds)
+            by_place += float(np.sum(np.linalg.norm(np.diff(places, axis=0), axis=1)[is_told]))
+            by_speed += float(np.sum((speeds * np.abs(np.diff(samples.times)))[is_told]))
+        if by_speed >= LEAST_WAY and by_place < SMALLEST_SHARE * by_speed:
+            raise _core.FileError(f"{self._path}: {_IN_DEGREES} (they go {by_place:.3g}, by their speeds {by_speed:.3g} m)")
+
+
+class _OnFoot:
+    """Tells the ways of persons on foot apart, between which they ride in vehicles: their rows then name the vehicle."""
+
+    def __init__(self):
+        self._riding: set[str] = set()
+        self._ways: dict[str, int] = {}
+
+    def name_of(self, name: str, rides: bool) -> str:
+        """The name of the way that a row of a person belongs to, "" where the person rides."""
+        if rides:
+            self._riding.add(name)
+            return ""
+        if name in self._riding or name not in self._ways:
+            self._riding.discard(name)
+            self._ways[name] = self._ways.get(name, 0) + 1
+        return f"{name}_{self._ways[name]}" if self._ways[name] > 1 else name

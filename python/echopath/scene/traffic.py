@@ -18,7 +18,7 @@ from ..readers.model import Model
 from ..readers.names import fit_name, unique
 from ..trajectories.arguments import optional_span
 from ..trajectories.kinds import of_kind, usual_kind, warn_of_unused_kinds
-from ..trajectories.track_file import W, on_the_way, warn_of_nobody
+from ..trajectories.files.track_file import W, on_the_way, warn_of_nobody
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 

@@ -21,7 +21,7 @@ from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
 from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
-from ..trajectories.rows import KeptRows
+from ..trajectories.files.rows import KeptRows
 from .errors import blamed, validated
 from .foreign import foreign_scene
 from .objects import build_scene, motion_of

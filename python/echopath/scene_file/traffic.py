@@ -10,8 +10,8 @@ from ..scene.scene import Scene
 from ..scene.traffic import add_traffic, chosen_of, object_names, usual_actor
 from ..trajectories import Trajectory
 from ..trajectories.kinds import of_kind, usual_kind
-from ..trajectories.rows import KeptRows
-from ..trajectories.track_file import TrackFile, Way, warn_of_nobody
+from ..trajectories.files.rows import KeptRows
+from ..trajectories.files.track_file import TrackFile, Way, warn_of_nobody
 from .errors import ToldValueError, blamed
 from .traffic_shapes import TrafficShape, traffic_shape
 from .table import yaw_of

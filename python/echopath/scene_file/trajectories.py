@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ..trajectories import Trajectory
-from ..trajectories.rows import KeptRows
-from ..trajectories.track_file import TrackFile, Way
+from ..trajectories.files.rows import KeptRows
+from ..trajectories.files.track_file import TrackFile, Way
 from .errors import blamed
 from .object_tables import ObjectTable
 from .radar_tables import RadarTable

@@ -1,4 +1,4 @@
 """Trajectories of whatever moves, lanes that they follow, and what files tell of them."""
 from .lane import Lane
-from .read import read_trajectories
+from .files.read import read_trajectories
 from .trajectory import Trajectory

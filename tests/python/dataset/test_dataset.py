@@ -14,8 +14,8 @@ from echopath.cli import main
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import SceneRecord, damaged_files, scene_folder, write_manifest
 from echopath.dataset.unresolved import UnresolvedEchoes, summary, unresolved_in
-from echopath.trajectories import rows
-from echopath.trajectories.fcd import read_fcd
+from echopath.trajectories.files import rows
+from echopath.trajectories.files.fcd import read_fcd
 from support.files.small_dataset import HEAD, SCENE, bytes_of, make, written
 
 

@@ -17,7 +17,7 @@ from ...scene_file.load import parse, scene_file_of
 from ...scene_file.schema import SceneTable
 from ...scene_file.table import Positive, Table
 from ...scene_file.traffic import TrafficFiles
-from ...trajectories.rows import KeptRows
+from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
 from ..classes import ClassName, classes_of

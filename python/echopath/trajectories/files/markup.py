@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from xml.parsers import expat
 
-from .. import _core
+from ... import _core
 from .samples import MAX_BYTES, refuse
 
 MAX_DEPTH = 64          # of nested elements

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from .. import _core
+from ... import _core
 
 MOST_SAMPLES = 20_000_000
 MAX_BYTES = 2**31

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import _core
+from ... import _core
 from .fcd import read_fcd
 from .gpx import read_gpx
 from .markup import PACKED

@@ -10,19 +10,19 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _core
-from ..arguments.checks import Rule, anything, array, checked, is_writable, one_of, real, refused, vector
-from ..arguments.checks import file as file_rule
-from ..base.callers import warn_user
-from ..base.counts import counted
-from .arguments import GOES_ON, Outside
+from ... import _core
+from ...arguments.checks import Rule, anything, array, checked, is_writable, one_of, real, refused, vector
+from ...arguments.checks import file as file_rule
+from ...base.callers import warn_user
+from ...base.counts import counted
+from ..arguments import GOES_ON, Outside
 from .doubts import doubts_of
 from .geodesy import east_north_up
-from .kinds import of_kind, usual_kind, warn_of_unused_kinds
+from ..kinds import of_kind, usual_kind, warn_of_unused_kinds
 from .rows import Rows, read_rows
 from .samples import Samples, refuse
 from .smoothing import smoothed
-from .trajectory import Trajectory
+from ..trajectory import Trajectory
 
 
 def _origin_rule(argument: str, value):

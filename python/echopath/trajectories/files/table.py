@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from .. import _core
+from ... import _core
 from .samples import MAX_BYTES, MOST_SAMPLES, Samples, instant, number, refuse
 
 # What a column may be called, without case, blanks, marks and a unit in brackets.

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from .. import _core
+from ... import _core
 from .markup import attribute, parse
 from .samples import MOST_SAMPLES, Samples, number, refuse
 

@@ -1,0 +1,1 @@
+"""Files of trajectories: tables, floating car data of SUMO, GPX."""

@@ -43,3 +43,14 @@ def test_the_radar_is_told_too():
 def test_what_comes_to_rest_goes_on_or_is_hidden_is_not_told(trajectory, visible):
     for start_time in (-0.5, 1.5, 4.0):
         assert said(street(trajectory, visible=visible), build_radar(), start_time) == []
+
+
+@pytest.mark.parametrize("span, is_told", [((0.2, 1.7), False), ((0.0, 1.0), True), ((0.6, 2.0), True), ((1.9, 2.0), True)])
+@pytest.mark.parametrize("actor", [ep.actors.truck, ep.actors.runner])
+def test_wheels_and_limbs_that_move_in_some_frames_alone_are_told(actor, span, is_told):
+    """From 0.5 s to a little over 1.5 s, as `during` of traffic has them move."""
+    scene = ep.Scene()
+    ep.add_traffic(scene, {"it": ep.Trajectory(LINE, speed=4.0)}, actor_of=lambda _, trajectory: actor(trajectory=trajectory),
+                   during=span)
+    told = said(scene, build_radar(), 0.5)
+    assert [one.split(",")[0] for one in told] == ["'it': what moves in it"] * is_told

@@ -25,7 +25,10 @@ DISTRIBUTIONS = [{"uniform": [0.0, 1.0]}, {"uniform": [1, 0]}, {"uniform": [-1e3
                  {"normal": [0, 1], "within": 3}, {"integer": [0, 10**30]}, {"integer": [-2**63, 2**63 - 1]},
                  {"integer": [0.5, 3]}, {"choice": []}, {"choice": [1, "a", [], {}]}, {"choice": [{"uniform": [0, 1]}]},
                  {"choice": [1, 2], "weights": [1e308, 1e308]}, {"choice": [1, 2], "weights": [HUGE, 1]},
-                 {"uniform": [0, 1], "normal": [0, 1]}]
+                 {"uniform": [0, 1], "normal": [0, 1]}, {"same_as": "objects.plate_1.speed", "times": 1e300, "plus": HUGE},
+                 {"same_as": "objects.plate_2.parameters", "plus": 1}, {"same_as": "objects.wall"}, {"same_as": "radar"},
+                 {"same_as": "trace.num_rays", "plus": 0.5}, {"same_as": "objects.wall.position[1]"}, {"same_as": "a[9].b"},
+                 [{"same_as": "radar.waveform"}, {"same_as": "objects.wall.position"}, {"same_as": "labels"}]]
 COUNTS = [0, 2, -1, 0.5, 1e300, 10**9, float("nan"), float("inf"), True, "x", [], {}, HUGE]
 OWN_KEYS = ("count", "chance", "apart", "position", "weights", "within", "name")
 SETTINGS = ["1", "0", "-1", "NaN", "Infinity", "9" * 30, "9" * 5000, "null", "[]", "{}", '"x"', '"all"', "[" * 50_000, "{",

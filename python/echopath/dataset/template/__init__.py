@@ -21,8 +21,9 @@ from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
 from ..classes import ClassName, classes_of
-from .drawing import Drawing, DrawnObjects
+from .drawing import Drawing, DrawnObjects, random_at
 from .faults import Faults
+from .references import Source
 
 MOST_SCENES = 10 ** 6
 _SEEDS = 2 ** 32  # of rays and noise
@@ -97,7 +98,7 @@ class Template:
     def draw(self, number: int) -> DrawnScene:
         """Scene `number` (from 0). Raises ValueError naming the file, the scene and the dotted path."""
         try:
-            drawing = Drawing(self.settings.seed, number)
+            drawing = Drawing(self.settings.seed, number, Source(self._rest, self._objects))
             table = drawing.of(self._rest, "")
             for name in ("trace", "noise"):
                 if isinstance(settings := table.setdefault(name, {}), dict):  # else the schema of the scene refuses it
@@ -129,7 +130,7 @@ class Template:
         Of any N <= 1000 scenes in a row a split has its share of N to within 4, and a split of a tenth has one of 20 at least:
         steps of the golden ratio, from a place that the seed draws, spread evenly however many there are.
         """
-        place = golden_place(number, first=Drawing(self.settings.seed, 0).random("dataset.split").random())
+        place = golden_place(number, first=random_at(self.settings.seed, 0, "dataset.split").random())
         names = list(self.settings.split)
         shares = np.cumsum(list(self.settings.split.values()))
         return names[min(int(np.searchsorted(shares, place, side="right")), len(names) - 1)]

@@ -11,6 +11,7 @@ import numpy as np
 from ...arguments.shown import shown
 
 _MORE = {"choice": {"weights"}, "normal": {"within"}}  # keys that may stand beside that of a kind
+REFERENCE = "same_as"                              # a table with this key follows another value (references.py)
 MOST = 1e300                                       # of a number, so that nothing that is drawn of it overflows
 _BEYOND = 2**63                                    # whole numbers of 64 bits
 _MOST_TRIES = 10_000                                   # of a normal distribution that is to lie within limits
@@ -40,6 +41,8 @@ def refuse_misspelt(table: dict[str, Any], place: str) -> None:
         allowed = {known[0]} | _MORE.get(known[0], set())
         word = next(key for key in table if key not in allowed)
         raise ValueError(f"{place}.{word}: unknown key of a distribution; {known[0]} takes {', '.join(sorted(allowed))}")
+    words = [key for key, value in table.items() if isinstance(value, str)]
+    near |= {key: difflib.get_close_matches(key.lower(), [REFERENCE], n=1, cutoff=0.7) for key in words if len(table) == 1}
     for key, meant in near.items():
         if meant and table.keys() - {key} <= _MORE.get(meant[0], set()):
             raise ValueError(f"{place}.{key}: unknown distribution; did you mean '{meant[0]}'?")
@@ -47,7 +50,7 @@ def refuse_misspelt(table: dict[str, Any], place: str) -> None:
 
 def with_kinds(line: str) -> str:
     """A line of a fault of a drawn scene; where a table stands for a number, with the names of the distributions."""
-    return f"{line}; distributions are {', '.join(KINDS)}" if "must be a number, got {" in line else line
+    return f"{line}; distributions are {', '.join([*KINDS, REFERENCE])}" if "must be a number, got {" in line else line
 
 
 def drawn(table: dict[str, Any], place: str, random: np.random.Generator) -> Any:

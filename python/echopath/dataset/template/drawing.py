@@ -8,37 +8,81 @@ from typing import Any
 import numpy as np
 
 from ...arguments.shown import shown
-from .distributions import drawn, is_distribution, is_number, refuse_misspelt
+from .distributions import REFERENCE, drawn, is_distribution, is_number, refuse_misspelt
+from .references import Source, changed, is_reference, refuse_wrong_reference, steps
 
 _MOST_COPIES = 10_000                   # of an entry
+_MOST_FOLLOWED = 20                     # values of which each follows the next
 _MOST_PLACES = 1000                     # that are tried for an object that is to stand apart from others
 _OF_NAMES = (".objects", ".materials")  # tables, beside parts, whose keys are names, which may be any
 
 
-class Drawing:
-    """Draws the values of one scene and remembers them."""
+def random_at(seed: int, scene: int, place: str) -> np.random.Generator:
+    """The random numbers of a dotted path in a scene."""
+    digest = hashlib.sha256(f"{seed}/{scene}/{place}".encode("utf-8", "surrogatepass")).digest()
+    return np.random.Generator(np.random.Philox(key=int.from_bytes(digest[:16], "little")))
 
-    def __init__(self, seed: int, scene: int):
-        self._key = f"{seed}/{scene}/"
+
+class Drawing:
+    """Draws the values of one scene and remembers them; source: what the template says, to which values may refer."""
+
+    def __init__(self, seed: int, scene: int, source: Source):
+        self._seed, self._scene = seed, scene
+        self._source = source
+        self._followed: list[str] = []  # paths of what is being drawn because others follow it
+        self._known: dict[str, Any] = {}  # of paths that were followed
         self.values: dict[str, Any] = {}
 
     def random(self, place: str) -> np.random.Generator:
         """The random numbers of a dotted path."""
-        digest = hashlib.sha256((self._key + place).encode("utf-8", "surrogatepass")).digest()
-        return np.random.Generator(np.random.Philox(key=int.from_bytes(digest[:16], "little")))
+        return random_at(self._seed, self._scene, place)
 
     def of(self, value: Any, place: str, turn: str = "") -> Any:
         """A value of the template with all its distributions drawn; turn: another word draws others."""
         if is_distribution(value):
             self.values[place] = drawn(value, place, self.random(place + turn))
             return self.of(self.values[place], place, turn + "/chosen")  # a choice may be among distributions
+        if is_reference(value):
+            self.values[place] = changed(self._same_as(value[REFERENCE], place), value, place)
+            return self.values[place]
         if isinstance(value, dict):
             if not (place.startswith("parts") or place.endswith(_OF_NAMES)):
+                refuse_wrong_reference(value, place)
                 refuse_misspelt(value, place)
             return {key: self.of(one, f"{place}.{key}" if place else str(key), turn) for key, one in value.items()}
         if isinstance(value, list):
             return [self.of(one, f"{place}[{index}]", turn) for index, one in enumerate(value)]
         return value
+
+    def _same_as(self, path: str, place: str) -> Any:
+        """What the scene has at a path, for a value at a place: a value is a function of its own path, whoever draws it."""
+        rule = f"{place}.{REFERENCE}: must be the dotted path of a key of the template"
+        if path in self._known:
+            return self._known[path]
+        if path in self._followed or len(self._followed) > _MOST_FOLLOWED:
+            raise ValueError(f"{rule} that does not follow this one, got {shown(path)}")
+        self._followed.append(path)
+        try:
+            self._known[path] = self._at(path)
+            return self._known[path]
+        except (KeyError, IndexError):
+            raise ValueError(f"{rule}, got {shown(path)}") from None
+        finally:
+            self._followed.pop()
+
+    def _at(self, path: str) -> Any:
+        """Raises KeyError or IndexError where the template has no such value."""
+        value, at, rest = self._source.begin(path)
+        if "apart" in value and rest.startswith("position"):
+            raise KeyError(path)  # which is drawn again until it is free
+        is_drawn = False
+        for key, beyond in steps(rest, at):
+            if not is_drawn and (is_distribution(value) or is_reference(value)):
+                value, is_drawn = self.of(value, at), True
+            if not isinstance(value, dict if isinstance(key, str) else list):
+                raise KeyError(path)
+            value, at = value[key], beyond
+        return value if is_drawn else self.of(value, at)
 
 
 class DrawnObjects:

@@ -1,0 +1,81 @@
+"""Values of a template that follow what stands, or is drawn, elsewhere in it: {same_as = "trace.start_time", plus = 0.2}."""
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+from ...arguments.shown import shown
+from .distributions import REFERENCE, is_number
+
+_BESIDE = {"times", "plus"}
+_STEP = re.compile(r"(?:^|\.)([^.\[\]]+)|\[(\d+)\]")
+
+
+def is_reference(value: Any) -> bool:
+    """Whether a value of a template follows another."""
+    return isinstance(value, dict) and isinstance(value.get(REFERENCE), str) and value.keys() <= {REFERENCE} | _BESIDE
+
+
+def refuse_wrong_reference(table: dict[str, Any], place: str) -> None:
+    """Raises ValueError naming the key of a table that was to be a reference; place: its dotted path."""
+    if REFERENCE not in table or is_reference(table):
+        return
+    if not isinstance(table[REFERENCE], str):
+        raise ValueError(f"{place}.{REFERENCE}: must be the dotted path of a key of the template, got {shown(table[REFERENCE])}")
+    word = next(key for key in table if key not in {REFERENCE} | _BESIDE)
+    raise ValueError(f"{place}.{word}: unknown key beside {REFERENCE}, which takes {', '.join(sorted(_BESIDE))}")
+
+
+def changed(value: Any, table: dict[str, Any], place: str) -> Any:
+    """The value that is followed, times and plus the numbers of a reference. Raises ValueError naming the dotted path."""
+    given = {word: table[word] for word in sorted(_BESIDE & table.keys())}
+    for word, number in given.items():
+        if not is_number(number):
+            raise ValueError(f"{place}.{word}: must be a number, got {shown(number)}")
+    if not given:
+        return value
+    if not is_number(value):
+        raise ValueError(f"{place}.{REFERENCE}: must be the dotted path of a number, beside {' and '.join(given)}, got that of "
+                         f"{shown(value)}")
+    return value * given.get("times", 1) + given.get("plus", 0)
+
+
+class Step(NamedTuple):
+    """One of the way to a value: its key or index, and the dotted path from the begin to there."""
+
+    key: str | int
+    path: str
+
+
+class Source:
+    """What a template says, by dotted paths. rest: all but its objects; objects: its entries, which go by their names"""
+
+    def __init__(self, rest: dict[str, Any], objects: Any):
+        self._rest = rest
+        self._entries = [one for one in objects if isinstance(one, dict) and isinstance(one.get("name"), str)] if isinstance(
+            objects, list) else []
+
+    def begin(self, path: str) -> tuple[Any, str, str]:
+        """(the table in which a path begins, the path of that table, the rest of the path). Raises KeyError."""
+        for entry in self._entries:
+            copies = r"_[1-9]\d*" if "count" in entry else ""
+            if found := re.match(re.escape(f"objects.{entry['name']}") + copies + r"\.", path):
+                return entry, found[0][:-1], path[found.end():]
+        if path.startswith("objects"):
+            raise KeyError(path)
+        return self._rest, "", path
+
+
+def steps(path: str, begin: str) -> list[Step]:
+    """Those of a dotted path that goes on from another. Raises KeyError where it is none."""
+    found, end = [], 0
+    for match in _STEP.finditer(path):
+        if match.start() != end:
+            raise KeyError(path)
+        end = match.end()
+        key: str | int = match[1] if match[1] is not None else int(match[2])
+        begin += f"[{key}]" if isinstance(key, int) else f".{key}" if begin else key
+        found.append(Step(key, begin))
+    if end != len(path) or not found:
+        raise KeyError(path)
+    return found

@@ -65,7 +65,7 @@ class Faults:
         """The line of a key, or of the nearest table or value that it is in; None where nothing is known of it."""
         key = self._written(key)
         while key and key not in self._lines:
-            key = re.sub(r"(?:^|\.)[^.\[\]]*$|\[\d+\]$", "", key) if re.search(r"[.\]]", key) else ""
+            key = key[:max(key.rfind("."), key.rfind("["), 0)]
         return self._lines.get(key)
 
     def _written(self, key: str) -> str:

@@ -7,6 +7,7 @@ import pytest
 from support.drives import WALK
 
 import echopath as ep
+from echopath.actors.following import Repeated
 
 DRIVE = ep.Trajectory([(0, 0), (25, 0), (25, 25)], turn_radius=8.0, speed=7.0, stops=[(0, 0.3), (10, 0.5), (math.inf, 0)])
 TIMES = np.arange(0.0, 8.0, 0.5)
@@ -58,6 +59,13 @@ def test_details_beside_the_way_are_none(actor, details):
     at = min(max(details[0], DRIVE.begin), DRIVE.end)
     expected = vertices(actor(trajectory=DRIVE), DRIVE, [at])
     assert np.abs(vertices(made, DRIVE, [0.5, at, 5.0]) - expected).max() < 0.01
+
+
+def test_wheels_of_one_side_ask_for_times_that_the_other_did_not():
+    """Of the cubics of the one none is left to be checked again, of the other some are."""
+    repeated = Repeated(lambda times: np.stack([times, times**2]))
+    assert repeated.anew()(np.zeros(0)).shape == (2, 0)
+    np.testing.assert_array_equal(repeated.anew()(np.array([3.0, 1.0])), [[3.0, 1.0], [9.0, 1.0]])
 
 
 @pytest.mark.parametrize("arguments, words", [

@@ -30,6 +30,19 @@ def box_scene(**placing):
 
 # --- boxes ---
 
+@pytest.mark.parametrize("name, speed", [("car", 8.0), ("motorcycle", 7.0), ("cyclist", 4.5)])
+def test_traffic_of_the_roundabout_stays_on_its_ring(name, speed):
+    """A ring of 12 m about (18, 0), counter-clockwise: ways along it are its radius times the angle, noses look along it."""
+    motion = ep.load_scene(ROOT / "data" / "scenes" / "roundabout.toml").scene[name].motion
+    poses = [motion.at(time) for time in (0.0, 1.0, 2.5, 4.0)]
+    places = np.array([pose[:2, 3] for pose in poses]) - [18.0, 0.0]
+    assert np.hypot(*places.T) == pytest.approx(12.0, abs=0.01)
+    angles = np.unwrap(np.arctan2(places[:, 1], places[:, 0]))
+    assert 12.0 * (angles - angles[0]) == pytest.approx(speed * np.array([0.0, 1.0, 2.5, 4.0]), abs=0.02)
+    for pose, place in zip(poses, places):
+        assert abs(pose[:2, 0] @ place) / 12.0 < 0.015
+
+
 @pytest.mark.parametrize("name", ["roundabout", "street"])
 def test_boxes_hold_all_vertices_and_touch_them(name):
     file = ep.load_scene(ROOT / "data" / "scenes" / f"{name}.toml")

@@ -224,4 +224,6 @@ def _selection(frame, part) -> Selection:
 
 def _selected_cube(frame, selection: Selection):
     settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
-    return decompose(frame.paths, frame.radar, {"part": selection}, **settings)["part"]
+    # Where records are renewed, the other paths say which surface is new.
+    paths = frame.paths.select(selection) if frame.retrace == "never" else frame.paths
+    return decompose(paths, frame.radar, {"part": selection}, **settings)["part"]

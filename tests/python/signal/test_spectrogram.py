@@ -213,6 +213,25 @@ def test_the_ridge_of_a_pendulum_follows_its_velocity(pendulum):
     assert np.ptp(expected) > 10 * cell
 
 
+@pytest.mark.parametrize("retrace", ["never", "invalid"])
+def test_a_part_is_what_the_whole_taken_apart_has_of_it(retrace):
+    """Paths of other objects are left out before the signal of a part is made, or after."""
+    scene = ep.Scene()
+    for number, distance in enumerate((5.0, 7.0)):
+        scene.add(ep.actors.sphere(0.2), name=f"ball_{number}", smooth=True,
+                  material=ep.materials["metal"].replace(scattering=0.4), position=(distance, 0.4 * number, 0.0),
+                  speed=2.0 - 3.0 * number)
+    frames = list(ep.Sequence(scene, build_radar(num_chirps=32), frames=2, interval=0.01, num_rays=500, guard=False,
+                              retrace=retrace, keyframes=2 if retrace == "invalid" else 0))
+    for part, selection in (("ball_0", "T 'ball_0'+ R"), ("T .* 'ball_1' R", "T .* 'ball_1' R"), ("T 'ball_1' 'ball_1' R",) * 2):
+        cubes = [ep.decompose(frame.paths, parts={"part": selection}, retrace=retrace, keyframes=frame.keyframes)["part"]
+                 for frame in frames]
+        expected = ep.spectrogram(cubes, frames[0].radar, start_times=[frame.start_time for frame in frames]).power
+        found = ep.spectrogram(frames, part=part).power
+        assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * expected.max())
+        assert (found.max() > 0.0) == ("'ball_1' 'ball_1'" not in part)
+
+
 def test_a_part_is_an_object_a_part_or_a_selection(pendulum):
     bob = ep.spectrogram(pendulum[:1], part="pivot/bob")
     alone = ep.spectrogram(ep.synthesize(pendulum[0].paths), pendulum[0].radar)  # the bob is all that there is

@@ -28,6 +28,12 @@ class Profile:
         speed = c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])
         return distance, np.where(moves, speed, 0.0), np.where(moves, 2.0 * c[2] + 6.0 * t * c[3], 0.0)
 
+    def moving(self):
+        """(begins [N], ends [N]) in s of the spans in which it moves, apart from each other."""
+        moves = np.any(self.coefficients[:, 1:] != 0.0, axis=1)
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], moves, [False]]).astype(int)))
+        return self.times[edges[::2]], self.times[edges[1::2]]
+
     def shifted(self, seconds: float) -> Profile:
         """The same, so much later."""
         return Profile(self.times + seconds, self.coefficients)

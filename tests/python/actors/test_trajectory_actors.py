@@ -246,3 +246,28 @@ def test_other_refusals():
         ep.Scene().add(ep.actors.bicycle(trajectory=WALK), name="a", speed=1.0)
     with pytest.raises(ValueError, match="^motion: must be left out for an actor or model that follows"):
         ep.Scene().add(ep.actors.bicycle(trajectory=WALK), name="a", motion=WALK)
+
+
+@pytest.mark.parametrize("make, speed", [("pedestrian", 1.2), ("dog", 1.5), ("cyclist", 3.0)])
+def test_who_waits_for_long_moves_as_who_does_not_wait(make, speed):
+    """Ten seconds of a way amid 3600 s, as of a person of SUMO who waits for a bus: keys are needed where it moves alone."""
+    def vertices(begin, end, times):
+        way = ep.Trajectory([(0, 0), (0, 0), (10 * speed, 0), (10 * speed, 0)], times=[begin, 1800.0, 1810.0, end])
+        scene = ep.Scene()
+        scene.add(getattr(ep.actors, make)(trajectory=way), name="a")
+        return [np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes]) for time in times]
+
+    times = (1799.5, 1800.4, 1803.137, 1809.9, 1812.0)
+    np.testing.assert_allclose(vertices(0.0, 3600.0, times), vertices(1798.0, 1813.0, times), rtol=0, atol=1e-4)
+    first, *waiting = vertices(0.0, 3600.0, (0.0, 600.0, 1200.0, 1799.0))
+    np.testing.assert_allclose(waiting, [first] * 3, rtol=0, atol=1e-9)
+    with pytest.raises(ValueError, match="^trajectory: must be at most .* s on the move at such a keyframe_rate"):
+        getattr(ep.actors, make)(trajectory=ep.Trajectory([(0, 0), (4000, 0)], speed=1.2))
+
+
+def test_steps_that_no_legs_reach_are_refused_with_their_time():
+    """A walk of 1.4 m/s with 4 m in a second amid it, which by cubics through the places is fastest between 3 and 4 s."""
+    way = ep.Trajectory([(x, 0) for x in (0, 1.4, 2.8, 4.2, 8.2, 9.6, 11)], times=range(7))
+    with pytest.raises(ValueError, match=r"^trajectory: must be one along which the legs of a person of 1.78 m, .*, reach the "
+                       r"ground, got '[34]\.\d+ m/s at 3\.\d+ s'$"):
+        ep.actors.pedestrian(trajectory=way)

@@ -6,6 +6,7 @@ from one to the next, and the legs are bent to reach it. A stop is reached with 
 """
 import numpy as np
 
+from ...arguments.checks import refused
 from ...base.rotations import about_y, about_z
 from ..laid_line import LaidLine
 from .gait import MIN_KNEE, Frames, bend_leg
@@ -66,6 +67,7 @@ class GaitAlong:
         gait = self._gait
         hip = gait._hip(pelvis, sign)
         ankle, pitch, yaw = self._foot(times, phase, sign)
+        self._require_reach(times, hip - ankle)
         yaw = yaw + sign * gait.steps.opening
         knee, thigh, shank = bend_leg(hip, ankle, self._body.thigh, self._body.shank, 0.5 * (gait.walk.torsion(phase) + yaw))
         return {"thigh": Frames(hip, thigh), "shank": Frames(knee, shank),
@@ -74,6 +76,10 @@ class GaitAlong:
     def _too_high(self):
         """m by which the pelvis must be lower so that both feet can be reached at every time."""
         times = np.arange(self._track.profile.begin, self._track.profile.end + 0.005, 0.01)
+        moves = self._track.profile.at(times)[1] > 0.0
+        moves[1:] |= moves[:-1]             # with the first time of each standing, at which nothing changes any more
+        moves[0] = True
+        times = times[moves]
         phase = self._line.at(times)[0] / self._length
         thigh, shank = self._body.thigh, self._body.shank
         reach = thigh**2 + shank**2 + 2.0 * thigh * shank * np.cos(MIN_KNEE)
@@ -85,3 +91,14 @@ class GaitAlong:
             allowed = ankle[:, 2] + np.sqrt(np.maximum(room, LEAST_ROOM**2))
             most = max(most, float(np.max(hip[:, 2] - allowed)))
         return most
+
+    def _require_reach(self, times, legs):
+        """Raises ValueError naming trajectory where the ways [T, 3] in m from hips to ankles are longer than legs."""
+        lengths = np.linalg.norm(legs, axis=-1)
+        time = times[np.argmax(lengths)]
+        if lengths.max() <= self._body.thigh + self._body.shank:
+            return
+        speed = float(self._track.profile.at(np.array([time]))[1][0])
+        rule = (f"one along which the legs of a person of {self._body.height:g} m, who mostly goes at "
+                f"{self._gait.speed:.3g} m/s, reach the ground")
+        raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s at {time:.4g} s")

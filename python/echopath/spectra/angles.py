@@ -85,10 +85,12 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
     radar: that of the spectrum
     azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
-    elevation: [E] or one in rad, up from the xy-plane; None likewise
+    elevation: [E] or one in rad, up from the xy-plane; None likewise, at most 45 degrees up and down
     cells: [N, 2] (velocity, range) indices, or None: all
     method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
-        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
+        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid, and
+        its powers are low, as it takes what noise adds to an echo for another one: of 12 channels by 3 to 6 dB at a ratio of
+        30 dB in each, by 10 to 20 dB at 10 dB, with a diagonal_loading of 1 by less than 1 and 2 to 5 dB)
     window: of bartlett, as in `angle_fft`; other than "rect" for grids of equal steps only
     overlaps: "average" of channels at one position, or the "first" of them
     compensate: take out the phase between transmit slots (`compensate_tdm`)
@@ -149,7 +151,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
     radar: that of the spectrum
     azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
-    elevation: [E] or one in rad; None likewise, 0 alone for an array without vertical extent
+    elevation: [E] or one in rad; None likewise, at most 45 degrees up and down: what is higher is given a direction at that
+        end, unless this reaches it; 0 alone for an array without vertical extent
     cells: [N, 2] (velocity, range) indices
     velocity: [N] in m/s of the echoes in these cells, by which the phase between transmit slots is taken out, None: that of the
         middles of the cells, which is off by up to half a cell: by half a turn over the frame's number of chirps

@@ -30,7 +30,8 @@ Radar plane_radar(int columns, int rows) {
 
 TEST(EstimateAngles, AWaveIsFoundBetweenTheStepsOfTheGrid) {
   const Radar radar = plane_radar(8, 6);
-  for (const auto& [left, up] : {std::pair{0.123, -0.217}, {-0.81, 0.33}, {0.0, 0.0}, {0.5001, 0.6}}) {
+  for (const auto& [left, up] :
+       {std::pair{0.123, -0.217}, {-0.81, 0.33}, {0.0, 0.0}, {0.5001, 0.6}, {0.96, -0.61}, {-1.31, -0.7}}) {
     for (const BeamMethod method : {BeamMethod::kBartlett, BeamMethod::kCapon}) {
       RangeDoppler map = testing::empty_map(radar);
       testing::add_wave(map, radar, direction(left, up), {2.0, 1.0}, 3, 2);

@@ -146,6 +146,24 @@ def test_a_sphere_is_found_where_it_is(azimuth, elevation):
     assert np.sign(np.round(angles.sin_elevation[e], 1)) == np.sign(elevation)
 
 
+@pytest.mark.parametrize("method", ["bartlett", "capon"])
+@pytest.mark.parametrize("azimuth, elevation", [(20, 10), (55, -35), (-75, -40)])
+def test_directions_aslant_are_found_between_the_steps_of_the_grid(method, azimuth, elevation):
+    """A plane wave on 8 x 8 elements: beams there are long across azimuth and elevation, and those of Capon needles."""
+    radar = mimo([(0, 0), (4, 0), (0, 4), (4, 4)], [(column, row) for row in range(4) for column in range(4)])
+    toward = at(1.0, azimuth * DEGREE, elevation * DEGREE)
+    shape, count = radar.waveform, radar.waveform.num_samples
+    channels = np.array([[np.exp(-2j * np.pi * (tx.position + rx.position) @ toward / shape.wavelength)
+                          for rx in radar.receivers] for tx in radar.transmitters])
+    tone = np.exp(2j * np.pi * 20 * np.arange(count) / count)
+    cube = channels[:, :, None, None] * np.broadcast_to(tone, (shape.num_chirps, count))
+    spectrum = ep.range_doppler(cube, radar)
+    found = ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)], method=method)
+    assert found.azimuth[0] == pytest.approx(azimuth * DEGREE, abs=1e-3 * DEGREE)
+    assert found.elevation[0] == pytest.approx(elevation * DEGREE, abs=1e-3 * DEGREE)
+    assert found.power[0] == pytest.approx(1.0, abs=1e-3)
+
+
 def test_angles_are_those_in_the_frame_of_a_turned_radar():
     yaw, pitch = 50 * DEGREE, -10 * DEGREE  # to the left, then nose up (about +y, which points left)
     turn_left = np.array([np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)])

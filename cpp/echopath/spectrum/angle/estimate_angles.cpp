@@ -75,13 +75,14 @@ class PeakSearch {
     return true;
   }
 
-  // Climbs along azimuth and elevation in turn.
+  // Climbs along azimuth and elevation in turn, and then along both at once: aslant, a beam is longer across them.
   Peak refined(const CellBeam& beam, int64_t d, double power) const {
     Peak peak{angles_.azimuth[d % num_azimuths()], angles_.elevation[d / num_azimuths()], power};
     double across = step(angles_.azimuth, d % num_azimuths()), up = step(angles_.elevation, d / num_azimuths());
     for (int round = 0; round < kRefinements; ++round) {
       climb(beam, peak, &Peak::azimuth, across, angles_.azimuth);
       climb(beam, peak, &Peak::elevation, up, angles_.elevation);
+      if (across > 0.0 && up > 0.0) climb_aslant(beam, peak, across, up);
       across *= kNarrowing;
       up *= kNarrowing;
     }
@@ -98,9 +99,9 @@ class PeakSearch {
   // three.
   void climb(const CellBeam& beam, Peak& peak, double Peak::* angle, double step, const std::vector<double>& axis) const {
     if (step <= 0.0) return;
-    const double centre = peak.*angle, low = at(beam, peak, angle, centre - step, axis).power;
-    const double high = at(beam, peak, angle, centre + step, axis).power;
-    const double second_difference = low - 2.0 * peak.power + high;
+    const double centre = peak.*angle, low = height(at(beam, peak, angle, centre - step, axis));
+    const double high = height(at(beam, peak, angle, centre + step, axis));
+    const double second_difference = low - 2.0 * height(peak) + high;
     const double offset = second_difference < 0.0 ? 0.5 * step * (low - high) / second_difference : 0.0;
     for (const double shift : {-step, step, std::clamp(offset, -step, step)}) {
       const Peak candidate = at(beam, peak, angle, centre + shift, axis);
@@ -108,8 +109,39 @@ class PeakSearch {
     }
   }
 
+  // Moves to the top of the paraboloid through the peak and its neighbours at +-across and +-up, if that is higher.
+  void climb_aslant(const CellBeam& beam, Peak& peak, double across, double up) const {
+    const auto beside = [&](double i, double k) { return beside_peak(beam, peak, i * across, k * up); };
+    const auto height_at = [&](double i, double k) { return height(beside(i, k)); };
+    const double top = height(peak), left = height_at(-1, 0), right = height_at(1, 0);
+    const double below = height_at(0, -1), above = height_at(0, 1);
+    const double xx = left - 2.0 * top + right, yy = below - 2.0 * top + above;
+    const double xy = 0.5 * (height_at(1, 1) + height_at(-1, -1) - left - right - below - above) + top;
+    const double x = 0.5 * (right - left), y = 0.5 * (above - below), determinant = xx * yy - xy * xy;
+    if (!(xx < 0.0) || !(determinant > 0.0)) return;
+    const double i = (xy * y - yy * x) / determinant, k = (xy * x - xx * y) / determinant;
+    const double longest = std::max({1.0, std::abs(i), std::abs(k)});
+    const Peak candidate = beside(i / longest, k / longest);
+    if (candidate.power > peak.power) peak = candidate;
+  }
+
+  // Returns what is a parabola about a peak: beside one echo Capon's power falls as (e + d^2)^-2 at a distance d.
+  double height(const Peak& peak) const {
+    return options_.beams.method == BeamMethod::kCapon ? -1.0 / std::sqrt(peak.power) : peak.power;
+  }
+
   Peak at(const CellBeam& beam, Peak peak, double Peak::* angle, double value, const std::vector<double>& axis) const {
     peak.*angle = std::clamp(value, axis.front(), axis.back());
+    return with_power(beam, peak);
+  }
+
+  Peak beside_peak(const CellBeam& beam, Peak peak, double across, double up) const {
+    peak.azimuth = std::clamp(peak.azimuth + across, angles_.azimuth.front(), angles_.azimuth.back());
+    peak.elevation = std::clamp(peak.elevation + up, angles_.elevation.front(), angles_.elevation.back());
+    return with_power(beam, peak);
+  }
+
+  Peak with_power(const CellBeam& beam, Peak peak) const {
     const Vec3 toward = direction(peak.azimuth, peak.elevation);
     peak.power = beam.power(BeamKernel(steering_vectors(source_.array(), {toward})))[0];
     return peak;

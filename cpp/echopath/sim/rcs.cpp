@@ -17,6 +17,7 @@ constexpr double kPhaseError = 1e-3;      // rad, of the spherical wave fronts o
 constexpr double kAmplitudeError = 1e-4;  // relative, of their spreading
 constexpr double kReachOfBias = 1.96;     // the bias reaches to the end of a 95 % interval
 constexpr double kSmallestSine = 1e-3;    // of the angle between line of sight and polarization
+constexpr double kNull = 1e-2;            // of the square of the wavelength
 constexpr double kInPlane = 1e-6;         // of the target's radius, how far from a plane points of it may lie
 
 struct Target {
@@ -104,9 +105,13 @@ void add_shots(const Target& target, const RcsDirections& pair, double distance,
   }
 }
 
-Paths shoot(const SceneSnapshot& scene, const Radar& radar, const RcsSettings& settings, Job* job, KeptGeometry* kept) {
-  return settings.target ? trace_to_error(scene, radar, settings.tracing, *settings.target, job, kept)
-                         : trace(scene, radar, settings.tracing, job, kept);
+// `scale` is as in `cross_section`.
+Paths shoot(const SceneSnapshot& scene, const Radar& radar, const RcsSettings& settings, double scale, Job* job,
+            KeptGeometry* kept) {
+  if (!settings.target) return trace(scene, radar, settings.tracing, job, kept);
+  ErrorTarget wanted = *settings.target;
+  wanted.least_power = largest_null(settings.frequency) / scale;
+  return trace_to_error(scene, radar, settings.tracing, wanted, job, kept);
 }
 
 // Returns how far a wave that would touch the world's origin on its way would go, m.
@@ -183,6 +188,11 @@ Vec3 RcsPolarization::across(const Vec3& toward) const {
   return rest.normalized();
 }
 
+double largest_null(double frequency) {
+  const double wavelength = kSpeedOfLight / frequency;
+  return kNull * wavelength * wavelength;
+}
+
 void RcsSettings::validate() const {
   require(std::isfinite(frequency) && frequency > 0, "frequency", "must be finite and > 0 Hz", frequency);
   require(!channels.empty(), "polarization", "must name at least one channel, channels", channels.size());
@@ -220,7 +230,7 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   KeptGeometry kept;
   for (const Shot& shot : shots) {
     Job part(job);
-    Paths paths = shoot(snapshot, shot.radar, settings, is_one && job ? job : &part, &kept);
+    Paths paths = shoot(snapshot, shot.radar, settings, scale, is_one && job ? job : &part, &kept);
     if (outside) paths = outside->select(paths, &part);
     for (size_t i = 0; i < shot.channels.size(); ++i) {
       out[shot.channels[i]] = cross_section(paths, static_cast<int>(i), target.centre, scale, &part);

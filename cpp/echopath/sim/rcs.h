@@ -50,7 +50,8 @@ struct RcsSettings {
   // These settings hold for the trace of each pair of directions and each transmit polarisation. The scalar model has no
   // cross-polarised reception; from two batches on cross sections have standard errors.
   TraceSettings tracing = {RecordSettings{}, 1 << 17};
-  // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
+  // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h), or
+  // known to be a null; least_power is set by that.
   std::optional<ErrorTarget> target;
   // Leaves out the paths that touch walls of a cavity anywhere but in the plane of its mouth.
   std::vector<RcsCavity> cavities;
@@ -58,6 +59,10 @@ struct RcsSettings {
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;
 };
+
+// Returns the cross section in m^2 below which one is a null, a hundredth of the square of the wavelength: physical optics
+// leaves out more at an edge that is a wavelength long, so that more rays tell nothing of the target.
+double largest_null(double frequency);
 
 // Holds cross sections in m^2. The errors are the standard errors of power/received_power.h, NaN for one batch, and beside
 // them, as root sum of squares, what the footprint filter may take away, at the same confidence. Coherent echoes add as

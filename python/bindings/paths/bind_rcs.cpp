@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <complex>
 #include <optional>
 #include <string>
@@ -161,23 +162,35 @@ std::vector<RcsCavity> cavities_of(const std::vector<CavityTuple>& tuples) {
   return cavities;
 }
 
-// Returns the cross section in m^2 up to which one is an exact null, such as the cross-polarised one of a plate, of which
-// rounding leaves as much.
-double largest_of_null(double frequency) {
-  constexpr double kNull = 1e-15;  // of the square of the wavelength
-  const double wavelength = kSpeedOfLight / frequency;
-  return kNull * wavelength * wavelength;
+// Returns the cross section in m^2 up to which one is nothing but rounding, as the cross-polarised one of a plate.
+double largest_of_rounding(double frequency) {
+  constexpr double kRounding = 1e-13;  // of that of a null
+  return kRounding * largest_null(frequency);
 }
 
-void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, double target_error_db, double null) {
-  int64_t missed = 0;
+// Where rays cancel each other, more of them would tell the same.
+void tell_nulls(int64_t nulls, size_t num_entries, double null) {
+  if (nulls == 0) return;
+  warn_caller(
+      streamed("rcs: ", nulls, " of ", num_entries, " cross sections are nulls, below wavelength^2 / 100 = ", null,
+               " m^2 (95 %), less than physical optics leaves out at an edge a wavelength long: more rays were not added"));
+}
+
+void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, double target_error_db, double frequency) {
+  const double null = largest_null(frequency), rounding = largest_of_rounding(frequency);
+  const double known = std::pow(10.0, 0.1 * target_error_db);
+  int64_t missed = 0, nulls = 0;
   double worst = 0.0;
   for (const RadarCrossSection& entry : entries) {
-    // Rays that miss the target need no more rays.
-    if (entry.error_db <= target_error_db || entry.total == 0 || entry.high <= null) continue;
-    ++missed;
-    worst = std::max(worst, entry.error_db);
+    if (entry.total == 0 || entry.high <= rounding) continue;  // rays that miss the target need no more rays
+    if (entry.high <= null) {
+      nulls += entry.high > known * entry.total;
+    } else if (entry.error_db > target_error_db) {
+      ++missed;
+      worst = std::max(worst, entry.error_db);
+    }
   }
+  tell_nulls(nulls, entries.size(), null);
   if (missed == 0) return;
   const std::string count = std::to_string(missed) + " of " + std::to_string(entries.size());
   warn_of_missed_target("rcs: for " + count + " cross sections max_rays", worst, target_error_db);
@@ -193,11 +206,12 @@ bool is_unknown(const std::vector<RadarCrossSection>& entries, size_t index, siz
   return entries[index].high > kKnown * entries[index].total && entries[index].high > kNull * beside;
 }
 
-void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_channels, int64_t num_rays, double null) {
+void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_channels, int64_t num_rays,
+                      double rounding) {
   int64_t unknown = 0;
   double most = 0.0;
   for (size_t i = 0; i < entries.size(); ++i) {
-    if (entries[i].high <= null || !is_unknown(entries, i, num_channels)) continue;
+    if (entries[i].high <= rounding || !is_unknown(entries, i, num_channels)) continue;
     ++unknown;
     most = std::max(most, entries[i].high);
   }
@@ -236,9 +250,9 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   tracing.edges = edges;
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   if (target_error_db) {
-    warn_of_missed_targets(entries, *target_error_db, largest_of_null(frequency));
+    warn_of_missed_targets(entries, *target_error_db, frequency);
   } else if (tracing.footprint != Footprint::kNone) {  // without one nothing tells whether they are few
-    warn_of_few_rays(entries, channels.rows.size(), effort.num_rays, largest_of_null(frequency));
+    warn_of_few_rays(entries, channels.rows.size(), effort.num_rays, largest_of_rounding(frequency));
   }
   Shape shape;
   if (!is_one) shape.push_back(std::ssize(pairs));

@@ -184,7 +184,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     seed, footprint, sampler, edges: as in `trace`; edges is not "auto", because there is no noise
     batches: as in `trace`; None: 8 for return_error, else 1
     target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
-        each cross section, of a list of polarizations the first with each transmitter, is known that well
+        each cross section, of a list of polarizations the first with each transmitter, is known that well, or to be a null:
+        below a hundredth of the wavelength squared, -68 dBsm at 77 GHz, physical optics knows nothing
     cavities: hollows in perfect conductors, of which rays know little where they are a few wavelengths wide: a Cavity or
         several. Rays go on outside of them, and their edges count at the mouth alone; what the mouth lets in is a wave, whose
         currents on the walls an equation of twice as many unknowns as there are facets of a quarter of a wavelength tells (at
@@ -201,8 +202,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero
     direction, one along the polarization, an empty scene, and mirrors, which have no cross section. Warns
     (TessellationWarning) of curved meshes that err by more than 0.3 dB, with the edge length in m that would do, and
-    (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the footprints of the rays are too wide to
-    know cross sections to 3 dB; of nulls between lobes they need not.
+    (RuntimeWarning) where max_rays did not do, of nulls that rays were added for, or, without target_error_db, where the
+    footprints of the rays are too wide to know cross sections to 3 dB; of nulls between lobes they need not.
     """
     scene = scene_at(scene, 0.0)
     warn_of_coarse_meshes(scene, frequency)

@@ -78,6 +78,19 @@ def test_rays_double_until_the_error_is_met(recwarn):
     assert edge_on == (0.0, 0.0)  # with no warning: nothing is there to be missed
 
 
+def test_rays_are_not_added_without_end_for_nulls():
+    """A plate 16 wavelengths wide, where sinc(4) = 0: physical optics has nothing there, which rays never know to 0.3 dB."""
+    frequency, width = 24e9, 0.2
+    wavelength = ep.speed_of_light / frequency
+    angle = np.arcsin(4 * wavelength / (2.0 * width))
+    keywords = dict(frequency=frequency, incidence=(-np.cos(angle), np.sin(angle), 0.0), target_error_db=0.3, max_rays=1 << 22)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(width, 0.1), name="plate", material="metal")
+    with pytest.warns(RuntimeWarning) as told:
+        assert 0.0 <= ep.rcs(scene, **keywords) < 0.01 * wavelength ** 2
+    assert len(told) == 1 and "rcs: 1 of 1 cross sections are nulls, below wavelength^2 / 100 = 1.56" in str(told[0].message)
+
+
 def test_meshes_too_coarse_are_warned_of():
     coarse = scene_of(ball=(sphere((0, 0, 0), RADIUS, 2), METAL))
     with pytest.warns(ep.TessellationWarning, match="edges of 7.* mm would do"):

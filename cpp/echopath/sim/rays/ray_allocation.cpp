@@ -170,8 +170,9 @@ double RayNeeds::num_rays() const {
 
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
   const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
-  const double least =
+  const double floor =
       wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
+  const double least = std::max(floor, wanted.least_power);
   const std::vector<bool> moves = moving_nodes(*paths.scene);
   const RayShares launched = shares_of(paths.frame.strata);
   RayNeeds needs;

@@ -36,6 +36,7 @@ enum class RayLaw {
 struct WantedError {
   double db = 0.3;  // half the 95 % interval of each echo, as far as rays mend it
   EchoFloor floor = EchoFloor::kStrongest;
+  double least_power = 0.0;  // W, below which no echo matters, whatever the floor
   RayLaw law = RayLaw::kByDecibels;
   // Echoes that are known better give back all of their rays but this share; 1: none, so that what is known stays known.
   double least_growth = 1.0 / 16.0;

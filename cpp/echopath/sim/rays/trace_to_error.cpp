@@ -22,6 +22,7 @@ Paths with_error_of_lot(Paths paths, const WantedError& wanted, Job* job) {
 
 void ErrorTarget::validate() const {
   require(error_db > 0, "target_error_db", "must be positive", error_db);
+  require(least_power >= 0, "least_power", "must be at least 0 W", least_power);
   require(max_rays >= 1 && max_rays <= kMostRays, "max_rays", "must lie in [1, 10000000000]", max_rays);
 }
 
@@ -34,7 +35,8 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
   if (!kept) kept = &own;
   FittedStrata fitted;
   TraceSettings launch = settings;
-  const WantedError wanted{.db = target.error_db, .floor = target.floor, .least_growth = 1.0};
+  const WantedError wanted{
+      .db = target.error_db, .floor = target.floor, .least_power = target.least_power, .least_growth = 1.0};
   for (;;) {
     Paths paths = trace(scene, radar, launch, job, kept, &fitted);
     const RayNeeds needs = ray_needs(paths, wanted, job);

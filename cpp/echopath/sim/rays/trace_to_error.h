@@ -15,6 +15,7 @@ struct ErrorTarget {
   double error_db = 0.3;        // dB, half the 95 % interval of each echo, as far as rays mend it
   int64_t max_rays = kMaxRays;  // of one trace
   EchoFloor floor = EchoFloor::kStrongest;
+  double least_power = 0.0;  // W, an echo that stays below it is known well enough, whatever the floor
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

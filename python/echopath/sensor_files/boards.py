@@ -13,7 +13,7 @@ class Board(NamedTuple):
     """A board.
 
     name: of its file; transmitters, receivers: Antenna, in the order of its channels; transmit_power: W; noise_figure_db: dB
-    platforms: what configurations call it; lanes: of its serial port
+    band: Hz, first and last that it sends; platforms: what configurations call it; lanes: of its serial port
     """
 
     name: str
@@ -21,6 +21,7 @@ class Board(NamedTuple):
     receivers: tuple
     transmit_power: float
     noise_figure_db: float
+    band: tuple[float, float]
     platforms: tuple
     lanes: int
 
@@ -37,7 +38,8 @@ def read_board(name: str) -> Board:
     table = tomllib.loads((data_folder("radars") / f"{name}.toml").read_text(encoding="utf-8"))
     step = 0.5 * _core.speed_of_light / table["design_frequency"]
     return Board(name, *(_antennas(table[side], step) for side in ("transmitters", "receivers")),
-                 table["transmit_power"], table["noise_figure_db"], tuple(table["platforms"]), table["lanes"])
+                 table["transmit_power"], table["noise_figure_db"], tuple(table["band"]), tuple(table["platforms"]),
+                 table["lanes"])
 
 
 def board_of_platform(platform: str) -> Board | None:

@@ -14,7 +14,8 @@ class FramePlan(NamedTuple):
 
     command: its line; subframe: its index, 0 of plain frames; first, num_chirps: indices of the chirps of one loop
     num_loops: of them; forced_profile: instead of that of the chirps, -1: none
-    start_time: s, after the frame's start; interval: s, from frame to frame; num_frames: 0: without end
+    start_time: s, after the frame's start; interval: s, from frame to frame, period: s, of it alone, 0: not told
+    num_frames: 0: without end
     """
 
     command: Command
@@ -25,7 +26,14 @@ class FramePlan(NamedTuple):
     forced_profile: int
     start_time: float
     interval: float
+    period: float
     num_frames: int
+
+    def check_duration(self, duration: float) -> None:
+        """Raises ep.FileError naming the line where the chirps take longer. duration: s, from the first to the last sample"""
+        if 0.0 < self.period < duration:
+            raise self.command.error(f"period_ms: must be at least {1e3 * duration:.6g}, the time of its chirps, got "
+                                     f"{1e3 * self.period:g}")
 
 
 def plans_of(lines: Lines) -> list[FramePlan]:
@@ -37,8 +45,9 @@ def plans_of(lines: Lines) -> list[FramePlan]:
         raise modes[-1].error(f"mode: must be 1 (frames) or {ADVANCED} (sub-frames), got {modes[-1]['mode']}")
     frame = lines.one("frameCfg")
     count = _num_chirps(frame, "last", frame["last"] - frame["first"] + 1)
+    period = 1e-3 * _from_zero(frame, "period_ms")
     return [FramePlan(frame, 0, frame["first"], count, _positive(frame, "num_loops", frame["num_loops"]), -1, 0.0,
-                      1e-3 * _from_zero(frame, "period_ms"), _from_zero(frame, "num_frames"))]
+                      period, period, _from_zero(frame, "num_frames"))]
 
 
 def _subframes(lines: Lines) -> list[FramePlan]:
@@ -54,7 +63,7 @@ def _subframes(lines: Lines) -> list[FramePlan]:
             raise command.error("num_bursts, num_burst_loops: must be 1, other bursts are not known")
         plans.append(FramePlan(command, index, command["first"], _num_chirps(command, "num_chirps", command["num_chirps"]),
                                _positive(command, "num_loops", command["num_loops"]), command["forced_profile"], start,
-                               interval, _from_zero(frame, "num_frames")))
+                               interval, 1e-3 * command["period_ms"], _from_zero(frame, "num_frames")))
         start += 1e-3 * command["period_ms"]
     return plans
 

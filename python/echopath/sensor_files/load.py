@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from .. import _core
 from ..arguments.checks import checked, flag, optional, refused, text
 from ..arguments.checks import count as count_rule
+from ..base.callers import warn_user
 from ..base.made_by import made_by
 from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
@@ -80,7 +81,8 @@ def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal
     path: of the file
     board: "IWR1443", "AWR1843", "IWR6843ISK", "IWR6843AOP" or "AWR2243_cascade"; None: as the file's line "Platform" says
     ideal: without the filters and the converter that the file describes
-    Returns a SensorConfig. Raises ep.FileError naming the line, ValueError for boards.
+    Returns a SensorConfig. Raises ep.FileError naming the line, ValueError for boards. Warns (RuntimeWarning) of chirps beyond
+    the band of the board.
     """
     lines = read_lines(Path(path))
     plans = plans_of(lines)
@@ -98,7 +100,8 @@ def load_radar(path: str | os.PathLike[str], board: str | None = None, *, subfra
     path, board, ideal: as in `load_sensor`, which reads all sub-frames
     subframe: index of the sub-frame, 0 of a plain frame
     Returns a Radar at the origin that looks along +x, its antennas in m as the board has them; `replace` places it. Raises
-    ep.FileError naming the line, ValueError for boards and sub-frames that are unknown.
+    ep.FileError naming the line, ValueError for boards and sub-frames that are unknown. Warns (RuntimeWarning) of chirps beyond
+    the band of the board.
     """
     radars = load_sensor(path, board, ideal=ideal).radars
     if subframe >= len(radars):
@@ -124,12 +127,23 @@ def _radar(lines: Lines, board: Board, plan: FramePlan, ideal: bool) -> _core.Ra
         raise slots.error(f"transmitter {code.transmitters[-1] + 1}: {board.name} has {len(board.transmitters)}")
     waveform = slots.waveform(num_chirps=plan.num_loops * plan.num_chirps // code.slots_of_chirp, real=_is_real(lines))
     try:
-        return _core.Radar(waveform, transmitters=[board.transmitters[i] for i in code.order], receivers=antennas,
+        radar = _core.Radar(waveform, transmitters=[board.transmitters[i] for i in code.order], receivers=antennas,
                            transmit_power=board.transmit_power, noise_figure_db=board.noise_figure_db,
                            multiplexing=code.kind, code_phases=code.phases,
                            receiver=_receiver(lines, slots, plan, board, ideal, chain_settings(slots, code)))
     except ValueError as error:
         raise slots.error(str(error)) from None
+    plan.check_duration(radar.frame_duration)
+    _warn_of_other_band(board, waveform)
+    return radar
+
+
+def _warn_of_other_band(board: Board, waveform: _core.ChirpSequence) -> None:
+    low, high = board.band
+    first, last = waveform.start_frequency, waveform.start_frequency + waveform.bandwidth
+    if first < low or last > high:
+        warn_user(f"board: {board.name} sends from {1e-9 * low:g} to {1e-9 * high:g} GHz, the chirps of the file go from "
+                  f"{1e-9 * first:.2f} to {1e-9 * last:.2f} GHz: is it that of another board?")
 
 
 def _antennas_of(lines: Lines, board: Board) -> list:

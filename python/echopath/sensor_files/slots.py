@@ -131,6 +131,9 @@ def _check_profile(profile: Command) -> None:
     for name in ("start_ghz", "ramp_end_us", "slope_mhz_us", "num_samples", "rate_ksps"):
         if not profile[name] > 0:
             raise profile.error(f"{name}: must be positive, got {profile[name]:g}")
+    for name in ("idle_us", "adc_start_us", "gain_db"):
+        if profile[name] < 0:
+            raise profile.error(f"{name}: must be at least 0, got {profile[name]:g}")
     sampled = profile["adc_start_us"] + 1e3 * profile["num_samples"] / profile["rate_ksps"]
     if sampled > profile["ramp_end_us"] * (1.0 + 1e-9):
         raise profile.error(f"ramp_end_us: must be at least {sampled:.6g}, where the last sample is taken, got "

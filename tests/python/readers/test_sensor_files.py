@@ -1,4 +1,5 @@
 """Configurations of TI sensors as radars: each number of the file, several radars of one sensor, and what is refused."""
+import warnings
 from itertools import chain
 
 import numpy as np
@@ -35,6 +36,7 @@ def test_what_says_nothing_of_the_signal_is_named_and_left_alone(written):
     assert (sensor.interval, sensor.num_frames, sensor.board, sensor.start_times) == (0.05, 0, "IWR6843ISK", (0.0,))
 
 
+@pytest.mark.filterwarnings("ignore:board. .* sends from")
 @pytest.mark.parametrize("board, tx, rx", [("IWR1443", 3, 4), ("AWR1843", 3, 4), ("IWR6843ISK", 3, 4), ("IWR6843AOP", 3, 4),
                                            ("AWR2243_cascade", 12, 16)])
 def test_boards_have_their_antennas(written, board, tx, rx):
@@ -52,6 +54,7 @@ def virtual_places(board, tx, rx, written):
     return places / (0.5 * C / {"AWR2243_cascade": 76.8e9, "AWR1843": 79e9, "IWR1443": 79e9}.get(board, 62e9))
 
 
+@pytest.mark.filterwarnings("ignore:board. .* sends from")  # the chirps are those of the 6843
 def test_virtual_elements_are_those_that_ti_publishes(written):
     """antGeometry0 (to the right) and antGeometry1 (up) of configurations for the 6843; 86 azimuths of the cascade (JAJU737A)."""
     isk = virtual_places("IWR6843ISK", 3, 4, written).reshape(12, 3)
@@ -169,6 +172,9 @@ def test_sub_frames_are_sequences_and_one_file(written, tmp_path):
      "sensor.cfg:9: frameCfg: last: must leave at most 512, got 100000000000000"),
     (dict(frameCfg="frameCfg 0 1 32 0 -50 1 0"), "sensor.cfg:9: frameCfg: period_ms: must be at least 0, got -50"),
     (dict(frameCfg="frameCfg 0 1 32 -3 50 1 0"), "sensor.cfg:9: frameCfg: num_frames: must be at least 0, got -3"),
+    (dict(profileCfg="profileCfg 0 60 -1 6 40 0 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: idle_us: must be at"),
+    (dict(profileCfg="profileCfg 0 60 7 6 40 0 0 70 1 128 5000 0 0 -5"), "sensor.cfg:6: profileCfg: gain_db: must be at"),
+    (dict(frameCfg="frameCfg 0 1 32 0 2 1 0"), r"sensor.cfg:9: frameCfg: period_ms: must be at least 2.98\d+, the time of its"),
     (dict(frameCfg="sensorStop"), "sensor.cfg: has no frameCfg"),
     (dict(dfeDataOutputMode="dfeDataOutputMode 2"), "sensor.cfg:2: dfeDataOutputMode: mode: must be 1"),
 ])
@@ -181,6 +187,16 @@ def test_what_is_no_configuration_is_told_before_a_board_is_asked_for(tmp_path):
     (tmp_path / "room.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     with pytest.raises(ep.FileError, match="room.obj: has no frameCfg"):
         ep.load_radar(tmp_path / "room.obj")
+
+
+def test_chirps_of_another_board_are_warned_of(written):
+    """The data sheet of the AWR1843 names 76 to 81 GHz; the file sends from 60.42 to 62.21 GHz, within the 60 to 64 GHz of its
+    IWR6843."""
+    with pytest.warns(RuntimeWarning, match="^board: AWR1843 sends from 76 to 81 GHz, .* from 60.42 to 62.21 GHz: "):
+        ep.load_radar(written(), "AWR1843")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.load_radar(written())
 
 
 def test_boards_that_nobody_names_are_asked_for(written):

@@ -42,6 +42,11 @@ def measured(scene: ep.Scene) -> None:
     turns = np.column_stack([-np.cos([0.0, 0.1]), np.sin([0.0, 0.1]), np.zeros(2)])
     print(10.0 * np.log10(ep.rcs(scene, frequency=77e9, incidence=turns)))
     print(ep.rcs(scene, frequency=77e9, incidence=(-1, 0, 0), components=True)["coherent"])
+    noise = ep.PhaseNoise(offsets=np.logspace(4, 7, 4), levels=[-70, -80, -90, -110])
+    receiver = ep.Receiver(phase_noise=noise, leakage_db=np.full((1, 1), -40.0), high_pass=(175e3,), adc={"bits": 12})
+    steps = receiver.adc.bits if receiver.adc else 0
+    corners: tuple[float, ...] = receiver.high_pass + noise.offsets
+    print(steps, corners, receiver.leakage_db[0][0], receiver.replace(dc_offset=np.zeros(2)).dc_offset[1])
     loaded = ep.load_scene("street.toml")
     frame = ep.simulate(loaded.scene, loaded.radar.replace(receiver=ep.Receiver(adc=ep.Adc(bits=12))), parts=loaded.parts)
     print(frame.received.codes.dtype, 10.0 * np.log10(np.mean(np.abs(frame.interference_cube) ** 2)))

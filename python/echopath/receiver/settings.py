@@ -2,16 +2,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ..arguments.checks import ArrayLike, Rule, array, count, flag, optional, real, refused
 from ..arguments.settings import Settings, settings_class
-
-Row = tuple[float, ...]
-Table = tuple[Row, ...]
+from .fields import NumberPair, Numbers, NumberTable, Table, kept
 
 HIGHEST_LEVEL = 20.0  # dBc/Hz, of a phase that turns about at random: masks of radars are far below it
 
@@ -67,8 +65,8 @@ class PhaseNoise(Settings):
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
-    offsets: Sequence[float] = ()
-    levels: Sequence[float] = ()
+    offsets: Numbers = kept(())
+    levels: Numbers = kept(())
 
     RULES: ClassVar[Mapping[str, Rule]] = {"offsets": _row(), "levels": _row()}
 
@@ -126,6 +124,22 @@ class Adc(Settings):
             raise refused(ValueError, "lanes", "2 or 4", self.lanes)
 
 
+class GivenPhaseNoise:
+    """A PhaseNoise, or a dict of its keywords, of which one is made, or None."""
+
+    if TYPE_CHECKING:
+        def __get__(self, instance: object, owner: type) -> PhaseNoise | None: return None
+        def __set__(self, instance: object, value: PhaseNoise | Mapping[str, object] | None) -> None: ...
+
+
+class GivenAdc:
+    """An Adc, or a dict of its keywords, of which one is made, or None."""
+
+    if TYPE_CHECKING:
+        def __get__(self, instance: object, owner: type) -> Adc | None: return None
+        def __set__(self, instance: object, value: Adc | Mapping[str, object] | None) -> None: ...
+
+
 @settings_class
 class Receiver(Settings):
     """Faults of a receiver; what is not given is ideal. `echopath.receiver` has the order of the stages.
@@ -144,26 +158,26 @@ class Receiver(Settings):
     Empty or None is none. Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
-    phase_noise: PhaseNoise | Mapping[str, object] | None = None
-    frequency_error: Sequence[float] = ()
-    leakage_db: Sequence[Sequence[float]] = ()
+    phase_noise: GivenPhaseNoise = kept(None)
+    frequency_error: Numbers = kept(())
+    leakage_db: NumberTable = kept(())
     leakage_delay: float = 0.0
-    coupling_db: Sequence[Sequence[float]] = ()
+    coupling_db: NumberTable = kept(())
     coupling_delay: float = 0.0
-    transmitter_gain_db: Sequence[float] = ()
-    transmitter_phase: Sequence[float] = ()
-    receiver_gain_db: Sequence[float] = ()
-    receiver_phase: Sequence[float] = ()
-    gain_drift_db: Sequence[float] = ()
-    phase_drift: Sequence[float] = ()
+    transmitter_gain_db: Numbers = kept(())
+    transmitter_phase: Numbers = kept(())
+    receiver_gain_db: Numbers = kept(())
+    receiver_phase: Numbers = kept(())
+    gain_drift_db: Numbers = kept(())
+    phase_drift: Numbers = kept(())
     compression_dbm: float | None = None
-    high_pass: Sequence[float] = ()
+    high_pass: Numbers = kept(())
     low_pass: float | None = None
     low_pass_poles: int = 4
     iq_gain_db: float = 0.0
     iq_phase: float = 0.0
-    dc_offset: tuple[float, float] = (0.0, 0.0)
-    adc: Adc | Mapping[str, object] | None = None
+    dc_offset: NumberPair = kept((0.0, 0.0))
+    adc: GivenAdc = kept(None)
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": _table("[tx, rx]"),

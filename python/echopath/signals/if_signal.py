@@ -70,7 +70,8 @@ def noise_power(radar: _core.Radar, window: MapWindow = SignalSettings.window, *
     An echo whose `received_power` is as much has a signal-to-noise ratio of 0 dB at its peak.
     radar: whose noise figure, sampling rate, samples and chirps count
     window: of the map, as in `range_doppler`; a sample has none
-    of: "cell" of a range-Doppler map of one channel, or "sample" of the IF signal, as `add_noise` draws it
+    of: "cell" of a range-Doppler map of one channel, or "sample" of the IF signal [tx, rx, chirp, sample], as `add_noise` draws
+        it: of "bpm" the mean over the num_slots slots of a chirp, each of which has num_slots times as much
     Returns W. Raises TypeError or ValueError naming the argument.
     """
     return _core.noise_power(radar) if of == "sample" else _core.cell_noise_power(radar, window)

@@ -10,11 +10,15 @@
 namespace echopath::bindings {
 namespace {
 
-constexpr double kLowestFrequency = 1e6;    // Hz, of radars that look over the horizon
-constexpr double kHighestFrequency = 1e14;  // Hz, of infrared light
-constexpr double kNarrowest = 1e3;          // Hz, cells of 150 km
-constexpr double kLongestInterval = 1.0;    // s
-constexpr double kTurn = 2.0 * kPi + 1e-9;  // rad
+constexpr double kLowestFrequency = 1e6;        // Hz, of radars that look over the horizon
+constexpr double kHighestFrequency = 1e14;      // Hz, of infrared light
+constexpr double kNarrowest = 1e3;              // Hz, cells of 150 km
+constexpr double kLeastBandwidth = 1e-3;        // Hz, below which ranges overflow
+constexpr double kLargestInterval = 1e6;        // s, between chirps
+constexpr double kLargestPower = 1e30;          // W, whose squares are finite
+constexpr double kLargestNoiseFigure = 1000.0;  // dB, likewise
+constexpr double kLongestInterval = 1.0;        // s
+constexpr double kTurn = 2.0 * kPi + 1e-9;      // rad
 
 template <class... Words>
 void warn(const Words&... words) {
@@ -34,6 +38,14 @@ void require_plausible(const ChirpSequence& waveform) {
   require(waveform.start_frequency <= kHighestFrequency, "start_frequency", "must be at most 1e14 Hz (77 GHz are 77e9)",
           waveform.start_frequency);
   require_below_infrared(waveform, 0.0, "bandwidth", waveform.bandwidth);
+  require(waveform.bandwidth >= kLeastBandwidth, "bandwidth", "must be at least 1e-3 Hz (1 GHz is 1e9)", waveform.bandwidth);
+  require(waveform.sampling_rate <= kHighestFrequency, "sampling_rate", "must be at most 1e14 Hz (20 MHz are 20e6)",
+          waveform.sampling_rate);
+  require(waveform.chirp_interval <= kLargestInterval, "chirp_interval", "must be at most 1e6 s (60 us are 60e-6)",
+          waveform.chirp_interval);
+  for (const double idle : waveform.extra_idle) {
+    require(idle <= kLargestInterval, "extra_idle", "must be at most 1e6 s (5 us are 5e-6)", idle);
+  }
   for (const double step : waveform.frequency_steps) {
     require(waveform.start_frequency + step >= kLowestFrequency, "frequency_steps", "must leave frequencies from 1e6 Hz on",
             step);
@@ -51,6 +63,11 @@ void require_plausible(const ChirpSequence& waveform) {
   if (waveform.chirp_interval > kLongestInterval) {
     warn("chirp_interval: ", waveform.chirp_interval, " s from chirp to chirp; is it in s (60 us are 60e-6)?");
   }
+}
+
+void require_plausible(const Radar& radar) {
+  require(radar.transmit_power <= kLargestPower, "transmit_power", "must be at most 1e30 W", radar.transmit_power);
+  require(radar.noise_figure_db <= kLargestNoiseFigure, "noise_figure_db", "must be at most 1000 dB", radar.noise_figure_db);
 }
 
 void warn_of_turns(double yaw) {

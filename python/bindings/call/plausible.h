@@ -5,6 +5,7 @@
 namespace echopath::bindings {
 
 void require_plausible(const ChirpSequence& waveform);
+void require_plausible(const Radar& radar);
 // rad: more than a turn is more likely degrees.
 void warn_of_turns(double yaw);
 // m/s; raises where it is not below the speed of light.

@@ -77,6 +77,7 @@ Radar radar(const Arg<"waveform", Instance<ChirpSequence>>& waveform,
   made.validate_code_fits();
   require(made.code_phases.empty() || made.code_phases.size() == made.transmitters.size(), "code_phases",
           "must have one row for each transmitter", made.code_phases.size());
+  require_plausible(made);
   warn_of_turns(made.yaw);
   return made;
 }

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arguments.checks import refused
 from .past import CHIRPS_AT_ONCE, past_of
 from .settings import Receiver
 
@@ -60,9 +61,17 @@ def filtered(cube: np.ndarray, waveform, receiver: Receiver, models: np.ndarray)
 
 
 def length_of_past(waveform, receiver: Receiver) -> int:
-    """Samples in which the past fades and the filters settle, more than a chirp has where corners are low."""
-    slowest = [*receiver.high_pass]  # Hz, what poles decay by over 2 pi
+    """Samples in which the past fades and the filters settle, more than a chirp has where corners are low.
+
+    Raises ValueError for corners that are so low that it would be millions: next to a chirp they let all pass, or nothing.
+    """
+    constants = _TIME_CONSTANTS * waveform.sampling_rate / (2.0 * np.pi)  # Hz, over the poles' corner
+    share = np.sin(0.5 * np.pi / receiver.low_pass_poles)  # of the corner of a low-pass, that of its slowest pole
+    slowest = [*receiver.high_pass]
     if receiver.low_pass is not None:
-        slowest.append(receiver.low_pass * np.sin(0.5 * np.pi / receiver.low_pass_poles))
-    settled = _TIME_CONSTANTS * waveform.sampling_rate / (2.0 * np.pi * min(slowest))
-    return max(1, int(np.ceil(settled / _PAST_STEP))) * _PAST_STEP
+        slowest.append(receiver.low_pass * share)
+    least = constants / _MOST_SAMPLES
+    if min(slowest) < least:
+        name, corner = ("high_pass", least) if min(slowest) in receiver.high_pass else ("low_pass", least / share)
+        raise refused(ValueError, f"receiver.{name}", f"at least {corner:.4g} Hz at this sampling rate", getattr(receiver, name))
+    return max(1, int(np.ceil(constants / min(slowest) / _PAST_STEP))) * _PAST_STEP

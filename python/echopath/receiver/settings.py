@@ -9,25 +9,45 @@ import numpy as np
 
 from ..arguments.checks import ArrayLike, Rule, array, count, flag, optional, real, refused
 from ..arguments.settings import Settings, settings_class
-from .fields import NumberPair, Numbers, NumberTable, Table, kept
+from .fields import NumberPair, Numbers, NumberTable, Row, Table, kept
 
+LARGEST_DB = 1000.0  # of gains, of which several and their squares are finite numbers
 HIGHEST_LEVEL = 20.0  # dBc/Hz, of a phase that turns about at random: masks of radars are far below it
 
 
-def _row() -> Rule:
-    """Finite numbers [N] as a tuple."""
+def _row(unit: str = "") -> Rule:
+    """Finite numbers [N] as a tuple, such of the unit "dB" of which powers are finite."""
     rule = array("[N]", finite=True)
-    return lambda argument, value: tuple(float(one) for one in rule(argument, value))
+
+    def check(argument: str, value) -> Row:
+        row = tuple(float(one) for one in rule(argument, value))
+        _check_decibels(argument, row, unit)
+        return row
+
+    return check
+
+
+def _check_decibels(argument: str, numbers: Row, unit: str) -> None:
+    if unit.startswith("dB") and max(map(abs, numbers), default=0.0) > LARGEST_DB:
+        raise refused(ValueError, argument, f"from {-LARGEST_DB:g} to {LARGEST_DB:g} {unit}", numbers)
+
+
+def _decibels(unit: str, low: float = -LARGEST_DB) -> Rule:
+    """A number of which powers are finite."""
+    return real(low, LARGEST_DB, unit)
 
 
 def _table(shape: str) -> Rule:
-    """Finite numbers of a shape with two axes, or none at all, as tuples: kept so that the value can be hashed."""
+    """Numbers in dB of a shape with two axes, or none at all, as tuples: kept so that the value can be hashed."""
     rule = array(shape, finite=True)
 
     def check(argument: str, value) -> Table:
         if isinstance(value, (tuple, list)) and not value:
             return ()
-        return tuple(tuple(float(one) for one in row) for row in rule(argument, value))
+        table = tuple(tuple(float(one) for one in row) for row in rule(argument, value))
+        for row in table:
+            _check_decibels(argument, row, "dB")
+        return table
 
     return check
 
@@ -114,8 +134,8 @@ class Adc(Settings):
     q_first: bool = False
 
     RULES: ClassVar[Mapping[str, Rule]] = {
-        "bits": count(2, 16), "full_scale_dbm": real(unit="dBm"), "gain_db": real(unit="dB"), "automatic_gain": flag,
-        "headroom_db": real(0.0, unit="dB"), "gain_step_db": real(0.0, unit="dB"), "clock_jitter": real(0.0, unit="s"),
+        "bits": count(2, 16), "full_scale_dbm": _decibels("dBm"), "gain_db": _decibels("dB"), "automatic_gain": flag,
+        "headroom_db": _decibels("dB", 0.0), "gain_step_db": _decibels("dB", 0.0), "clock_jitter": real(0.0, unit="s"),
         "lanes": count(2, 4), "q_first": flag}
 
     def __post_init__(self) -> None:
@@ -182,10 +202,10 @@ class Receiver(Settings):
     RULES: ClassVar[Mapping[str, Rule]] = {
         "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": _table("[tx, rx]"),
         "leakage_delay": real(0.0, unit="s"), "coupling_db": _table("[rx, rx]"),
-        "coupling_delay": real(0.0, unit="s"), "transmitter_gain_db": _row(), "transmitter_phase": _row(),
-        "receiver_gain_db": _row(), "receiver_phase": _row(), "gain_drift_db": _row(), "phase_drift": _row(),
-        "compression_dbm": optional(real(unit="dBm")), "high_pass": _row(), "low_pass": optional(real(above=0.0, unit="Hz")),
-        "low_pass_poles": count(1, 10), "iq_gain_db": real(unit="dB"), "iq_phase": real(-math.pi / 2, math.pi / 2, "rad"),
+        "coupling_delay": real(0.0, unit="s"), "transmitter_gain_db": _row("dB"), "transmitter_phase": _row(),
+        "receiver_gain_db": _row("dB"), "receiver_phase": _row(), "gain_drift_db": _row(), "phase_drift": _row(),
+        "compression_dbm": optional(_decibels("dBm")), "high_pass": _row(), "low_pass": optional(real(above=0.0, unit="Hz")),
+        "low_pass_poles": count(1, 10), "iq_gain_db": _decibels("dB"), "iq_phase": real(-math.pi / 2, math.pi / 2, "rad"),
         "dc_offset": _pair, "adc": optional(_value(Adc))}
 
     def __post_init__(self) -> None:

@@ -22,6 +22,8 @@ def _scene(scale=1.0, name="car"):
 
 @pytest.mark.parametrize("make, says", [
     (lambda: ep.ChirpSequence(start_frequency=77), r"^start_frequency: must be at least 1e6 Hz \(77 GHz are 77e9\), got 77"),
+    (lambda: _radar(transmit_power=1e300), "^transmit_power: must be at most 1e30 W"),
+    (lambda: _radar(noise_figure_db=1e300), "^noise_figure_db: must be at most 1000 dB"),
     (lambda: _radar(speed=3e8), "^speed: must be below the speed of light"),
     (lambda: ep.LinearMotion(velocity=(0, -4e8, 0)), "^velocity: must be below the speed of light"),
     (lambda: ep.KeyframeMotion([0, 1e-6], [[0, 0, 0], [1000, 0, 0]]), "^translations: must be below the speed of light"),
@@ -93,6 +95,10 @@ def test_lossless_antennas_are_accepted():
     ({"frequency_steps": [0.0, 1e20]}, "^frequency_steps: must leave frequencies up to 1e14 Hz"),
     ({"frequency_steps": [0.0, 1.0 - 76e9]}, "^frequency_steps: must leave frequencies from 1e6 Hz on"),
     ({"bandwidth_steps": [0.0, 1e20]}, "^bandwidth_steps: must leave frequencies up to 1e14 Hz"),
+    ({"bandwidth": 1e-300}, "^bandwidth: must be at least 1e-3 Hz"),
+    ({"sampling_rate": 1e300}, "^sampling_rate: must be at most 1e14 Hz"),
+    ({"chirp_interval": 1e300}, "^chirp_interval: must be at most 1e6 s"),
+    ({"extra_idle": [0.0, 1e300]}, "^extra_idle: must be at most 1e6 s"),
 ])
 def test_frequencies_that_no_radar_has_are_refused(given, message):
     """At 1e30 Hz the signal of a plate was 1e58 sqrt(W), at 1e300 Hz NaN."""

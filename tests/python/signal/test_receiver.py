@@ -269,6 +269,23 @@ def test_levels_between_channels_are_asked_for_by_their_channels(name, shape):
         ep.Receiver(**{name: -30.0})
 
 
+@pytest.mark.parametrize("make, name", [
+    (lambda: ep.Receiver(iq_gain_db=1e300), "iq_gain_db"), (lambda: ep.Receiver(leakage_db=[[0.0, 2e3]]), "leakage_db"),
+    (lambda: ep.Receiver(receiver_gain_db=[-1e300]), "receiver_gain_db"), (lambda: ep.Adc(gain_db=1e300), "gain_db"),
+    (lambda: ep.Receiver(compression_dbm=1e300), "compression_dbm"), (lambda: ep.Adc(full_scale_dbm=-1e9), "full_scale_dbm")])
+def test_decibels_whose_powers_are_no_numbers_are_refused(make, name):
+    """10^(3080 / 10) is the largest number."""
+    with pytest.raises(ValueError, match=f"^{name}: must be .*from -1000 to 1000 dBm?, got"):
+        make()
+
+
+@pytest.mark.parametrize("filters, name", [({"high_pass": [350e3, 1.0]}, "high_pass"), ({"low_pass": 1e-300}, "low_pass")])
+def test_corners_that_would_take_hours_are_refused(filters, name):
+    """A filter of 1 Hz settles over seconds, 45 million samples of 10 MHz, of which a chirp has some hundred."""
+    with pytest.raises(ValueError, match=rf"^receiver\.{name}: must be at least [\d.]+ Hz at this sampling rate, got"):
+        received(tone(40), **filters)
+
+
 def test_what_a_receiver_gives_is_told_in_a_line():
     assert repr(received(tone(40))) == "Reception(cube [1, 1, 8, 512], codes: none)"
     told = repr(received(tone(40, 1e-6), adc=ep.Adc(gain_db=36.0)))

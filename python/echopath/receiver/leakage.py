@@ -18,7 +18,7 @@ def leakage(radar, receiver: Receiver, slots, oscillator=None) -> np.ndarray | N
         return None
     if oscillator is None or oscillator.is_ideal:
         time = np.arange(radar.waveform.num_samples) / radar.waveform.sampling_rate
-        tone = leaked_tone(slots, receiver.leakage_delay, time)[:, None]
+        tone = leaked_tone(radar.waveform, slots, receiver.leakage_delay, time)[:, None]
     else:
         tone = oscillator.leaked(receiver.leakage_delay)
     return as_samples(_amplitudes(radar, receiver) * tone, radar.waveform.real)
@@ -34,8 +34,10 @@ def _amplitudes(radar, receiver: Receiver) -> np.ndarray:
     return np.einsum("tr,tk->rk", amplitude, code_of(radar))[None, ..., None]
 
 
-def leaked_tone(slots, delay: float, time: np.ndarray) -> np.ndarray:
+def leaked_tone(waveform, slots, delay: float, time: np.ndarray) -> np.ndarray:
     """The echo of a delay d (s) of amplitude 1 at times [S] (s) after the first sample, complex [T, C, S], [1, 1, S] where all
-    chirps are alike: exp(j 2 pi (f0 d + slope t d - slope d^2 / 2)). slots: SlotTimes"""
+    chirps are alike: exp(j 2 pi (f0 d + slope t d - slope d^2 / 2)), and 0 where its beat frequency lies beyond the band, as
+    the filter before the converter leaves it. slots: SlotTimes"""
     start, slope = slots.start_frequency[..., None], slots.slope[..., None]
-    return np.exp(2j * np.pi * (start * delay + slope * delay * (time - 0.5 * delay)))
+    passes = slope * delay < waveform.sampling_rate * (0.5 if waveform.real else 1.0)
+    return passes * np.exp(2j * np.pi * (start * delay + slope * delay * (time - 0.5 * delay)))

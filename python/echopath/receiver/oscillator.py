@@ -54,7 +54,7 @@ class Oscillator:
         beat = self._slots.slope[..., None] * delay
         turn = self._passed(np.exp(1j * self._phase) * past, beat)
         time = np.arange(self._count) / self._waveform.sampling_rate
-        return (leaked_tone(self._slots, delay, time) * turn)[:, None]
+        return (leaked_tone(self._waveform, self._slots, delay, time) * turn)[:, None]
 
     def _of_pieces(self, cube, work) -> np.ndarray:
         """A cube whose chirps are worked on some at a time: work(spectrum [rx, C, 4 N], phase [C or 1, 4 N] in rad, slope

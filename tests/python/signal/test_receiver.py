@@ -117,6 +117,18 @@ def test_leakage_is_an_echo_of_its_level_and_delay():
     assert np.angle(cube[0, 0] * np.exp(-2j * np.pi * cycles)) == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("real, share", [(False, 1.0), (True, 0.5)])
+def test_leakage_beyond_the_last_range_is_filtered_as_echoes_are(real, share):
+    """Its beat frequency is slope times delay, and the band ends at the sampling rate, of real samples at half of it."""
+    def power(beat):
+        receiver = ep.Receiver(leakage_db=[[-30.0]], leakage_delay=beat * RATE / SLOPE)
+        radar = one_channel(receiver=receiver, transmit_power=1.0, real=real)
+        return np.mean(np.abs(ep.receive(np.zeros((1, 1, 8, COUNT)), radar, seed=None).cube) ** 2)
+
+    assert power(0.99 * share) == pytest.approx(1e-3, rel=0.01)
+    assert power(1.01 * share) == power(4.3) == 0.0
+
+
 def test_leakage_has_the_phase_noise_of_its_own_short_delay():
     noise = ep.PhaseNoise(offsets=[1e3], levels=[-130.0])
     radar = one_channel(200, receiver=ep.Receiver(phase_noise=noise, leakage_db=[[-20.0]], leakage_delay=5e-9),

@@ -52,6 +52,16 @@ def _table(shape: str) -> Rule:
     return check
 
 
+def _lanes(argument: str, value) -> int:
+    try:
+        lanes = count(2, 4)(argument, value)
+    except (TypeError, ValueError) as error:
+        raise refused(type(error), argument, "2 or 4", value) from None
+    if lanes == 3:
+        raise refused(ValueError, argument, "2 or 4", value)
+    return lanes
+
+
 def _pair(argument: str, value) -> tuple[float, float]:
     first, second = array("[2]", finite=True)(argument, value)
     return float(first), float(second)
@@ -136,12 +146,7 @@ class Adc(Settings):
     RULES: ClassVar[Mapping[str, Rule]] = {
         "bits": count(2, 16), "full_scale_dbm": _decibels("dBm"), "gain_db": _decibels("dB"), "automatic_gain": flag,
         "headroom_db": _decibels("dB", 0.0), "gain_step_db": _decibels("dB", 0.0), "clock_jitter": real(0.0, unit="s"),
-        "lanes": count(2, 4), "q_first": flag}
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.lanes == 3:
-            raise refused(ValueError, "lanes", "2 or 4", self.lanes)
+        "lanes": _lanes, "q_first": flag}
 
 
 class GivenPhaseNoise:

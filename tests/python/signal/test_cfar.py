@@ -192,3 +192,11 @@ def test_bad_arguments_are_named():
             ep.cfar(spectrum, radar, **{name: value})
     with pytest.raises(TypeError, match="false_alarm_rate"):
         ep.cfar(spectrum, radar, false_alarm=1e-3)
+
+
+def test_maps_without_room_for_noise_are_told_so():
+    """The main lobe of Hann's window is two cells wide on each side: three velocities and two ranges lie within."""
+    small = radar_with(num_chirps=3, num_samples=2)
+    spectrum = ep.range_doppler(np.ones((1, 1, 3, 2), complex), small)
+    with pytest.raises(ValueError, match="^spectrum: must have cells beside the main lobe .* got 3 x 2$"):
+        ep.cfar(spectrum, small)

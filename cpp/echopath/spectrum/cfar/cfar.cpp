@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/memory/recent_results.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/cfar/training_power.h"
@@ -138,6 +139,11 @@ CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOp
   const auto range = half_widths(options.guard_range, options.training_range, range_lobe, kTrainingRange * map.zero_pad,
                                  std::ssize(map.range));
   design.cells = {velocity.guard, range.guard, velocity.training, range.training};
+  const bool is_asked_for = options.training_velocity || options.training_range;
+  require(is_asked_for || design.cells.num_training() > 0, "spectrum",
+          "must have cells beside the main lobe of its window, which tell the noise (more samples or chirps, or a \"rect\" "
+          "window), cells of velocity x range",
+          streamed(map.velocity.size(), " x ", map.range.size()));
   design.cells.validate(std::ssize(map.velocity), std::ssize(map.range));
   design.validate();
   return design;

@@ -19,6 +19,11 @@ from .leakage import leaked_tone
 from .settings import Receiver
 
 SLOTS_AT_ONCE = 16
+# Offsets up to so many lines of a chirp, two of which make a cell of range, go on from chirp to chirp, less and less of their
+# power: near an echo velocities tell what comes from which offset, and noise of each chirp's own would be spread over them.
+_LINES_THAT_GO_ON = 10
+_MANY_SLOW_LINES = 1 << 15  # of a frame, beyond which fewer of a chirp go on: idle times between chirps fold them all alike
+_MOST_SLOW_LINES = 1 << 21  # of which a frame has its noise in a gigabyte
 _OVERSAMPLING = 32  # of the slow part of the phase noise, which is interpolated by straight lines
 
 
@@ -112,22 +117,46 @@ class Oscillator:
 
     @property
     def _line_distance(self) -> float:
-        """Hz between the lines of noise within a chirp; slower noise goes on from chirp to chirp."""
+        """Hz between the lines of noise within a chirp; what is slower than a few of them goes on from chirp to chirp."""
         return 0.5 * self._waveform.sampling_rate / self._count
 
+    @property
+    def _duration(self) -> float:
+        """s, after which the slow noise repeats: twice what the frame needs of it."""
+        return 2.0 * (self._slots.begin.max() + 2.0 * self._count / self._waveform.sampling_rate)
+
+    @property
+    def _lines_that_go_on(self) -> int:
+        """How many lines of a chirp the slow noise has."""
+        slow_lines = self._line_distance * self._duration
+        return int(min(_LINES_THAT_GO_ON, 2 * self._count, max(0.0, _MANY_SLOW_LINES / slow_lines - 0.5)))
+
     def _fast_noise(self, generator):
-        """[T, C, 4 N] rad: each chirp's own, at offsets above half the distance of its lines."""
-        lines = self._line_distance * np.arange(1, 2 * self._count + 1)
-        return _noise_of_lines(self._noise, lines, self._line_distance, 4 * self._count, self._slots.begin.shape, generator)
+        """[T, C, 4 N] rad: each chirp's own, at the offsets of its lines less what the slow noise has of them."""
+        numbers = np.arange(1, 2 * self._count + 1)
+        share = 1.0 - self._share_that_goes_on(self._line_distance * numbers)
+        return _noise_of_lines(self._noise, numbers, self._line_distance, 4 * self._count, self._slots.begin.shape, generator,
+                               share)
+
+    def _share_that_goes_on(self, offset):
+        """Of the power of the noise at offsets in Hz: all to half a line, which falls by a half cosine to nothing."""
+        lines = self._lines_that_go_on
+        if lines == 0:
+            return (offset < 0.5 * self._line_distance).astype(float)
+        return np.cos(0.5 * np.pi * np.clip((offset / self._line_distance - 0.5) / lines, 0.0, 1.0)) ** 2
 
     def _slow_noise(self, generator, time):
         """[T, C, 4 N] rad, of one oscillator that goes on through the frame."""
-        begin = self._slots.begin
-        duration = 2.0 * (begin.max() + time[-1] - time[0])
-        lines = np.arange(1, max(2, int(0.5 * self._line_distance * duration) + 1)) / duration
-        size = 2 * _OVERSAMPLING * (len(lines) + 1)
-        slow = _noise_of_lines(self._noise, lines, 1.0 / duration, size, (), generator)
-        at = begin[..., None] + (time - time[0])
+        duration = self._duration
+        highest = (self._lines_that_go_on + 0.5) * self._line_distance
+        if highest * duration > _MOST_SLOW_LINES:
+            raise ValueError(f"receiver.phase_noise: must have frames of at most {0.5 * _MOST_SLOW_LINES / highest:.3g} s, where "
+                             f"chirps are as short as {self._count} samples, got {0.5 * duration:.3g} s")
+        numbers = np.arange(1, max(2, int(highest * duration) + 1))
+        size = 2 * _OVERSAMPLING * (len(numbers) + 1)
+        share = self._share_that_goes_on(numbers / duration) if self._lines_that_go_on else 1.0
+        slow = _noise_of_lines(self._noise, numbers, 1.0 / duration, size, (), generator, share)
+        at = self._slots.begin[..., None] + (time - time[0])
         return np.interp(at, np.arange(size) * duration / size, slow)
 
 
@@ -146,12 +175,12 @@ def _cells(count: int, real: bool):
     return signed % count, signed
 
 
-def _noise_of_lines(mask, lines, distance: float, size: int, shape: tuple, generator) -> np.ndarray:
-    """Noise of the density of a mask, [*shape, size] over one period; lines: Hz of harmonics 1, 2, ... of it."""
-    deviation = np.sqrt(0.5 * mask.density(lines) * distance)
+def _noise_of_lines(mask, numbers, distance: float, size: int, shape: tuple, generator, share) -> np.ndarray:
+    """Noise of a share of the density of a mask, [*shape, size] over one period; numbers: of its lines, `distance` Hz apart."""
+    deviation = np.sqrt(0.5 * share * mask.density(distance * numbers) * distance)
     spectrum = np.zeros((*shape, size // 2 + 1), np.complex128)
-    spectrum[..., 1:1 + len(lines)] = deviation * (generator.standard_normal((*shape, len(lines)))
-                                                   + 1j * generator.standard_normal((*shape, len(lines))))
+    spectrum[..., numbers] = deviation * (generator.standard_normal((*shape, len(numbers)))
+                                          + 1j * generator.standard_normal((*shape, len(numbers))))
     return np.fft.irfft(spectrum, size) * size
 
 

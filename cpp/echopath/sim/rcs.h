@@ -50,8 +50,8 @@ struct RcsSettings {
   // These settings hold for the trace of each pair of directions and each transmit polarisation. The scalar model has no
   // cross-polarised reception; from two batches on cross sections have standard errors.
   TraceSettings tracing = {RecordSettings{}, 1 << 17};
-  // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h), or
-  // known to be a null; least_power is set by that.
+  // Doubles the rays until the first channel of each transmit polarisation is known that well, or known to be a null
+  // (sim/rays/trace_to_error.h); sets its least_power.
   std::optional<ErrorTarget> target;
   // Leaves out the paths that touch walls of a cavity anywhere but in the plane of its mouth.
   std::vector<RcsCavity> cavities;

@@ -10,6 +10,7 @@ from ..trajectories.profile import Profile, hermite_coefficients
 
 STEP = 2.0**-8          # s, of the table of ways
 SLOWEST = 0.2           # of the speed that the gait is made for: slower steps are not much shorter
+LONGEST = 1.15          # of half a cycle: steps between two stops that were longer become one more
 END_WAY = 0.01          # m, over which the length of a step is taken at the ends
 
 
@@ -30,7 +31,9 @@ class LaidLine:
         steps = np.diff(times)
         way = np.concatenate([[0.0], np.cumsum(0.5 * (stretch[:-1] + stretch[1:]) * np.diff(distances))])
         stops = np.searchsorted(times, profile.stops()[0])
-        counts = np.maximum(np.round(np.diff(way[stops]) / half), 1.0)
+        wanted = np.diff(way[stops]) / half
+        counts = np.maximum(np.round(wanted), 1.0)
+        counts += wanted > LONGEST * counts
         line = np.interp(way, way[stops], at_stop + half * np.concatenate([[0.0], np.cumsum(counts)]))
         slopes = np.gradient(line, times) * (speeds > 0.0)
         moves = np.diff(distances) > 1e-12

@@ -85,6 +85,19 @@ def test_at_stops_both_feet_are_down_and_the_body_is_where_it_should_be():
         assert np.linalg.norm((pelvis - WALK.position(time))[:2]) < 0.06
 
 
+def test_short_moves_between_stops_are_made_without_crouching():
+    """A metre a second, and two, between waits: steps as long as a leg would lower the hips by half a metre."""
+    waits = ep.Trajectory([(x, 0) for x in (0, 1, 1, 2, 2, 4, 4, 5)], times=[0, 1, 2, 3, 4, 6, 7, 8])
+    heights = []
+    for trajectory in (waits, ep.Trajectory([(0, 0), (8, 0)], speed=1.2)):
+        scene = ep.Scene()
+        scene.add(ep.actors.pedestrian(trajectory=trajectory, edge=0.05), name="walker")
+        pelvis = next(mesh.id for mesh in scene.meshes if mesh.name == "walker/pelvis")
+        times = np.linspace(trajectory.begin, trajectory.end, 60)
+        heights.append(np.array([scene.world_vertices(pelvis, time)[:, 2].mean() for time in times]))
+    assert abs(heights[0].mean() - heights[1].mean()) < 0.03
+
+
 def test_steps_count_as_the_model_has_them():
     """At 1.4 m/s a person of 1.78 m takes about two steps a second; the gait of Boulic et al. has cycles of 1.1 s."""
     straight = ep.Trajectory([(0, 0), (28, 0)], speed=1.4)

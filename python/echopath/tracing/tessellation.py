@@ -70,8 +70,11 @@ def warn_of_coarse_meshes(scene, frequency: float) -> None:
     found = coarse_meshes(scene, frequency)
     if not found:
         return
-    worst = sorted(found, key=lambda one: -one.ratio)[:_NAMED]
-    text = "; ".join(one.text for one in worst)
+    different: dict[str, str] = {}  # of copies of a mesh, as of cars of one model, one is named
+    for one in sorted(found, key=lambda one: -one.ratio):
+        different.setdefault(one.fault, f"mesh '{one.name}': {one.fault}")
+    worst = list(different.values())[:_NAMED]
+    text = "; ".join(worst)
     if len(found) > len(worst):
         text = f"{len(found)} meshes are too coarse for their coherent echo, the worst: " + text
     warn_user(text, TessellationWarning)
@@ -81,13 +84,14 @@ def warn_of_coarse_meshes(scene, frequency: float) -> None:
 class CoarseMesh:
     """A mesh whose coherent echo would err by more than 0.3 dB.
 
-    mesh_id: index into scene.meshes; ratio: edge / sqrt(radius wavelength), a smooth mesh counts as four times finer
-    text: what is wrong with it
+    mesh_id: index into scene.meshes, name: its name; ratio: edge / sqrt(radius wavelength), a smooth mesh counts as four times
+    finer; fault: what is wrong with it
     """
 
     mesh_id: int
+    name: str
     ratio: float
-    text: str
+    fault: str
 
 
 def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
@@ -105,7 +109,7 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
         smooth = nodes[mesh.node].smooth
         ratio = measured.ratio(wavelength) / (SMOOTH_GAIN if smooth else 1.0)
         if ratio > MAX_RATIO:
-            found.append(CoarseMesh(mesh_id, ratio, _complaint(mesh.name, measured, wavelength, smooth)))
+            found.append(CoarseMesh(mesh_id, mesh.name, ratio, _fault(measured, wavelength, smooth)))
     return found
 
 
@@ -121,7 +125,7 @@ def _measured(mesh) -> Tessellation | None:
     return measured
 
 
-def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: bool) -> str:
+def _fault(measured: Tessellation, wavelength: float, smooth: bool) -> str:
     """What is wrong with a mesh that is too coarse."""
     coarser = SMOOTH_GAIN if smooth else 1.0
     ratio = measured.ratio(wavelength) / coarser
@@ -129,7 +133,7 @@ def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: boo
     if not smooth and ratio <= SMOOTH_GAIN * MAX_RATIO:
         advice += ", or smooth=True"
     error = f"about {facet_error_db(ratio):.1f} dB" if ratio <= EDGE_RATIOS[-1] else f"{ERRORS_DB[-1]:.0f} dB or more"
-    return (f"mesh '{name}': edges of {1e3 * measured.edge:.3g} mm on a surface curved with a radius of "
+    return (f"edges of {1e3 * measured.edge:.3g} mm on a surface curved with a radius of "
             f"{measured.radius:.2g} m err by {error} in its coherent echo; {advice}")
 
 

@@ -214,11 +214,12 @@ def test_one_warning_tells_of_many_coarse_meshes():
     for index in range(5):
         scene.add(ep.actors.sphere(0.1 + 0.01 * index, subdivisions=4), name=f"ball_{index}", material="metal",
                   position=(5, index, 0))
+        scene.add(ep.actors.sphere(0.2, subdivisions=4), name=f"copy_{index}", material="metal", position=(5, index, 2))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         ep.trace(scene, radar(), num_rays=10, max_bounces=1)
     (text,) = [str(one.message) for one in caught if issubclass(one.category, ep.TessellationWarning)]
-    assert text.startswith("5 meshes") and "ball_4" in text
+    assert text.startswith("10 meshes") and "ball_4" in text and text.count("copy_") == 1
 
 
 def test_the_benchmark_of_worlds_finds_all_paths():

@@ -88,13 +88,23 @@ class Track:
             low, high = np.where(is_before, middle, low), np.where(is_before, high, middle)
         return high
 
+    def fine_times(self, step: float):
+        """Times [N] in s no farther apart than `step` s where it moves or turns, with the begin and the end."""
+        begins, ends = self.profile.moving()
+        if self.headings is not None:
+            turning = self.headings.moving()
+            begins, ends = np.sort(np.append(begins, turning[0])), np.sort(np.append(ends, turning[1]))
+            is_apart = begins[1:] > ends[:-1]   # the k-th begin follows the k-th end: no span holds the time between
+            begins, ends = begins[np.append(True, is_apart)[:len(begins)]], ends[np.append(is_apart, True)[:len(ends)]]
+        inside = [np.linspace(begin, end, int((end - begin) / step) + 2) for begin, end in zip(begins, ends)]
+        return np.unique(np.concatenate([*inside, [self.profile.begin, self.profile.end]]))
+
     @cached_property
     def rolled(self) -> Profile:
         """The way ahead in m over time, as wheels roll it: backwards where it goes against the direction it looks in."""
         if self.headings is None:
             return self.profile
-        begin, end = self.profile.begin, self.profile.end
-        times = np.unique(np.concatenate([np.linspace(begin, end, int((end - begin) / ROLL_STEP) + 2), self.profile.times]))
+        times = np.unique(np.concatenate([self.fine_times(ROLL_STEP), self.profile.times]))
         middles = 0.5 * (times[:-1] + times[1:])
         ahead = [self._speed_ahead(at) for at in (times, middles)]
         steps = np.diff(times)

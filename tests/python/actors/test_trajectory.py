@@ -351,3 +351,13 @@ def test_a_minute_of_a_car_is_made_without_search(monkeypatch):
     trajectory = ep.Trajectory(np.stack([along, 12.0 * np.sin(along / 50.0)], axis=-1), speed=8.4)
     ep.actors.car(trajectory=trajectory)
     assert sum(asked) > 20000 and sum(integrated) < 0.1 * sum(asked)
+
+
+def test_fine_times_are_close_where_it_moves_or_turns_alone():
+    """It goes for a second, turns where it stands, waits for an hour, and goes on: an hour has no times of its own."""
+    times = [0.0, 1.0, 2.0, 3602.0, 3603.0]
+    one = ep.Trajectory([(0, 0), (2, 0), (2, 0), (2, 0), (4, 0)], times=times, yaw=[0.0, 0.0, 1.0, 1.0, 1.0])
+    found = one._track.fine_times(0.25)
+    gaps = np.diff(found)
+    assert found[0] == 0.0 and found[-1] == 3603.0 and gaps.max() == pytest.approx(3600.0) and len(found) < 20
+    assert np.sort(gaps)[-2] <= 0.25

@@ -67,11 +67,14 @@ class Towing:
         """(place [N, 3], velocity [N, 3]) of the hitch."""
         return _shifted(*self._tractor(times), self.coupling.hitch)
 
+    def _steps(self):
+        """Times in s between which what rolls is summed up."""
+        return np.unique(np.concatenate([self._track.fine_times(STEP), self.junctions]))
+
     @cached_property
     def _angle(self) -> Profile:
         """The trailer's yaw in rad over time, by the classical Runge-Kutta method; at the begin it is in line."""
-        begin, end = self._track.profile.begin, self._track.profile.end
-        times = np.unique(np.concatenate([np.linspace(begin, end, int((end - begin) / STEP) + 2), self.junctions]))
+        times = self._steps()
         steps = np.diff(times)
         rows = [self._hitch(at)[1][:, :2].tolist() for at in
                 (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps)]
@@ -111,8 +114,7 @@ class Unit:
     @cached_property
     def _rolled(self) -> Profile:
         """The way in m that its wheels roll: that of the point of its middle between axles that do not slip."""
-        begin, end = self._towing._track.profile.begin, self._towing._track.profile.end
-        times = np.unique(np.concatenate([np.linspace(begin, end, int((end - begin) / STEP) + 2), self._towing.junctions]))
+        times = self._towing._steps()
         steps = np.diff(times)
         first, middle, last = (self._speed(at) for at in
                                (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps))

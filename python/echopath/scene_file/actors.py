@@ -12,7 +12,7 @@ from pydantic import create_model
 
 from .. import actors
 from .errors import blamed, validated
-from .table import Table, nearest_key
+from .tables.table import Table, nearest_key
 
 
 def named_actor(name: str, parameters: dict, folder: Path, key: str, **own):

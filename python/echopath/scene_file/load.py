@@ -26,10 +26,10 @@ from .errors import blamed, validated
 from .foreign import foreign_scene
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
-from .radar_tables import RadarTable
-from .run_tables import FOUND, AngleTable
-from .schema import SceneTable
-from .table import yaw_of
+from .tables.radar_tables import RadarTable
+from .tables.run_tables import FOUND, AngleTable
+from .tables.schema import SceneTable
+from .tables.table import yaw_of
 from .trajectories import Trajectories
 
 

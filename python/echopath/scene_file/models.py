@@ -9,7 +9,7 @@ from ..readers.model import Model
 from ..scene.materials import known_with, material_fields, materials
 from ..trajectories import Trajectory
 from .errors import blamed
-from .object_tables import MODEL_KEYS, ModelKeys
+from .tables.object_tables import MODEL_KEYS, ModelKeys
 
 
 def material_of(value, key: str) -> _core.Material | None:

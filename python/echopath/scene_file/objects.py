@@ -10,9 +10,9 @@ from ..weather import Weather
 from .actors import actor_keywords, named_actor
 from .errors import blamed
 from .models import material_of, model_along, model_of
-from .object_tables import ObjectTable
-from .schema import SceneTable
-from .table import yaw_of
+from .tables.object_tables import ObjectTable
+from .tables.schema import SceneTable
+from .tables.table import yaw_of
 from .trajectories import Trajectories
 
 

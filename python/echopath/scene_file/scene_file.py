@@ -18,7 +18,7 @@ from ..signals.parts import Selections, as_partitions
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
-    from .run_tables import AngleTable, DetectionsTable, SequenceTable, TruthTable
+    from .tables.run_tables import AngleTable, DetectionsTable, SequenceTable, TruthTable
 
 
 class SimulateKeywords(TypedDict):

@@ -14,8 +14,8 @@ from ..trajectories.files.rows import KeptRows
 from ..trajectories.files.track_file import TrackFile, Way, warn_of_nobody
 from .errors import ToldValueError, blamed
 from .traffic_shapes import TrafficShape, traffic_shape
-from .table import yaw_of
-from .traffic_tables import TrafficTable
+from .tables.table import yaw_of
+from .tables.traffic_tables import TrafficTable
 
 
 class TrafficFiles:

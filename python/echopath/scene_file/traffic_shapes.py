@@ -11,8 +11,8 @@ from ..trajectories.kinds import VEHICLES, usual_kind
 from .actors import actor_keywords, actor_maker, named_actor
 from .errors import ToldValueError, blamed
 from .models import model_along, model_of
-from .table import yaw_of
-from .traffic_tables import TrafficModelTable
+from .tables.table import yaw_of
+from .tables.traffic_tables import TrafficModelTable
 
 
 class TrafficShape(NamedTuple):

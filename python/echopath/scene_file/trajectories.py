@@ -10,10 +10,10 @@ from ..trajectories import Trajectory
 from ..trajectories.files.rows import KeptRows
 from ..trajectories.files.track_file import TrackFile, Way
 from .errors import blamed
-from .object_tables import ObjectTable
-from .radar_tables import RadarTable
+from .tables.object_tables import ObjectTable
+from .tables.radar_tables import RadarTable
 from .traffic import TrafficFiles
-from .traffic_tables import TrafficTable
+from .tables.traffic_tables import TrafficTable
 
 
 class Trajectories:

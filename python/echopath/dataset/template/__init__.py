@@ -14,8 +14,8 @@ from ...base.golden import golden_place
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
-from ...scene_file.schema import SceneTable
-from ...scene_file.table import Positive, Table
+from ...scene_file.tables.schema import SceneTable
+from ...scene_file.tables.table import Positive, Table
 from ...scene_file.traffic import TrafficFiles
 from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence

@@ -5,8 +5,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
-from ..trajectories.arguments import GOES_ON, Outside
-from ..trajectories.files.track_file import length_rule
+from ...trajectories.arguments import GOES_ON, Outside
+from ...trajectories.files.track_file import length_rule
 from .object_tables import ModelKeys
 from .table import Name, NotNegative, Number, Table, Vector3, broken_rule, by_check
 

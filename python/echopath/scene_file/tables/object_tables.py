@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
-from ..arguments.checks import positive
-from ..trajectories.arguments import Outside
+from ...arguments.checks import positive
+from ...trajectories.arguments import Outside
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
 from .table import Matrix4, Name, NotNegative, Number, Positive, Table, Vector3, broken_rule, by_check, is_number
 

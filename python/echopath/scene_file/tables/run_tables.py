@@ -5,15 +5,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from ..arguments.checks import MOST_NEIGHBOURS, map_window, window
-from ..arguments.effects import effects_rule
-from ..arguments.gates import gate
-from ..arguments.settings import (
+from ...arguments.checks import MOST_NEIGHBOURS, map_window, window
+from ...arguments.effects import effects_rule
+from ...arguments.gates import gate
+from ...arguments.settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, LabelSettings, Plane, Polarization, Replay,
     Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
-from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
-from ..weather import Weather
+from ...spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
+from ...weather import Weather
 from .table import Number, Positive, Table, Vector3, broken_rule, by_check, is_number
 
 FOUND = "found"  # instead of names of objects: those of `find_objects`

@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from ..receiver.settings import receiver_rule
-from ..scene.interferers import Over
+from ...receiver.settings import receiver_rule
+from ...scene.interferers import Over
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
 from .table import NotNegative, Number, Pitch, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 

@@ -9,9 +9,9 @@ from typing import Annotated
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from .. import _core
-from ..arguments.checks import Rule
-from ..arguments.shown import writable
+from ... import _core
+from ...arguments.checks import Rule
+from ...arguments.shown import writable
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]

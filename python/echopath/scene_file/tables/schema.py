@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Discriminator, Field, Tag
 
-from ..signals.parts import are_tables
+from ...signals.parts import are_tables
 from .object_tables import ObjectTable
 from .radar_tables import InterfererTable, RadarTable
 from .run_tables import (

@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from ..trajectories.arguments import GOES_ON, Outside, checked_points, checked_stops, checked_times
-from ..trajectories.trajectory import ACCELERATION, DECELERATION
+from ...trajectories.arguments import GOES_ON, Outside, checked_points, checked_stops, checked_times
+from ...trajectories.trajectory import ACCELERATION, DECELERATION
 from .table import Number, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli.run import simulate_file
-from echopath.scene_file import motion_tables, object_tables, radar_tables, run_tables, schema, traffic_tables
+from echopath.scene_file.tables import motion_tables, object_tables, radar_tables, run_tables, schema, traffic_tables
 from echopath.scene_file.tables.table import Table
 from support.files.scene_files import RADAR, fault_of, mesh_object
 

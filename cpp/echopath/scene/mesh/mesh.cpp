@@ -10,13 +10,14 @@
 #endif
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/memory/lazy.h"
 #include "echopath/scene/edges/sharp_edges.h"
+#include "echopath/scene/mesh/adjacency.h"
 #include "echopath/scene/mesh/farthest_vertex.h"
 #include "echopath/scene/mesh/manifold.h"
 
@@ -124,12 +125,12 @@ bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangl
 
 }  // namespace
 
-struct Mesh::KeptEdges {
-  std::once_flag found;
-  std::vector<SharpEdge> edges;
+struct Mesh::Found {
+  Lazy<std::vector<SharpEdge>> sharp_edges;
+  Lazy<std::vector<std::array<uint32_t, 3>>> neighbours;
 };
 
-Mesh::Mesh() : edges_(std::make_shared<KeptEdges>()) {}
+Mesh::Mesh() : found_(std::make_shared<Found>()) {}
 
 Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle) : Mesh() {
   num_input_vertices_ = std::ssize(vertices);
@@ -200,8 +201,11 @@ void Mesh::measure() {
 }
 
 const std::vector<SharpEdge>& Mesh::sharp_edges() const {
-  std::call_once(edges_->found, [&] { edges_->edges = find_sharp_edges(*this); });
-  return edges_->edges;
+  return found_->sharp_edges.get([&] { return find_sharp_edges(*this); });
+}
+
+const std::vector<std::array<uint32_t, 3>>& Mesh::neighbours() const {
+  return found_->neighbours.get([&] { return edge_neighbours(vertices_, triangles_); });
 }
 
 }  // namespace echopath

@@ -47,8 +47,10 @@ class Mesh {
   bool is_flat() const { return is_flat_; }                // all vertices in one plane, to 1e-6 of the extent
   const Eigen::AlignedBox3d& box() const { return box_; }  // m, of the vertices
   const std::vector<Eigen::AlignedBox3d>& boxes_of_runs() const { return boxes_of_runs_; }  // m
-  // Returns the edges that find_sharp_edges finds; it looks for them at the first call and is thread-safe.
+  // These return the edges that find_sharp_edges finds, and the triangles that edge_neighbours finds [F]; they look for them
+  // at the first call, and are thread-safe.
   const std::vector<SharpEdge>& sharp_edges() const;
+  const std::vector<std::array<uint32_t, 3>>& neighbours() const;
 
   // whole() is the mesh that this one is a part of, null for a whole; whole_triangle() [F] and whole_vertex() [V] are the
   // indices there, empty for a whole. Vertex normals are those of the whole, so that a curved surface has no seams where it
@@ -73,8 +75,8 @@ class Mesh {
   std::vector<Eigen::AlignedBox3d> boxes_of_runs_;
   MeshPtr whole_;
   std::vector<uint32_t> whole_triangle_, whole_vertex_;
-  struct KeptEdges;
-  std::shared_ptr<KeptEdges> edges_;  // never null
+  struct Found;
+  std::shared_ptr<Found> found_;  // never null
 };
 
 }  // namespace echopath

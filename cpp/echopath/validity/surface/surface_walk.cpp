@@ -35,7 +35,7 @@ bool share_corner(const Triangle& a, const Triangle& b, const std::vector<Vec3>&
 
 struct SurfaceWalk::Surface {
   const std::vector<Triangle>& triangles;
-  std::vector<std::array<uint32_t, 3>> neighbours;
+  const std::vector<std::array<uint32_t, 3>>& neighbours;
   const std::vector<Vec3>* normals;  // of vertices, at rest; null for meshes of facets
 
   std::array<Vec3, 3> corners(uint32_t t, const std::vector<Vec3>& vertices) const {
@@ -76,8 +76,7 @@ SurfaceWalk::~SurfaceWalk() = default;
 const SurfaceWalk::Surface& SurfaceWalk::surface(uint32_t mesh_id) const {
   return *surfaces_[mesh_id].get([&] {
     const Mesh& mesh = *scene_.node_of(mesh_id).mesh;
-    return std::make_unique<const Surface>(
-        Surface{mesh.triangles(), edge_neighbours(mesh.vertices(), mesh.triangles()), smooth_normals_[mesh_id].get()});
+    return std::make_unique<const Surface>(Surface{mesh.triangles(), mesh.neighbours(), smooth_normals_[mesh_id].get()});
   });
 }
 

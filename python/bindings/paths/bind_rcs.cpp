@@ -196,6 +196,16 @@ void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, doubl
   warn_of_missed_target("rcs: for " + count + " cross sections max_rays", worst, target_error_db);
 }
 
+// Returns whether a cross section is no more than what single precision leaves of the largest one of its direction, as the
+// cross-polarised one of a dihedral is.
+bool is_rounding(const std::vector<RadarCrossSection>& entries, size_t index, size_t num_channels) {
+  constexpr double kRounding = 1e-14;  // of a power
+  const auto first = entries.begin() + static_cast<std::ptrdiff_t>(index - index % num_channels);
+  const auto largest = std::max_element(first, first + static_cast<std::ptrdiff_t>(num_channels),
+                                        [](const auto& a, const auto& b) { return a.total < b.total; });
+  return entries[index].high <= kRounding * largest->total;
+}
+
 // Whether the rays do not know a cross section to 3 dB. A null between lobes, far below what is seen next to it, is no
 // matter.
 bool is_unknown(const std::vector<RadarCrossSection>& entries, size_t index, size_t num_channels) {
@@ -211,7 +221,8 @@ void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_
   int64_t unknown = 0;
   double most = 0.0;
   for (size_t i = 0; i < entries.size(); ++i) {
-    if (entries[i].high <= rounding || !is_unknown(entries, i, num_channels)) continue;
+    if (entries[i].high <= rounding || is_rounding(entries, i, num_channels)) continue;
+    if (!is_unknown(entries, i, num_channels)) continue;
     ++unknown;
     most = std::max(most, entries[i].high);
   }

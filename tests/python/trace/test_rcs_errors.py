@@ -174,6 +174,18 @@ def test_exact_nulls_are_not_warned_of(effort, polarization):
         ep.rcs(plate_scene(0.1), frequency=FREQUENCY, incidence=(1, 0, 0), polarization=polarization, num_rays=20_000, **effort)
 
 
+def test_nulls_of_a_dihedral_are_not_warned_of():
+    """Two bounces turn no polarisation either: rounding leaves 4e-19 m^2 of 166."""
+    scene = ep.Scene()
+    scene.add(ep.actors.dihedral(0.1), name="dihedral", material="metal")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        section = ep.rcs(scene, frequency=77e9, incidence=(-1, 0, 0), polarization=["vv", "hh", "vh", "hv"], num_rays=200_000)
+    peak = 8.0 * np.pi * 0.1**4 / (ep.speed_of_light / 77e9) ** 2
+    assert 10.0 * np.log10(section[:2] / peak) == pytest.approx([0.0, 0.0], abs=0.1)
+    assert np.all(section[2:] < 1e-15 * peak)
+
+
 @pytest.mark.parametrize("rays", [500, 2000, 5000])
 def test_errors_hold_what_footprints_take_away(rays):
     """Upright edges of a plate that is seen aslant: all cells along one are in phase."""

@@ -170,7 +170,7 @@ def test_verdicts_stand_on_the_rows_of_cities():
     row = {"name": "unmarked walls", "walls": 1, "rays": 1, "seconds": 1.0, "bare_share": 0.5, "paths": 3, "missing": 0,
            "beside": 0, "delay_error_s": 0.0, "level_error_db": 0.0}
     many = {"name": "meshes", "meshes": 1, "rays": 1, "seconds": 0.4, "seconds_of_a_tenth": 0.1, "timed": True}
-    said = [line.split("  ")[-1] for line in city.describe([row, row | {"missing": 1}, row | {"level_error_db": 0.1}, many,
+    said = [line.split("  ")[-1] for line in city.describe([row, row | {"missing": 1}, row | {"level_error_db": 0.4}, many,
                                                             many | {"paces": [2.0, 2.0]}])]
     assert said[:4] == ["holds", "MISSED", "MISSED", "MISSED"] and said[4].startswith("holds")
     assert "labels beyond synthesis, over it" in crowd.LIMITS

@@ -12,7 +12,7 @@ NO_STRATUM = 65535
 WEIGHT_TOLERANCE = 1e-6      # relative: single precision
 DELAY_TOLERANCE = 1e-12      # s
 LEVEL_TOLERANCE_DB = 0.01
-FAR, FADES = 40.0, 0.7       # half zones, where an edge is none, and from where it fades
+FAR, FADES = 40.0, 8.0       # half zones, where an edge is none, and from where it fades
 CONCRETE = ep.Material(permittivity=5.2 - 0.3j)
 
 
@@ -42,7 +42,7 @@ def images(paths):
 
 
 def test_a_building_has_the_echo_of_its_wall_s_image():
-    paths = traced(box((8.0, 10.0, 9.0), (14.1, 0.3, 4.6)), polarization="scalar")
+    paths = traced(box((8.0, 10.0, 9.0), (14.1, 0.3, 1.6)), polarization="scalar")  # its edges are 31 half zones away and more
     (one,) = images(paths)
     length = np.hypot(2 * 10.1, 0.2)
     assert paths.lengths([paths.frame.trace_time], 0, 0)[0][one] == pytest.approx(length, abs=1e-9)
@@ -55,7 +55,8 @@ def test_a_building_has_the_echo_of_its_wall_s_image():
 
 def beside_edges(within, *, turn=0.0, antennas=((0, 0, 10), (0, 0.05, 10)), across=FAR, material="metal"):
     """The field over that of an endless metal plane, of a plane z = 0 whose edge passes `within` half zones beside the point of
-    reflection, turned by an angle in rad from the plane of incidence, and one across it by `across`."""
+    reflection, turned by an angle in rad from the plane of incidence, and one across it by `across`; the number of images; and
+    `within` by the length of the shortest way over the edge."""
     transmitter, receiver = np.array(antennas, float)
     point = (receiver[2] * transmitter + transmitter[2] * receiver) / (transmitter[2] + receiver[2]) * [1, 1, 0]
     before, behind = np.linalg.norm(point - transmitter), np.linalg.norm(point - receiver)
@@ -69,8 +70,12 @@ def beside_edges(within, *, turn=0.0, antennas=((0, 0, 10), (0, 0.05, 10)), acro
     scene = ep.Scene()
     scene.add(ep.Mesh(point + corners @ axes, [[0, 1, 2], [0, 2, 3]]), name="plane", material=material)
     paths = ep.trace(scene, radar(*antennas), num_rays=30_000, max_bounces=1, polarization="scalar")
-    endless = ep.speed_of_light / 77e9 / (4 * np.pi * (before + behind))
-    return np.sqrt(ep.received_power(paths).power / paths.radar.transmit_power) / endless, len(images(paths))
+    wavelength = ep.speed_of_light / 77e9
+    endless = wavelength / (4 * np.pi * (before + behind))
+    edge = point + (within * out + np.linspace(-FAR, FAR, 100_001)[:, np.newaxis] * aside) @ axes
+    detour = min(np.linalg.norm(edge - transmitter, axis=1) + np.linalg.norm(edge - receiver, axis=1)) - before - behind
+    field = np.sqrt(ep.received_power(paths).power / paths.radar.transmit_power) / endless
+    return field, len(images(paths)), np.copysign(np.sqrt(max(2.0 * detour / wavelength, 0.0)), within)
 
 
 def behind_an_edge(within):
@@ -83,16 +88,46 @@ def behind_an_edge(within):
 @pytest.mark.parametrize("antennas", [((0, 0, 10), (0, 0.05, 10)), ((-6, 0, 4), (5, 1, 3))])
 def test_the_edge_of_a_plane_takes_its_part_of_the_field_whether_images_or_rays_carry_it(antennas, turn):
     """Geometrical optics would be 5.8 dB too strong on the plane, and nothing beside it."""
-    for within in (-0.3, -0.05, 0.02, 0.1, 0.3, 0.6, 0.9, 1.2):
-        field, by_images = beside_edges(within, turn=turn, antennas=antennas)
+    for within in (-0.3, -0.05, 0.02, 0.1, 0.3, 0.6, 0.9, 1.2, 1.6, 3.0, 6.0):
+        field, by_images, by_detour = beside_edges(within, turn=turn, antennas=antennas)
         assert by_images == (within > 0.0)
-        tolerance_db = 0.5 if within < FADES else 1.1  # rays and directions sample the plane; farther edges fade
-        assert 20.0 * np.log10(field / behind_an_edge(within)) == pytest.approx(0.0, abs=tolerance_db)
+        tolerance_db = 0.2 if within > 0.0 else 0.5  # rays sample the plane
+        assert 20.0 * np.log10(field / behind_an_edge(by_detour)) == pytest.approx(0.0, abs=tolerance_db)
 
 
 def test_the_corner_of_a_plane_leaves_a_quarter_and_far_edges_leave_all():
     assert beside_edges(1e-3, across=1e-3)[0] == pytest.approx(0.25, abs=0.01)
-    assert beside_edges(1.5, across=1.5)[0] == pytest.approx(1.0, abs=WEIGHT_TOLERANCE)
+    assert beside_edges(FAR / 2, across=FAR / 2)[0] == pytest.approx(1.0, abs=WEIGHT_TOLERANCE)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+def test_beside_a_corner_each_edge_takes_its_part(turn):
+    """The quadratic phase of a right-angled corner is the product of those of its edges."""
+    for one in (0.1, 0.5, 1.3, 2.5):
+        for other in (0.3, 1.0, 1.6):
+            field, *_ = beside_edges(one, across=other, turn=turn)
+            truth = behind_an_edge(one) * behind_an_edge(other)
+            assert 20.0 * np.log10(field / truth) == pytest.approx(0.0, abs=0.5)
+
+
+def head_on(size, distance):
+    """The echo in W of a metal plate, which faces the radar, by Kirchhoff's integral: Gauss-Legendre over the plate."""
+    wavelength = ep.speed_of_light / 77e9
+    places, weights = np.polynomial.legendre.leggauss(1000)
+    squares = (places * size / 2.0) ** 2
+    lengths = np.sqrt(distance**2 + squares[:, np.newaxis] + squares)
+    integral = np.outer(weights, weights) * distance / lengths**3 * np.exp(-4j * np.pi / wavelength * lengths)
+    return RADAR.transmit_power * abs(integral.sum() * size**2 / 4.0 / (4.0 * np.pi)) ** 2
+
+
+@pytest.mark.parametrize(("size", "distance"), [(0.3, at) for at in (40, 12, 10, 8, 6, 5, 3, 2, 1)] + [(0.5, 12), (0.5, 9)])
+def test_a_plate_near_by_has_the_lobes_of_its_near_field(size, distance):
+    """From 0.5 to 3.4 half zones from the middle to the edges, all four of which add up. An endless plane would have -3.9 to
+    +5.1 dB beside it."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(size, size), name="plate", material="metal", position=(distance, 0, 0))
+    paths = ep.trace(scene, radar((0, 0, 0), (0, 0, 0)), num_rays=50_000)
+    assert 10.0 * np.log10(ep.received_power(paths).power / head_on(size, distance)) == pytest.approx(0.0, abs=0.15)
 
 
 @pytest.mark.parametrize("within", [0.0, 1e-6, 1e-4, 1e-3])
@@ -141,7 +176,7 @@ def test_a_wall_that_rises_from_a_plane_is_no_edge_of_it():
 
 
 def test_marking_the_building_changes_nothing_between_the_antennas():
-    shape = box((8.0, 10.0, 9.0), (14.1, 0.3, 4.6))
+    shape = box((8.0, 10.0, 9.0), (14.1, 0.3, 1.6))
     found, marked = (traced(shape, material=CONCRETE.replace(mirror=mirror), polarization="jones") for mirror in (False, True))
     assert found.amplitude[images(found)] == pytest.approx(marked.amplitude[images(marked)], rel=WEIGHT_TOLERANCE)
 
@@ -226,7 +261,8 @@ def test_the_benchmark_of_worlds_finds_all_paths():
     rows = worlds.rows(quick=True)
     unmarked, marked, many = rows
     for row in (unmarked, marked):
-        assert row["paths"] > 0 and row["delay_error_s"] < DELAY_TOLERANCE and row["level_error_db"] < LEVEL_TOLERANCE_DB
+        assert row["paths"] > 0 and row["delay_error_s"] < DELAY_TOLERANCE
+        assert row["level_error_db"] < (LEVEL_TOLERANCE_DB if row is marked else 0.15)  # edges change levels by up to 0.9 dB
         assert row["missing"] == row["beside"] == 0
     assert many["meshes"] == worlds.QUICK_MESHES
     assert len(worlds.describe(rows)) == 3

@@ -11,10 +11,14 @@ namespace {
 constexpr double kAmple = 1.0 / 0.7;  // widths of the zone from which on edges count as none
 
 // Edges about the point of a flat mirror fade between these distances, in half zones.
-constexpr double kFades = 0.5, kFaded = kAmple;
+constexpr double kFades = 8.0, kFaded = 16.0;
 
-// Edges are looked for in so many directions. A corner takes some of them whole, so that it is known to 1 dB at its tip.
+// Edges are looked for in so many directions, each in the middle of a cell.
 constexpr int kDirections = 64;
+constexpr double kHalfCell = kPi / kDirections;
+
+// The edges in three neighbouring directions are one straight edge where their closeness is off by no more than this share.
+constexpr double kStraight = 0.02;
 
 // Returns the direction and distance by which the lit point of the target moves when the point of the mirror moves by 1 m
 // along the axis.
@@ -25,11 +29,11 @@ Vec3 shift_on_target(const MirrorView& view, const Vec3& along, const ZoneTarget
 }
 
 // Returns the square of the distance in m from the point of a flat mirror at which an edge counts as none, whatever its
-// direction: the zone is longest in the plane of incidence.
-double ample_squared(const MirrorView& view, double wavelength) {
+// direction, for edges that count as none from `half_zones` on: the zone is longest in the plane of incidence.
+double ample_squared(const MirrorView& view, double wavelength, double half_zones) {
   const double cos_incidence = view.point.normal.dot(view.arrival);
   const double flat = cos_incidence * cos_incidence * (view.before + view.behind);
-  return kAmple * kAmple * wavelength * view.before * view.behind / flat;
+  return half_zones * half_zones * wavelength * view.before * view.behind / flat;
 }
 
 // Holds the surface that the wave lights, if fields are followed.
@@ -111,18 +115,107 @@ class AxisCover {
   const LitSurface& lit_;
 };
 
-// Returns the share of the field that a flat mirror loses at its edge in the direction of `half`, which reaches to the end
-// of the half zone.
-std::complex<double> field_of_edge(const SurfaceAround& mirror, const Vec3& half) {
-  const double length = half.norm(), reach = kFaded * length;
+// Returns one over the distance of the mirror's edge in half zones, in the direction of `half`, which reaches to the end of
+// the half zone; 0: no edge is so near that it counts.
+double closeness_of_edge(const SurfaceAround& mirror, const Vec3& half) {
+  const double length = half.norm();
   const Vec3 along = half / length;
-  if (mirror.reaches(along, reach)) return 0.0;
-  const SurfaceEnd end = mirror.find_end(along, reach);
-  if (end.is_wall || end.distance >= reach) return 0.0;
-  const double distance = end.distance / length;
-  const double faded = std::clamp((distance - kFades) / (kFaded - kFades), 0.0, 1.0);
-  return std::polar(0.5 + 0.5 * std::cos(kPi * faded), -kPi * distance * distance);
+  // A surface beyond a gap, such as the next house in a row, is not the mirror's.
+  for (const double part : {0.125, 0.25, 0.5, 1.0}) {
+    const double reach = part * kFaded * length;
+    if (mirror.reaches(along, reach)) continue;
+    const SurfaceEnd end = mirror.find_end(along, reach);
+    if (end.is_wall || end.distance >= reach) return 0.0;
+    return length / std::max(end.distance, 1e-6 * length);
+  }
+  return 0.0;
 }
+
+// Returns by how much the way over a place that is `shift` (m) beside the point of reflection is longer, over what a square
+// of the shift gives.
+double excess_over_square(const MirrorView& view, const Vec3& shift) {
+  const Vec3& normal = view.point.normal;
+  const Vec3 departure = view.arrival - 2.0 * view.arrival.dot(normal) * normal;
+  const auto longer = [&](double length, double tilt) {
+    const double square = shift.squaredNorm() + 2.0 * length * tilt;
+    return square / (std::sqrt(length * length + square) + length) - tilt;
+  };
+  const double slant = view.arrival.dot(shift);
+  const double excess = longer(view.before, slant) + longer(view.behind, -departure.dot(shift));
+  return excess / (0.5 * (shift.squaredNorm() - slant * slant) * (1.0 / view.before + 1.0 / view.behind));
+}
+
+// Holds the edges of a mirror about a point of it.
+class EdgesAround {
+ public:
+  EdgesAround(const SurfaceAround& mirror, const MirrorView& view, double wavelength) {
+    const std::array<ZoneAxis, 2> axes = zone_axes(view, wavelength);
+    for (int k = 0; k < kDirections; ++k) {
+      const double angle = kHalfCell * (2 * k + 1);
+      const Vec3 half = std::cos(angle) * axes[0].half * axes[0].along + std::sin(angle) * axes[1].half * axes[1].along;
+      closeness_[k] = closeness_of_edge(mirror, half);
+      if (closeness_[k] > 0.0) turn_[k] = kPi * excess_over_square(view, half / closeness_[k]);
+    }
+  }
+
+  bool any_within(double distance) const {
+    return std::ranges::any_of(closeness_, [&](double closeness) { return closeness * distance > 1.0; });
+  }
+
+  // Returns the share of the field that the mirror loses at them.
+  std::complex<double> lost_field() const {
+    std::complex<double> sum = 0.0;
+    for (int k = 0; k < kDirections; ++k) {
+      if (closeness_[k] == 0.0) continue;
+      for (const int side : {1, -1}) sum += field_of_half_cell(closeness_[k], slope(k, side), turn_[k]);
+    }
+    return sum / (2.0 * kDirections);
+  }
+
+ private:
+  double at(int k) const { return closeness_[(k + kDirections) % kDirections]; }
+
+  // Returns whether the edges in a direction and in both that neighbour it are one straight edge, whose closeness goes as a
+  // sine of the angle.
+  bool is_straight(int k) const {
+    const double before = at(k - 1), here = at(k), behind = at(k + 1);
+    if (before == 0.0 || here == 0.0 || behind == 0.0) return false;
+    return std::abs(before + behind - 2.0 * std::cos(2.0 * kHalfCell) * here) < kStraight * here;
+  }
+
+  // Returns by how much the closeness of the edge in a direction grows per radian toward a side: by the edge in the next
+  // direction there where both are one, else, before a corner, by the one on the other side.
+  double slope(int k, int side) const {
+    const double here = at(k), next = at(k + side), other = at(k - side);
+    const bool goes_on = next > 0.0 && (other == 0.0 || is_straight(k) || is_straight(k + side));
+    const auto toward = [&](double neighbour) {
+      return (neighbour - here * std::cos(2.0 * kHalfCell)) / std::sin(2.0 * kHalfCell);
+    };
+    if (goes_on) return toward(next);
+    return other > 0.0 ? -toward(other) : 0.0;
+  }
+
+  // Returns the mean field of a straight edge over the angles from a direction to the end of its cell, of those that fade;
+  // `turn`: rad, of the phase over the square of the distance.
+  static std::complex<double> field_of_half_cell(double closeness, double slope, double turn) {
+    const auto distance = [&](double angle) {
+      return 1.0 / std::max(closeness * std::cos(angle) + slope * std::sin(angle), 1.0 / kFaded);
+    };
+    const double first = distance(0.0), last = distance(kHalfCell);
+    const int steps = 1 + static_cast<int>(std::min(turn * std::abs(last * last - first * first), kMostSteps));
+    std::complex<double> sum = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const double at = distance(kHalfCell * (i + 0.5) / steps);
+      const double faded = std::clamp((at - kFades) / (kFaded - kFades), 0.0, 1.0);
+      sum += std::polar(0.5 + 0.5 * std::cos(kPi * faded), -turn * at * at);
+    }
+    return sum / static_cast<double>(steps);
+  }
+
+  static constexpr double kMostSteps = 255.0;
+
+  std::array<double, kDirections> closeness_, turn_;
+};
 
 }  // namespace
 
@@ -150,7 +243,7 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
   const double gap = geometry.plane_tolerance(wavelength);
   const SurfaceAround mirror(geometry, view.point, gap, num_queries);
   ZoneCover cover;
-  if (!view.point.is_smooth && mirror.holds_circle(ample_squared(view, wavelength))) return cover;
+  if (!view.point.is_smooth && mirror.holds_circle(ample_squared(view, wavelength, kAmple))) return cover;
   const LitSurface lit{geometry, view, target, gap, num_queries};
   for (const ZoneAxis& axis : zone_axes(view, wavelength)) {
     const ZoneCover along = AxisCover(mirror, axis, lit).look();
@@ -163,15 +256,9 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
 FlatMirrorField field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
                                      int64_t& num_queries) {
   const SurfaceAround mirror(geometry, view.point, geometry.plane_tolerance(wavelength), num_queries);
-  if (mirror.holds_circle(ample_squared(view, wavelength))) return {};
-  const std::array<ZoneAxis, 2> axes = zone_axes(view, wavelength);
-  std::complex<double> of_edges = 0.0;
-  for (int k = 0; k < kDirections; ++k) {
-    const double angle = 2.0 * kPi * (k + 0.5) / kDirections;
-    const Vec3 half = std::cos(angle) * axes[0].half * axes[0].along + std::sin(angle) * axes[1].half * axes[1].along;
-    of_edges += field_of_edge(mirror, half);
-  }
-  return {1.0 - of_edges / static_cast<double>(kDirections), of_edges != 0.0};
+  if (mirror.holds_circle(ample_squared(view, wavelength, kFaded))) return {};
+  const EdgesAround edges(mirror, view, wavelength);
+  return {1.0 - edges.lost_field(), edges.any_within(kAmple)};
 }
 
 // Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.

@@ -119,7 +119,7 @@ Paths before_a_square(double width) {
 }
 
 TEST(PlaneImages, AWallLargerThanItsZoneIsOnePathAndASmallerOneIsNone) {
-  const Paths wall = before_a_square(4.0);
+  const Paths wall = before_a_square(5.0);
   ASSERT_EQ(coherent_paths(wall).size(), 1u);
   EXPECT_EQ(wall.stratum[coherent_paths(wall)[0]], kNoStratum);
   EXPECT_NEAR(std::abs(wall.weight[coherent_paths(wall)[0]]), 1.0, kFieldTolerance);

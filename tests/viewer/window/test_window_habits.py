@@ -123,6 +123,21 @@ def test_a_file_that_is_written_anew_is_shown_anew(qtbot, window, frame, tmp_pat
     assert window.session.color_by == "power" and window.session.paths.num_paths == frame.paths.num_paths
 
 
+def test_a_file_that_was_half_written_is_told_of_until_it_is_whole(qtbot, window, frame, tmp_path):
+    path = tmp_path / "frame.h5"
+    ep.save_frame(frame, path)
+    window.open_file(path)
+    session, whole = window.session, path.read_bytes()
+    path.write_bytes(whole[:len(whole) // 2])
+    window.reload()
+    qtbot.waitUntil(lambda: not window.loading.is_running, timeout=PATIENCE_MS)
+    assert "truncated" in window.banner.text() and window.session is session
+    path.write_bytes(whole)
+    window.reload()
+    qtbot.waitUntil(lambda: window.session is not session and not window.loading.is_running, timeout=PATIENCE_MS)
+    assert window.banner.isHidden()
+
+
 def test_names_and_axes_follow_the_scene(qtbot, window):
     window.layer_actions["names"].setChecked(True)
     assert any(name.startswith("scene names") for name in window.view3d.actors)

@@ -12,6 +12,7 @@ from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.frames.live_session import input_of_view, live_of
 from echopath_viewer.model.session import Session
 from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
+from support import shapes
 from support.window import LEFT, open_on_screen, project
 
 PATIENCE_MS = 20_000
@@ -166,6 +167,26 @@ def test_material_and_roughness_are_those_of_the_object_that_is_chosen(qtbot, li
     panel.choose("wall")
     assert panel.rough_label.text() == ""
     settled(qtbot, window)
+
+
+def test_each_mesh_of_an_object_keeps_what_it_is_made_of_when_it_is_roughened(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    made_of = {"a": ep.Material(permittivity=5.0, scattering=0.5), "b": ep.Material.metal()}
+
+    def add(scene):
+        scene.add(None, name="pair")
+        for number, (name, material) in enumerate(made_of.items()):
+            scene.add(shapes.plate((4.0, 2.0 + number, 0.0), (-1.0, 0.0, 0.0), 0.5), name=name, parent="pair", material=material)
+
+    window.live.live.change(add)
+    settled(qtbot, window)
+    panel.object_box.addItem("pair")
+    panel.choose("pair")
+    panel.rough_slider.setValue(20)
+    settled(qtbot, window)
+    assert window.live.materials("pair") == [material.replace(scattering=None, roughness_height=1e-3)
+                                             for material in made_of.values()]
 
 
 def test_a_frame_becomes_live_and_another_one_ends_it(qtbot, window, frame):

@@ -4,7 +4,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from echopath_viewer.model import CellBox
+import echopath as ep
+from echopath_viewer.model import CellBox, from_frame
+from echopath_viewer.window.qt import QtCore
+from support import shapes
 from support.window import LEFT, PATIENCE_MS
 
 
@@ -70,6 +73,62 @@ def test_maps_are_compared_over_channels_and_files(qtbot, window, panels, stored
     assert panel.kept.title == "frame_0000.h5" and panel.change.shape == levels[0].shape
     panel.keep_file("no such file.h5")
     assert "no such file" in panel.note.text() and panel.kept.title == "frame_0000.h5"
+
+
+def test_why_there_is_no_map_is_told_of_that_frame_alone(qtbot, window, panels, frame):
+    panel = opened(qtbot, window, "Range-azimuth")
+    one = frame.radar.replace(transmitters=frame.radar.transmitters[:1], receivers=frame.radar.receivers[:1])
+    window.show_input(from_frame(ep.simulate(frame.paths.scene, one, num_rays=300, guard=False)))
+    qtbot.waitUntil(lambda: panel.map is None, timeout=PATIENCE_MS)
+    assert panel.note.text() == "There is no map to show: the antennas of this radar tell no azimuths apart."
+    window.show_input(from_frame(frame))
+    qtbot.waitUntil(lambda: panel.map is not None, timeout=PATIENCE_MS)
+    assert panel.note.text() == ""
+
+
+def test_files_of_maps_show_the_azimuths_that_they_keep(qtbot, window, panels, moving_sequence, tmp_path):
+    """Their range-Doppler map has the same values in all channels, which beams would take for an echo from straight ahead."""
+    scene = ep.Scene()
+    scene.add(shapes.plate((6.0, 4.0, 0.0), (-0.83, -0.55, 0.0), 0.6), name="plate", material=shapes.lambert(0.8))
+    run = ep.Sequence(scene, moving_sequence.radar, frames=1, interval=0.2, num_rays=1000, max_bounces=1)
+    run.save(tmp_path / "maps", keep="maps")
+    assert window.open_file(tmp_path / "maps")
+    panel = opened(qtbot, window, "Range-azimuth")
+    row, column = np.unravel_index(panel.map.level.argmax(), panel.map.level.shape)
+    assert panel.map.y[row] == pytest.approx(np.degrees(np.arctan2(4.0, 6.0)), rel=0, abs=4.0)
+    assert panel.map.x[column] == pytest.approx(np.hypot(6.0, 4.0), rel=0, abs=0.3)
+    window.open_panel("Spectrogram")
+    qtbot.waitUntil(lambda: "this file keeps maps" in window.side_panels["Spectrogram"].note.text(), timeout=PATIENCE_MS)
+
+
+def test_files_of_labels_alone_show_no_level(qtbot, window, moving_sequence, tmp_path):
+    run = ep.Sequence(moving_sequence.scene, moving_sequence.radar, frames=1, interval=0.2, num_rays=1000, labels=True)
+    run.save(tmp_path / "labels", keep="labels")
+    assert window.open_file(tmp_path / "labels")
+    area = window.map_area
+    (panel,) = area.panels.values()
+    assert panel.title == "no map: the file keeps labels alone" and area.colour_bar.isHidden()
+    panel.hovered.emit(5.0, 0.0, float(panel.level[0, 0]))
+    assert "dBm" not in area.read_out.text() and "no signal" in area.read_out.text()
+    window.show_input(from_frame(moving_sequence[0]))
+    assert not area.colour_bar.isHidden()
+
+
+def test_maps_that_are_compared_show_all_of_the_new_axes(qtbot, window, panels, frame):
+    window.open_panel("Compare")
+    panel = window.side_panels["Compare"]
+    qtbot.waitUntil(lambda: panel._is_seen, timeout=PATIENCE_MS)
+    panel.keep()
+    waveform = frame.radar.waveform
+    fine = frame.radar.replace(waveform=waveform.replace(bandwidth=2 * waveform.bandwidth))
+    window.show_input(from_frame(ep.simulate(frame.paths.scene, fine, num_rays=300, guard=False)))
+    axes, view = window.session.parts.whole.spectrum, panel.panels["now"].view
+    assert view.right() == pytest.approx(axes.range[-1] + 0.5 * axes.range[1]) and view.left() < axes.range[0]
+    panel._set_view(QtCore.QRectF(-2.0 * view.width(), view.top(), 4.0 * view.width(), view.height()))
+    beyond = panel.panels["difference"].grab().toImage().pixelColor(60, 60)  # left of range 0: nothing has changed there
+    assert max(beyond.red(), beyond.blue()) - min(beyond.red(), beyond.blue()) < 10
+    panel.panels["now"].view_reset.emit()
+    assert panel.panels["now"].view == view
 
 
 def test_twins_of_ghosts_stand_in_the_scene(qtbot, window):

@@ -43,6 +43,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.paths, self.parts = view_input.paths, view_input.parts
         self.scene, self.radar = self.paths.scene, self.paths.radar
         self.title, self.cube, self.note = view_input.title, view_input.cube, view_input.note
+        self.kept_maps = view_input.kept_maps
         self.signals, self.file_state = view_input.signals, view_input.file_state
         self.known, self.layers, self._known_data = view_input.known, set(), {}
         self.mesh_names = [mesh.name for mesh in self.scene.meshes]
@@ -78,6 +79,11 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
     def _tell(self, *topics: str) -> None:
         for listener in self._listeners:
             listener(set(topics))
+
+    @property
+    def has_map(self) -> bool:
+        """Whether there are levels to show: files of labels alone keep none."""
+        return self.kept_maps is None or self.kept_maps.power is not None
 
     # --- channel and time ---
 

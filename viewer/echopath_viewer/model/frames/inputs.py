@@ -23,6 +23,7 @@ class ViewInput:
     """Paths and parts.
 
     known: what the frame knows beside its signals, None for paths alone; note: what it lacks, in words
+    kept_maps: ep.FrameMaps of a file without rays and signals, None: both are there
     kept: what an earlier view has kept in the file, None: nothing
     file_state: of the file from before it was read, None: there is no file
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
@@ -35,6 +36,7 @@ class ViewInput:
     title: str = ""
     known: Known | None = None
     note: str = ""
+    kept_maps: object = None
     kept: KeptOrders | None = None
     file_state: tuple | None = None
 

@@ -14,6 +14,7 @@ from ..maps.part_set import PartSet
 from ..maps.signals import Signals
 
 NO_PATHS = "this file keeps maps and labels alone, no rays: made with keep=\"all\" it would have them"
+NO_MAP = "this file keeps labels alone, no map and no rays: made with keep=\"maps\" or \"all\" it would have them"
 
 
 def from_maps(maps, stored, title: str = "") -> ViewInput:
@@ -30,7 +31,7 @@ def from_maps(maps, stored, title: str = "") -> ViewInput:
     known = Known(labels=lambda progress: _there(maps.labels, "labels"),
                   detections=lambda progress: _there(maps.detections, "detections"),
                   truth=lambda progress: _there(maps.kept_truth, "truth"))
-    return ViewInput(paths, parts, signals, cube, title, known, NO_PATHS)
+    return ViewInput(paths, parts, signals, cube, title, known, NO_PATHS if maps.power is not None else NO_MAP, maps)
 
 
 def _with_power(spectrum, maps):

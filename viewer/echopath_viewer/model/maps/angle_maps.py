@@ -11,6 +11,7 @@ from echopath.base.decibels import SMALLEST_POWER, in_dbm
 SPECTROGRAM_COLUMNS = 48
 SHORTEST_WINDOW = 16  # chirps
 MOST_BEAMS = 64       # over elevation
+NO_AZIMUTHS = "the antennas of this radar tell no azimuths apart"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,9 +27,24 @@ class SideMap:
 def range_azimuth_map(spectrum, radar, name: str, progress=None) -> SideMap:
     """The strongest velocity at each range and azimuth. Raises ValueError where the antennas tell no azimuths apart."""
     if not ep.virtual_array(radar).tells_azimuths:
-        raise ValueError("the antennas of this radar tell no azimuths apart")
+        raise ValueError(NO_AZIMUTHS)
     found = ep.range_azimuth(spectrum, radar, combine="peak", progress=progress)
     return SideMap(f"range-azimuth, {name}", _level(found.power), np.asarray(found.range), np.degrees(found.azimuth))
+
+
+def kept_azimuth_map(maps, note: str) -> SideMap:
+    """The range-azimuth map of ep.FrameMaps, whose range-Doppler map is a mean over channels and tells no directions. Raises
+    ValueError where there is none; note: what such a file keeps."""
+    if maps.azimuth is None:
+        raise ValueError(note if maps.power is None else NO_AZIMUTHS)
+    return SideMap("range-azimuth, everything received", _level(maps.azimuth_power), np.asarray(maps.range),
+                   np.degrees(maps.azimuth))
+
+
+def require_signals(session) -> None:
+    """Raises ValueError where a file keeps maps without the signals that others are made of."""
+    if session.kept_maps is not None:
+        raise ValueError(session.note)
 
 
 def range_elevation_map(spectrum, radar, name: str, progress=None) -> SideMap:
@@ -51,7 +67,8 @@ def spectrogram_map(cube, radar, channel: tuple, progress=None) -> SideMap:
     found = ep.spectrogram(cube, radar, window_length=length, hop=hop, channel=channel)
     if len(found.times) < 2:
         raise ValueError("this frame has too few chirps for a spectrogram")
-    return SideMap("power over the frame", _level(found.power.T), 1e3 * np.asarray(found.times), np.asarray(found.velocity))
+    title = "power over the frame, all ranges, TX {}, RX {}".format(*channel)
+    return SideMap(title, _level(found.power.T), 1e3 * np.asarray(found.times), np.asarray(found.velocity))
 
 
 def beat_signal(cube, radar, channel: tuple, chirp: int) -> tuple:

@@ -13,7 +13,7 @@ from echopath.plots.maps import cells_of_scene
 WHOLE = "whole"
 OWN_GROUP = "own"    # parts that were named in the viewer
 NO_SIGNAL_DBM = 0.0  # upper end of the colour scale where nothing is received
-_NOTHING_DBM = -1000.0  # dB re 1 mW: no echo is that weak
+NOTHING_DBM = -1000.0  # dB re 1 mW: no echo is that weak
 MESH_GROUP = "mesh"  # the spectrum of the mesh that is selected
 
 
@@ -111,7 +111,7 @@ class PartSet:
             columns = rows = slice(None)
         seen = None if leaked is None else leaked.level(tx, rx)[rows, columns]
         peak = float(cells_of_scene(level[rows, columns], seen).max())
-        return NO_SIGNAL_DBM if peak <= _NOTHING_DBM else 5.0 * math.ceil(peak / 5.0)
+        return NO_SIGNAL_DBM if peak <= NOTHING_DBM else 5.0 * math.ceil(peak / 5.0)
 
 
 def _within(axis, ends) -> slice:

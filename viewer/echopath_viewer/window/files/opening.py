@@ -29,6 +29,8 @@ def _give_back() -> None:
 class Opening:
     """Part of MainWindow: reads frames, large ones in a thread, and reads them anew."""
 
+    _why_unread = ""  # what the last reading in a thread has failed with
+
     def open_file(self, path) -> bool:
         """Shows a frame file, or the time line of a folder, a pattern or a list of files, or says above what was shown before
         what is wrong with it."""
@@ -73,10 +75,13 @@ class Opening:
 
     def _end_loading(self, text: str = "") -> None:
         self.loading_bar.hide()
+        self._why_unread = text
         if text:
             self.show_message(text)
 
     def _take_rest(self, session) -> None:
+        if self._why_unread and self.banner.text() == self._why_unread:  # no more, as of a file that was being written
+            self.show_message("")
         self._end_loading()
         self.file_watch.accept(self._path_read, session.file_state)
         self._go_on_with_choices(session)

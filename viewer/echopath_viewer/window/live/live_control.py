@@ -94,6 +94,14 @@ class LiveControl(QtCore.QObject):
         """Of all meshes of an object."""
         self._change(name, "material", material)
 
+    def roughen(self, name: str, height: float) -> None:
+        """Each mesh of an object keeps its material, with an rms roughness height in m in place of a share that it scatters."""
+        def change(scene):
+            for mesh in scene[name].meshes:
+                scene[mesh.name].material = mesh.material.replace(scattering=None, roughness_height=height)
+
+        self._try(lambda: self.live.change(change))
+
     def _change(self, name: str, field: str, value) -> None:
         self._try(lambda: self.live.change(lambda scene: setattr(scene[name], field, value)))
 

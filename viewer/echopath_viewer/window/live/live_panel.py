@@ -170,11 +170,7 @@ class LivePanel(QtWidgets.QWidget):
     def _roughen(self, step: int) -> None:
         height = ROUGHEST * step / NUM_STEPS
         self.rough_label.setText(f"{1e3 * height:.2f} mm")
-        if not self.control.is_on:
-            return
-        for material in self.control.materials(self.object_box.currentText())[:1]:
-            rough = material.replace(scattering=None, roughness_height=height)  # either of them says how rough it is
-            self._change(lambda name: self.control.set_material(name, rough))
+        self._change(lambda name: self.control.roughen(name, height))
 
     def _tell(self, view) -> None:
         """Takes over, too, where the object was dragged to: not at each step of the mouse, as each change of a widget has the

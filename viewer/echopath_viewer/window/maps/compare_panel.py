@@ -12,11 +12,12 @@ from ...model import CellBox, Session, from_file
 from ...model.maps.comparison import difference, kept_map
 from .colour_bar import ColourBar
 from .map_area import title_of
-from .map_panel import MapPanel
-from ..qt import QtCore, QtWidgets
+from .map_panel import MapPanel, step_of
+from ..qt import Qt, QtCore, QtWidgets
 from .side_panels import SeenPanel
 
 DIFFERENCE_COLOURS, DIFFERENCE_SPAN_DB = "coolwarm", 20.0
+NO_CHANGE = 127  # the colour of it
 HINT = "Keep a map, then go to another frame, channel or part: it is shown beside it. Or compare with the map of a file."
 
 
@@ -29,12 +30,15 @@ class ComparePanel(SeenPanel):
         self.keep_button = QtWidgets.QPushButton("Keep this map")
         self.file_button = QtWidgets.QPushButton("Compare with a file ...")
         self.note = QtWidgets.QLabel(HINT, wordWrap=True)
-        self.panels = {"kept": MapPanel(), "now": MapPanel(), "difference": MapPanel(colours=DIFFERENCE_COLOURS)}
+        self.panels = {"kept": MapPanel(), "now": MapPanel(),
+                       "difference": MapPanel(colours=DIFFERENCE_COLOURS, outside=NO_CHANGE)}
         self._arrange()
         self.keep_button.clicked.connect(self.keep)
         self.file_button.clicked.connect(self._ask)
         for panel in self.panels.values():
+            panel.elide = Qt.TextElideMode.ElideMiddle  # what differs stands at the ends
             panel.view_changed.connect(self._set_view)
+            panel.view_reset.connect(self._reset_view)
             panel.cell_clicked.connect(self._pick)
             panel.hovered.connect(self._read)
 
@@ -94,8 +98,9 @@ class ComparePanel(SeenPanel):
             return
         now, limits = kept_map(self.session, self._title()), self.session.map_limits()
         change = difference(self.kept, now)
-        view = self.panels["now"].view
-        view = self._whole_view(now) if view.isEmpty() else view
+        shown, view = self.panels["now"], self.panels["now"].view
+        if not (np.array_equal(shown.range_axis, now.range) and np.array_equal(shown.velocity_axis, now.velocity)):
+            view = self._whole_view(now)
         for name, one, level, ends in (("kept", self.kept, self.kept.level, limits), ("now", now, now.level, limits),
                                        ("difference", now, np.nan_to_num(change), (-DIFFERENCE_SPAN_DB, DIFFERENCE_SPAN_DB))):
             axes = SimpleNamespace(range=one.range, velocity=one.velocity)
@@ -119,7 +124,13 @@ class ComparePanel(SeenPanel):
 
     @staticmethod
     def _whole_view(one) -> QtCore.QRectF:
-        return QtCore.QRectF(one.range[0], one.velocity[0], one.range[-1] - one.range[0], one.velocity[-1] - one.velocity[0])
+        half_range, half_velocity = 0.5 * step_of(one.range), 0.5 * step_of(one.velocity)
+        return QtCore.QRectF(one.range[0] - half_range, one.velocity[0] - half_velocity,
+                             one.range[-1] - one.range[0] + 2 * half_range,
+                             one.velocity[-1] - one.velocity[0] + 2 * half_velocity)
+
+    def _reset_view(self) -> None:
+        self._set_view(self._whole_view(self.session.parts.whole.spectrum))
 
     def _set_view(self, view) -> None:
         for panel in self.panels.values():

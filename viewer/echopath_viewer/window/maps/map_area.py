@@ -6,7 +6,7 @@ from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
 from ...model.maps.layers import TWINS
-from ...model.maps.part_set import WHOLE
+from ...model.maps.part_set import NOTHING_DBM, WHOLE
 from .colour_bar import ColourBar
 from .map_panel import MapPanel, step_of
 from ..qt import Qt, QtCore, QtGui, QtWidgets
@@ -14,6 +14,7 @@ from ..qt import Qt, QtCore, QtGui, QtWidgets
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
 MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",
                 "detection": "detections: &#9679;&nbsp;echo, &#9675;&nbsp;ghost, by object"}
+NO_MAP = "no map: the file keeps labels alone"
 TWIN_WORDS = "ghosts in the scene by object, way and (type/order)"
 HINT = ("Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what "
         "moves or everything.")
@@ -141,9 +142,11 @@ class MapArea(QtWidgets.QWidget):
         limits = self._limits()
         for part in parts:
             level = part.level(*self.session.channel)
-            self.panels[part.key].show_map(title_of(part), level, part.spectrum, limits, self.view,
+            title = title_of(part) if self.session.has_map else NO_MAP
+            self.panels[part.key].show_map(title, level, part.spectrum, limits, self.view,
                                            is_current=part.key == self.session.part_key)
         self.colour_bar.show_limits(*limits)
+        self.colour_bar.setVisible(self.session.has_map)
         self._show_layers()
         self._show_marks()
 
@@ -218,8 +221,9 @@ class MapArea(QtWidgets.QWidget):
         session.select_ray(ray)
 
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
-        title = title_of(self.session.parts[key])
-        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+.2f} m/s   {level:.1f} dBm   ({title})"))
+        title = title_of(self.session.parts[key]) if self.session.has_map else NO_MAP
+        told = f"{level:.1f} dBm" if level > NOTHING_DBM else "no signal"
+        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+.2f} m/s   {told}   ({title})"))
 
     def set_view(self, view: QtCore.QRectF) -> None:
         """What all maps show: a rectangle of range in m and velocity in m/s."""

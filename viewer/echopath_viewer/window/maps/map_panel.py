@@ -28,11 +28,13 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
     view_changed = Signal(object)        # QRectF: range, velocity
     view_reset = Signal()
     detection_clicked = Signal(int)
+    elide = Qt.TextElideMode.ElideRight  # of a title for which there is no room
 
-    def __init__(self, parent=None, *, x_label=RANGE_LABEL, y_label=VELOCITY_LABEL, colours=MAP_COLOURS):
-        """x_label, y_label: of the axes; colours: name of the colour map."""
+    def __init__(self, parent=None, *, x_label=RANGE_LABEL, y_label=VELOCITY_LABEL, colours=MAP_COLOURS,
+                 outside: int = 0):
+        """x_label, y_label: of the axes; colours: name of the colour map; outside: its colour beyond the map, 0 to 255."""
         super().__init__(parent)
-        self.x_label, self.y_label, self._colours = x_label, y_label, colours
+        self.x_label, self.y_label, self._colours, self._outside = x_label, y_label, colours, outside
         self.setMouseTracking(True)
         self.setMinimumSize(140, 110)
         self.title, self.is_current = "", False
@@ -156,7 +158,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         if self.image is None or self.view.isEmpty():
             return
         rect = self.plot_rect()
-        painter.fillRect(rect, QtGui.QColor(*map(int, colour_table(self._colours)[0])))
+        painter.fillRect(rect, QtGui.QColor(*map(int, colour_table(self._colours)[self._outside])))
         painter.save()
         painter.setClipRect(rect)
         self._paint_image(painter, rect, self.image)
@@ -247,7 +249,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         font.setPointSizeF(font.pointSizeF() + 1.0)
         font.setBold(self.is_current)
         painter.setFont(font)
-        title = painter.fontMetrics().elidedText(self.title, Qt.TextElideMode.ElideRight, int(rect.width()))
+        title = painter.fontMetrics().elidedText(self.title, self.elide, int(rect.width()))
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)

@@ -8,7 +8,8 @@ import numpy as np
 from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
-from ...model.maps.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
+from ...model.maps.angle_maps import (beat_signal, kept_azimuth_map, range_azimuth_map, range_elevation_map, require_signals,
+                                      spectrogram_map)
 from ..background_work import BackgroundWork
 from ..banner import ThinBar
 from .colour_bar import ColourBar
@@ -81,7 +82,7 @@ class SidePanel(SeenPanel):
         return session.part.spectrum, session.radar
 
     def work_of(self, session):
-        """Callable (progress) -> SideMap; touches no session, which goes on meanwhile."""
+        """Callable (progress) -> SideMap; touches no session, which goes on meanwhile. Raises ValueError where there is none."""
         raise NotImplementedError
 
     def pick(self, x_index: int, y_index: int) -> None:
@@ -113,11 +114,18 @@ class SidePanel(SeenPanel):
             self.show_marks()
             return
         self._made_of = made_of
+        try:
+            work = self.work_of(self.session)
+        except ValueError as error:
+            self.work.stop()
+            self._fail(str(error))
+            return
         self.bar.begin()
-        self.work.start(self.work_of(self.session))
+        self.work.start(work)
 
     def _take(self, found) -> None:
         self.bar.hide()
+        self.note.setText("")
         is_same = self.map is not None and np.array_equal(self.map.x, found.x) and np.array_equal(self.map.y, found.y)
         self.map = found
         highest = 5.0 * np.ceil(float(found.level.max()) / 5.0)
@@ -178,6 +186,9 @@ class AzimuthPanel(_AnglePanel):
     y_label, axis = AZIMUTH_LABEL, 0
 
     def work_of(self, session):
+        maps, note = session.kept_maps, session.note
+        if maps is not None:
+            return lambda progress: kept_azimuth_map(maps, note)
         spectrum, radar, name = session.part.spectrum, session.radar, title_of(session.part)
         return lambda progress: range_azimuth_map(spectrum, radar, name, progress)
 
@@ -188,6 +199,7 @@ class ElevationPanel(_AnglePanel):
     y_label, axis = ELEVATION_LABEL, 1
 
     def work_of(self, session):
+        require_signals(session)
         spectrum, radar, name = session.part.spectrum, session.radar, title_of(session.part)
         return lambda progress: range_elevation_map(spectrum, radar, name, progress)
 
@@ -201,6 +213,7 @@ class SpectrogramPanel(SidePanel):
         return session.cube, session.columns
 
     def work_of(self, session):
+        require_signals(session)
         cube, radar, channel = session.cube, session.radar, session.channel
         return lambda progress: spectrogram_map(cube, radar, channel, progress)
 
@@ -246,6 +259,9 @@ class BeatPanel(SeenPanel):
         if self.session is None or not self._is_seen:
             return
         session = self.session
+        if session.kept_maps is not None:
+            self.curves.show_curves("the file keeps no signals", (), {})
+            return
         times, samples = beat_signal(session.cube, session.radar, session.channel, session.chirp)
         title = "beat signal of chirp {}, TX {}, RX {}".format(session.chirp + 1, *session.channel)
         self.curves.show_curves(title, 1e6 * times, {"real": samples.real, "imaginary": samples.imag})

@@ -44,7 +44,8 @@ int around(const Scene& scene, const PosedScene& pose, const std::vector<Body>& 
   if (!body.box.contains(eye)) return -1;
   std::vector<double> angles;
   for (const uint32_t id : body.meshes) angles.push_back(angle_of(scene, pose, id, eye));
-  if (is_whole_sphere(std::accumulate(angles.begin(), angles.end(), 0.0)) && is_anything_outside(bodies, body.box)) return body.node;
+  if (is_whole_sphere(std::accumulate(angles.begin(), angles.end(), 0.0)) && is_anything_outside(bodies, body.box))
+    return body.node;
   for (size_t i = 0; i < angles.size(); ++i) {
     const uint32_t id = body.meshes[i];
     if (is_whole_sphere(angles[i]) && is_anything_beside(pose, bodies, body, box_of(pose, id)))

@@ -1,6 +1,7 @@
 """Rows of files of trajectories: what a file says of everybody, whoever is asked for."""
 from __future__ import annotations
 
+from array import array
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,7 +45,7 @@ def read_rows(path: Path) -> Rows:
     earliest = min(samples.times[0] for samples in rows.tracks.values())
     if earliest > MOST_SECONDS:
         for samples in rows.tracks.values():
-            samples.times = type(samples.times)("d", [time - earliest for time in samples.times])
+            samples.times = array("d", [time - earliest for time in samples.times])
     return rows
 
 

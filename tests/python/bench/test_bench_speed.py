@@ -46,8 +46,9 @@ def test_bare_loop_asks_the_queries_of_the_trace():
     scene, radar = speed_tracer.rough_spheres(5), build_radar([(0.0, 0.0, 0.0)], [(0.0, 0.3, 0.0)])
     paths = ep.trace(scene, radar, num_rays=5000)
     found = ep._core.bench.bare_queries(scene, radar, num_rays=5000, repetitions=2)
-    of_planes = paths.frame.statistics.num_queries - found["num_queries"]  # a look around each facet that may be a large plane
-    assert 0 <= of_planes < 200 < 5000 < found["num_queries"]
+    # A look around each facet that may be a large plane: up to eight queries in each of 64 directions.
+    of_planes = paths.frame.statistics.num_queries - found["num_queries"]
+    assert 0 <= of_planes < 1000 < 5000 < found["num_queries"]
     assert found["num_paths"] == paths.num_paths and found["num_rays"] == 5000
     assert 0 < found["num_shadow"] < found["num_queries"] and 5000 <= found["num_in_packets"] <= found["num_queries"]
     for name in ("trace_seconds", "bare_seconds", "single_seconds"):

@@ -43,7 +43,7 @@ def describe(rows: list[dict]) -> list[str]:
 
 def _in_a_process(each: int, rays: int) -> dict:
     """`_labels` in a process of its own: its peak of memory is that of the crowd alone."""
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
+    with multiprocessing.get_context("forkserver").Pool(1) as pool:
         return pool.apply(_labels, (each, rays))
 
 

@@ -90,8 +90,11 @@ def _is_maker(value) -> bool:
     return callable(value) and not isinstance(value, type)
 
 
-class _MakerOfKinds:
-    """Makes actors by the kinds of trajectories. makers: of globs of kinds, None: no object."""
+class MakerOfKinds:
+    """Makes actors by the kinds of trajectories.
+
+    makers: of globs of kinds, of which the first that takes the kind counts, None: no object; kinds that none takes are as usual
+    """
 
     def __init__(self, makers: dict[str, ActorOf | None]):
         self.makers = makers
@@ -101,7 +104,7 @@ class _MakerOfKinds:
         return None if maker is None else maker(name, trajectory)
 
 
-def _maker_of_kinds(argument: str, makers: Mapping) -> _MakerOfKinds:
+def _maker_of_kinds(argument: str, makers: Mapping) -> MakerOfKinds:
     """The maker of a dict {glob of kinds: maker, model, name of an actor or None}."""
     found = {}
     for glob, maker in makers.items():
@@ -113,7 +116,7 @@ def _maker_of_kinds(argument: str, makers: Mapping) -> _MakerOfKinds:
         elif maker is not None and not _is_maker(maker):
             raise refused(TypeError, place, "a callable (name, trajectory), a Model, the name of an actor, or None", maker)
         found[glob] = maker
-    return _MakerOfKinds(found)
+    return MakerOfKinds(found)
 
 
 def _always(model: Model) -> ActorOf:
@@ -169,11 +172,21 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     """
     time = None if time is None else real(unit="s")("time", time)
     maker = actor_of if callable(actor_of) else usual_actor
-    if isinstance(maker, _MakerOfKinds):
+    if isinstance(maker, MakerOfKinds):
         warn_of_unused_kinds("actor_of", maker.makers, (one.kind for one in trajectories.values()))
     chosen = chosen_of(trajectories, list(exclude), during)
     warn_of_nobody(trajectories, during)
-    made = {name: _made(maker, name, one if during is None else one.detailed(*during)) for name, one in chosen.items()}
+    traffic = put_traffic(scene, chosen, maker, during, parent)
+    if time is not None:
+        traffic.show(time)
+    return traffic
+
+
+def put_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], maker: ActorOf, during: tuple[float, float] | None,
+                parent: str | None = None) -> Traffic:
+    """Puts what a maker makes for each of the trajectories that are chosen into a scene. Takes, returns and raises what
+    `add_traffic` does."""
+    made = {name: _made(maker, name, one if during is None else one.detailed(*during)) for name, one in trajectories.items()}
     present = {name: actor for name, actor in made.items() if actor is not None}
     _require_new(scene, present, parent)
     above, added = _above(parent), {}
@@ -183,10 +196,7 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
         follows = getattr(actor, "motion", None) is not None
         full_name = scene.add(actor, name=own_names[name], parent=parent, motion=None if follows else trajectory)
         added[full_name] = trajectory
-    traffic = Traffic(scene, added)
-    if time is not None:
-        traffic.show(time)
-    return traffic
+    return Traffic(scene, added)
 
 
 def chosen_of(ways: Mapping[str, W], exclude: Iterable[str], during: tuple[float, float] | None) -> dict[str, W]:

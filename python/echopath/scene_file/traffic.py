@@ -7,13 +7,13 @@ from pathlib import Path
 from ..arguments.checks import refused
 from ..arguments.names import first_names
 from ..scene.scene import Scene
-from ..scene.traffic import add_traffic, chosen_of, object_names, usual_actor
+from ..scene.traffic import MakerOfKinds, chosen_of, object_names, put_traffic
 from ..trajectories import Trajectory
 from ..trajectories.kinds import of_kind, usual_kind
 from ..trajectories.files.rows import KeptRows
 from ..trajectories.files.track_file import TrackFile, Way, warn_of_nobody
 from .errors import ToldValueError, blamed
-from .traffic_shapes import TrafficShape, traffic_shape
+from .traffic_shapes import traffic_shape
 from .tables.table import yaw_of
 from .tables.traffic_tables import TrafficTable
 
@@ -68,8 +68,9 @@ class _File:
     def add_to(self, scene: Scene) -> None:
         self._warn()
         trajectories = self.trajectories(self._chosen())
+        maker = MakerOfKinds({glob: shape.maker for glob, shape in self._shapes.items()})
         with blamed(self._key):
-            add_traffic(scene, trajectories, actor_of=self._made, during=self._table.during)
+            put_traffic(scene, trajectories, maker, self._table.during)
 
     def _warn(self) -> None:
         """Warns (RuntimeWarning) of what the table says and the file has nobody for."""
@@ -83,15 +84,6 @@ class _File:
         with blamed(self._key):
             return chosen_of(self.ways, self._table.exclude, self._table.during)
 
-    def _made(self, name: str, trajectory: Trajectory):
-        """What goes along a trajectory, None: no object."""
-        shape = self._shape_of(trajectory)
-        maker = usual_actor if shape is None else shape.maker
-        return None if maker is None else maker(name, trajectory)
-
-    def _shape_of(self, way: Way | Trajectory) -> TrafficShape | None:
-        return of_kind(self._shapes.items(), way.kind, None)
-
     def objects(self, others: list[str]) -> list[dict[str, str]]:
         chosen = self._chosen()
         actors = {name: self._actor(one) for name, one in chosen.items()}
@@ -100,7 +92,7 @@ class _File:
 
     def _actor(self, way: Way) -> str:
         """The actor of what goes along a way, "" for no object."""
-        shape = self._shape_of(way)
+        shape = of_kind(self._shapes.items(), way.kind, None)
         if shape is not None and shape.maker is None:
             return ""
         if shape is None or shape.actor is None:

@@ -24,7 +24,8 @@ def warn_of_ends(scene: _core.Scene, radar: _core.Radar, begin: float, end: floa
     tops, nodes = _tops_of(scene), scene.nodes
     ways = [] if radar.motion is None else [("the radar", radar.motion, ALWAYS)]
     ways += [(f"'{nodes[top].name}'", nodes[top].motion, scene._lifetime(top)) for top in dict.fromkeys(tops.values())]
-    names = [name for name, motion, alive in ways if _ends_early(_translation_of(motion), motion, _within(alive, begin, end))]
+    names = [name for name, motion, alive in ways
+             if _ends_early(_curves_of(motion, "translation"), motion, _within(alive, begin, end))]
     if names:
         stand = "stands" if len(names) == 1 else "stand"
         warn_user(f"{first_names(names)} {stand} still in some of the frames, for want of a way that lasts from their first to "
@@ -54,42 +55,54 @@ def _held_in_themselves(scene: _core.Scene, tops: dict[int, int], begin: float, 
     """Names of what moves of which a part, or a joint, does so for a time alone; each once."""
     nodes = scene.nodes
     told: set[int] = set()
-    for index, top in tops.items():
-        if top in told or index == top:
+    for top, motion in _inner_motions(scene, tops):
+        if top in told:
             continue
         span = _within(scene._lifetime(top), begin, end)
-        motion = nodes[index].motion
-        if any(_ends_early(curve, motion, span) for curve in (_translation_of(motion), _rotation_of(motion))):
+        if _ends_early(_curves_of(motion, "translation", "rotation"), motion, span):
             told.add(top)
             yield f"'{nodes[top].name}'"
+
+
+def _inner_motions(scene: _core.Scene, tops: dict[int, int]) -> Iterator[tuple[int, _core.Motion | None]]:
+    """(topmost node that moves, motion of a node below it or of a joint of its skins) of all meshes."""
+    nodes = scene.nodes
+    yield from ((top, nodes[index].motion) for index, top in tops.items() if index != top)
+    for mesh in scene.meshes:
+        top = _top_of(mesh.node, nodes, tops)
+        skin = nodes[mesh.node].deformation
+        if top is not None and isinstance(skin, _core.Skin):
+            yield from ((top, joint.motion) for joint in skin.joints)
+
+
+def _top_of(index: int, nodes: list[_core.Node], tops: dict[int, int]) -> int | None:
+    """The topmost node that moves at or above one; None: nothing there moves."""
+    while index >= 0 and index not in tops:
+        index = nodes[index].parent
+    return tops[index] if index >= 0 else None
 
 
 def _within(lifetime: tuple[float, float], begin: float, end: float) -> tuple[float, float]:
     return max(begin, lifetime[0]), min(end, lifetime[1])
 
 
-def _translation_of(motion: _core.Motion | None) -> _core.Curve | None:
-    """That of what follows a trajectory: of a Hermite curve that is no loop. Linear ways, as of doors in files, end anyhow."""
-    return _followed(motion.translation) if isinstance(motion, _core.CurveMotion) and motion.period is None else None
+def _curves_of(motion: _core.Motion | None, *kinds: str) -> list[_core.Curve]:
+    """Those of what may follow a trajectory: Hermite curves, of no loop. Linear ways, as of doors in files, end anyhow."""
+    if not isinstance(motion, _core.CurveMotion) or motion.period is not None:
+        return []
+    curves = [getattr(motion, kind) for kind in kinds]
+    return [curve for curve in curves if curve is not None and curve.interpolation == "hermite"]
 
 
-def _rotation_of(motion: _core.Motion | None) -> _core.Curve | None:
-    return _followed(motion.rotation) if isinstance(motion, _core.CurveMotion) and motion.period is None else None
-
-
-def _followed(curve: _core.Curve | None) -> _core.Curve | None:
-    return curve if curve is not None and curve.interpolation == "hermite" else None
-
-
-def _ends_early(curve: _core.Curve | None, motion: _core.Motion, span: tuple[float, float]) -> bool:
-    """Whether a motion is held for a part of a span in s, at an end of one of its curves at which it moves."""
-    if curve is None:
-        return False
-    first, last = float(curve.times[0]) - motion.offset, float(curve.times[-1]) - motion.offset
-    step = min(STEP, 0.5 * (last - first))
-    if not step > 0.0:
-        return False
-    return (span[0] < first and _moves(motion, first, step)) or (last < span[1] and _moves(motion, last - step, step))
+def _ends_early(curves: list[_core.Curve], motion: _core.Motion, span: tuple[float, float]) -> bool:
+    """Whether a motion is held for a part of a span in s, at an end of one of these curves of it at which it moves."""
+    for curve in curves:
+        first, last = float(curve.times[0]) - motion.offset, float(curve.times[-1]) - motion.offset
+        step = min(STEP, 0.5 * (last - first))
+        if step > 0.0 and ((span[0] < first and _moves(motion, first, step))
+                           or (last < span[1] and _moves(motion, last - step, step))):
+            return True
+    return False
 
 
 def _moves(motion: _core.Motion, time: float, step: float) -> bool:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.files.gltf_files import rig_file
 from support.radars import build_radar
 
 LINE = [(10.0, 0.0), (30.0, 0.0)]  # 2 s at 10 m/s
@@ -54,3 +55,15 @@ def test_wheels_and_limbs_that_move_in_some_frames_alone_are_told(actor, span, i
                    during=span)
     told = said(scene, build_radar(), 0.5)
     assert [one.split(",")[0] for one in told] == ["'it': what moves in it"] * is_told
+
+
+@pytest.mark.parametrize("span, is_told", [((0.2, 1.7), False), ((0.0, 1.0), True)])
+def test_joints_of_a_skin_count_as_parts(tmp_path, span, is_told):
+    """Of an animated model, whose only node stands on its trajectory."""
+    (tmp_path / "rig.glb").write_bytes(rig_file().glb())
+    rig, scene = ep.load_model(tmp_path / "rig.glb", loop=True), ep.Scene()
+    ep.add_traffic(scene, {"it": ep.Trajectory(LINE, speed=4.0)}, during=span,
+                   actor_of=lambda _, trajectory: rig.along(trajectory, way=1.0))
+    told = said(scene, build_radar(), 0.5)
+    assert [one.split(",")[0] for one in told] == ["'it': what moves in it"] * is_told
+

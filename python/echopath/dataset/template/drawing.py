@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arguments.shown import shown
 from .distributions import REFERENCE, drawn, is_distribution, is_number, refuse_misspelt
-from .references import Source, changed, is_reference, refuse_wrong_reference, steps
+from .references import Source, changed, is_reference, refuse_wrong_reference
 
 _MOST_COPIES = 10_000                   # of an entry
 _MOST_FOLLOWED = 20                     # values of which each follows the next
@@ -72,11 +72,11 @@ class Drawing:
 
     def _at(self, path: str) -> Any:
         """Raises KeyError or IndexError where the template has no such value."""
-        value, at, rest = self._source.begin(path)
-        if "apart" in value and rest.startswith("position"):
+        value, at, steps = self._source.walk(path)
+        if "apart" in value and steps[0].key == "position":
             raise KeyError(path)  # which is drawn again until it is free
         is_drawn = False
-        for key, beyond in steps(rest, at):
+        for key, beyond in steps:
             if not is_drawn and (is_distribution(value) or is_reference(value)):
                 value, is_drawn = self.of(value, at), True
             if not isinstance(value, dict if isinstance(key, str) else list):

@@ -55,18 +55,24 @@ class Source:
         self._entries = [one for one in objects if isinstance(one, dict) and isinstance(one.get("name"), str)] if isinstance(
             objects, list) else []
 
-    def begin(self, path: str) -> tuple[Any, str, str]:
-        """(the table in which a path begins, the path of that table, the rest of the path). Raises KeyError."""
+    def walk(self, path: str) -> tuple[Any, str, list[Step]]:
+        """The way to the value at a path: (the table in which it begins, the path of that table, the steps from there on).
+        Raises KeyError where it is no path of the template."""
+        table, begin = self._begin(path)
+        return table, begin, _steps(path[len(begin):].removeprefix("." if begin else ""), begin)
+
+    def _begin(self, path: str) -> tuple[Any, str]:
+        """The table in which a path begins, an object by its name or all the rest, and the path of that table."""
         for entry in self._entries:
             copies = r"_[1-9]\d*" if "count" in entry else ""
-            if found := re.match(re.escape(f"objects.{entry['name']}") + copies + r"\.", path):
-                return entry, found[0][:-1], path[found.end():]
+            if found := re.match(re.escape(f"objects.{entry['name']}") + copies + r"(?=\.)", path):
+                return entry, found[0]
         if path.startswith("objects"):
             raise KeyError(path)
-        return self._rest, "", path
+        return self._rest, ""
 
 
-def steps(path: str, begin: str) -> list[Step]:
+def _steps(path: str, begin: str) -> list[Step]:
     """Those of a dotted path that goes on from another. Raises KeyError where it is none."""
     found, end = [], 0
     for match in _STEP.finditer(path):

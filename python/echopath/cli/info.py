@@ -276,7 +276,7 @@ def _describe_maps(path: Path, maps) -> list[str]:
     if maps.power is not None:
         velocity, distance = np.unravel_index(maps.power.argmax(), maps.power.shape)
         lines.append(report.line("strongest cell", f"{in_dbm(float(maps.power.max())):.2f} dBm at {maps.range[distance]:.2f} m, "
-                                 f"{maps.velocity[velocity]:+.2f} m/s"))
+                                 f"{maps.velocity[velocity]:+z.2f} m/s"))
     return [*lines, *report.labels(maps.labels), *report.detections(maps.detections, maps.labels),
             *report.truth(maps.kept_truth)]
 

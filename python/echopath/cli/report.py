@@ -85,8 +85,8 @@ def folded_velocities(scene, radar, time: float) -> list[str]:
     it shows them; nothing where none do."""
     limit = radar.waveform.max_velocity(radar.num_slots)
     found = bodies_faster_than(limit, scene, radar, time)
-    lines = [line("  " + body.name, f"{'' if body.as_whole else 'up to '}{body.speed:+.2f} m/s, "
-                  f"shown at {(body.speed + limit) % (2.0 * limit) - limit:+.2f} m/s") for body in found[:MAX_LISTED]]
+    lines = [line("  " + body.name, f"{'' if body.as_whole else 'up to '}{body.speed:+z.2f} m/s, "
+                  f"shown at {(body.speed + limit) % (2.0 * limit) - limit:+z.2f} m/s") for body in found[:MAX_LISTED]]
     if not found:
         return []
     more = more_line(len(found), MAX_LISTED)
@@ -236,7 +236,7 @@ def truth(found) -> list[str]:
     for name, distance, azimuth, velocity, share, *rcs in zip(
             found.name, found.range, np.degrees(found.azimuth), found.radial_velocity, found.visible_share,
             found.rcs, found.rcs_low, found.rcs_high):
-        rows.append((f"  {name}", f"{distance:.2f} m", f"{azimuth:+.1f} deg", f"{velocity:+.2f} m/s", f"{share:.0%}",
+        rows.append((f"  {name}", f"{distance:.2f} m", f"{azimuth:+z.1f} deg", f"{velocity:+z.2f} m/s", f"{share:.0%}",
                      _cross_section(*rcs)))
     return _table(rows, right=(1, 2, 3, 4, 5))
 

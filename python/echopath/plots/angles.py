@@ -27,7 +27,7 @@ def draw_angle_spectrum(spectrum: _core.AngleSpectrum, range: float | None = Non
     level = in_dbm(np.abs(spectrum.values[:, :, row, column]) ** 2, SMALLEST_POWER)
     with axes_or_new(ax, 7.0, 4.4) as ax:
         _draw(ax, spectrum, level)
-        place = f"at {spectrum.range[column]:.2f} m, {spectrum.velocity[row]:+.2f} m/s"
+        place = f"at {spectrum.range[column]:.2f} m, {spectrum.velocity[row]:+z.2f} m/s"
         ax.set_title(f"{title}\n{place}" if title else place)
     return ax
 

@@ -80,7 +80,7 @@ def range_doppler_html(spectrum) -> str:
 def detections_html(detections) -> str:
     """The strongest detections."""
     order = np.argsort(-detections.power, kind="stable")
-    rows = [(f"{detections.range[i]:.2f}", f"{detections.velocity[i]:+.2f}", _degrees(detections.azimuth[i]),
+    rows = [(f"{detections.range[i]:.2f}", f"{detections.velocity[i]:+z.2f}", _degrees(detections.azimuth[i]),
              f"{detections.snr_db[i]:.1f}", detections.object[i], detections.part[i],
              "noise" if detections.is_noise[i] else f"type {detections.ghost_type[i]}" if detections.ghost_type[i] else "")
             for i in order[:MOST_ROWS]]
@@ -137,7 +137,7 @@ def template_html(template) -> str:
 
 def validity_html(report) -> str:
     """Whether one trace serves, what does not hold, and the objects."""
-    rows = [(name, "yes" if one.ok else "no", f"{one.new_surface:.1%}", f"{one.disappears:.1%}", f"{one.error_db:+.2f}")
+    rows = [(name, "yes" if one.ok else "no", f"{one.new_surface:.1%}", f"{one.disappears:.1%}", f"{one.error_db:+z.2f}")
             for name, one in list(report.objects.items())[:MOST_ROWS]]
     verdict = "one trace serves" if report.ok else counted(len(report.warnings), "warning")
     table = _table(f"Validity: {verdict}, {counted(report.num_paths, 'path')}, phase error {report.rms_phase_error:.3g} rad rms",
@@ -179,4 +179,4 @@ def _dbm(power) -> str:
 
 
 def _degrees(angle) -> str:
-    return "" if np.isnan(angle) else f"{np.degrees(angle):+.1f}"
+    return "" if np.isnan(angle) else f"{np.degrees(angle):+z.1f}"

@@ -136,6 +136,10 @@ def test_radar_material_and_turns_follow(qtbot, live_window):
     panel.material_box.activated.emit(panel.material_box.currentIndex())
     settled(qtbot, window)
     assert window.session.parts.whole.level(0, 0).max() > level + 3.0
+    panel.material_box.setCurrentIndex(0)
+    panel.material_box.activated.emit(0)  # as at the start
+    settled(qtbot, window)
+    assert window.session.parts.whole.level(0, 0).max() == pytest.approx(level, rel=0, abs=1e-9)
     window.live.set_material("wall", ep.Material(permittivity=5.0, scattering=0.5))
     panel.rough_slider.setValue(10)  # takes the place of the share that it scattered
     settled(qtbot, window)

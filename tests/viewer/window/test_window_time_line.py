@@ -138,6 +138,24 @@ def test_new_frames_come_and_damaged_ones_are_told(qtbot, shared_window, stored_
     window.time_line.show(None)
 
 
+def test_f5_reads_the_frame_on_display_anew(qtbot, shared_window, stored_run, tmp_path):
+    """A folder of frames, of which one is written anew."""
+    window = shared_window
+    for number, path in enumerate(stored_run.paths_of_files):
+        shutil.copy(path, tmp_path / f"f{number}.h5")
+    assert window.open_file(tmp_path)
+    open_on_screen(qtbot, window)
+    window.next_frame()
+    wait_for(qtbot, window, 1)
+    other = ep.simulate(window.session.paths.scene, window.session.radar, num_rays=100, start_time=stored_run.times[1])
+    assert len(other.paths) != len(window.session.paths)
+    ep.save_frame(other, tmp_path / "f1.h5")
+    qtbot.keyClick(window, Qt.Key.Key_F5)
+    qtbot.waitUntil(lambda: len(window.session.paths) == len(other.paths), timeout=PATIENCE_MS)
+    assert window.time_line.place == 1
+    window.time_line.show(None)
+
+
 def test_one_file_has_no_frame_bar(qtbot, line_window, stored_run):
     assert line_window.frame_bar.isVisible()
     line_window.open_file(stored_run.paths_of_files[0])

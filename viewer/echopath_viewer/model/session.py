@@ -199,7 +199,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.select_cells(CellBox.around(range_index, velocity_index, reach), (range_index, velocity_index))
         self.beam = azimuth, elevation
         inside = paths_in_beam(self.paths, self.index.mask_of(self.box), self.paths.frame.trace_time, azimuth, elevation)
-        self._light(f"the beam at {np.degrees(azimuth):+.1f}°, {np.degrees(elevation):+.1f}°", inside)
+        self._light(f"the beam at {np.degrees(azimuth):+z.1f}°, {np.degrees(elevation):+z.1f}°", inside)
 
     def select_family(self, group) -> None:
         """Lights the paths of an EchoGroup of the attribution, wherever they lie; None: those of the selected cells again."""
@@ -279,4 +279,4 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
                 for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]
         return [("path", f"{path:,}"), *hits, ("range", f"{columns.range[path]:.3f} m"),
-                ("speed", f"{columns.velocity[path]:+.3f} m/s"), ("power", f"{columns.power_dbm(path):.1f} dBm")]
+                ("speed", f"{columns.velocity[path]:+z.3f} m/s"), ("power", f"{columns.power_dbm(path):.1f} dBm")]

@@ -11,7 +11,7 @@ KEYS = (
     ("Ctrl+L", "load_view_dialog", "Load a view"),
     ("Ctrl+P", "screenshot_dialog", "Save a picture, maps, a film or a page"),
     ("Ctrl+E", "export_rays_dialog", "Export the rays (VTK)"),
-    ("F5", "reload", "Read the file anew"),
+    ("F5", "reload", "Read the file, or the frame of a sequence, anew"),
     ("Ctrl+K", "show_commands", "Find a command by typing"),
     ("Ctrl+Z", "undo", "Undo what the view shows"),
     ("Ctrl+Shift+Z", "redo", "Redo it"),

@@ -67,7 +67,8 @@ class Opening:
         self.loading.start(lambda progress: read_session(path, state, progress))
 
     def reload(self) -> None:
-        """Reads the file on display anew; what is shown stays, as far as it fits."""
+        """Reads the file on display anew, or the frame of a time line; what is shown stays, as far as it fits."""
+        self.time_line.reload()
         path, state = self.file_watch.path, state_of(self.session)
         if path is not None:
             self._begun_with = state

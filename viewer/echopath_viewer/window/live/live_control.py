@@ -24,6 +24,7 @@ class LiveControl(QtCore.QObject):
         """state_now: callable () -> state of the view, to be taken over"""
         super().__init__(parent)
         self._state_now, self._state, self.live, self._watch = state_now, None, None, None
+        self._first_materials = {}  # {name of a mesh: Material} of the objects that have got others
         self._latest = deque(maxlen=1)  # (Session, LiveView, state that it was made for) that the window has not taken yet
         self._made.connect(self._tell)  # in the thread of the window, as this object lives there
         self._broken.connect(self._end)
@@ -36,6 +37,7 @@ class LiveControl(QtCore.QObject):
     def start(self, session, num_rays: int, live=None) -> None:
         """Makes the scene of a session live. live: ep.Live to be watched in place of a new one. Raises ValueError."""
         self.stop()
+        self._first_materials = {}
         self._settings = session.signals.spectrum_settings
         self._state = self._state_now()
         self.live = watched = live_of(session, num_rays) if live is None else live
@@ -92,10 +94,25 @@ class LiveControl(QtCore.QObject):
 
     def set_material(self, name: str, material) -> None:
         """Of all meshes of an object."""
+        self._remember_materials(name)
         self._change(name, "material", material)
+
+    def restore_materials(self, name: str) -> None:
+        """Each mesh of an object gets the material that it had when the scene became live."""
+        def change(scene):
+            for mesh in scene[name].meshes:
+                scene[mesh.name].material = self._first_materials.get(mesh.name, mesh.material)
+
+        self._try(lambda: self.live.change(change))
+
+    def _remember_materials(self, name: str) -> None:
+        if name in self.live.scene:
+            self._first_materials = {mesh.name: mesh.material for mesh in self.live.scene[name].meshes} | self._first_materials
 
     def roughen(self, name: str, height: float) -> None:
         """Each mesh of an object keeps its material, with an rms roughness height in m in place of a share that it scatters."""
+        self._remember_materials(name)
+
         def change(scene):
             for mesh in scene[name].meshes:
                 scene[mesh.name].material = mesh.material.replace(scattering=None, roughness_height=height)

@@ -13,6 +13,7 @@ from ..qt import Qt, QtCore, QtWidgets
 STEP, FARTHEST = 0.1, 1e4    # m
 ROUGHEST, NUM_STEPS = 5e-3, 100  # m, of the slider, and its steps
 ALONE = "echoes of the scene alone, without noise, rain and other radars"
+FIRST = "as at the start"  # of the materials
 HINT = "Start, then drag an object in the scene with Shift held, or change the numbers."
 
 
@@ -27,7 +28,7 @@ class LivePanel(QtWidgets.QWidget):
         self.rays_box = QtWidgets.QSpinBox(minimum=1, maximum=1_000_000_000, singleStep=10_000, suffix=" rays")
         self.rays_box.setValue(DEFAULT_RAYS)
         self.object_box, self.material_box = QtWidgets.QComboBox(), QtWidgets.QComboBox()
-        self.material_box.addItems(["as it is", *ep.materials])
+        self.material_box.addItems([FIRST, *ep.materials])
         limits = {"minimum": -FARTHEST, "maximum": FARTHEST, "singleStep": STEP, "decimals": 3, "suffix": " m"}
         self.place_boxes = [TypedBox(prefix=f"{axis} ", **limits) for axis in "xyz"]
         self.yaw_box = TypedBox(minimum=-360.0, maximum=360.0, singleStep=1.0, prefix="yaw ", suffix="\u00b0")
@@ -140,13 +141,19 @@ class LivePanel(QtWidgets.QWidget):
         name = self.object_box.currentText()
         if not self.control.is_on or not name:
             return
+        self._show_roughness()
+        self.material_box.setCurrentIndex(0)
+
+    def _show_roughness(self) -> None:
+        if not self.control.is_on:
+            return
+        name = self.object_box.currentText()
         heights = {material.roughness_height if material.scattering is None else None  # else a share of power tells
                    for material in self.control.materials(name)}
         height = heights.pop() if len(heights) == 1 else None
         with QtCore.QSignalBlocker(self.rough_slider):
             self.rough_slider.setValue(0 if height is None else round(NUM_STEPS * height / ROUGHEST))
         self.rough_label.setText("" if height is None else f"{1e3 * height:.2f} mm")
-        self.material_box.setCurrentIndex(0)
 
     def choose(self, name: str) -> None:
         """An object of the scene."""
@@ -166,6 +173,9 @@ class LivePanel(QtWidgets.QWidget):
         if number:
             material = ep.materials[self.material_box.currentText()]
             self._change(lambda name: self.control.set_material(name, material))
+        else:
+            self._change(self.control.restore_materials)
+        self._show_roughness()
 
     def _roughen(self, step: int) -> None:
         height = ROUGHEST * step / NUM_STEPS

@@ -120,7 +120,7 @@ class ComparePanel(SeenPanel):
         if cell is None or not np.isfinite(self.change[cell[1], cell[0]]):
             self.note.setText("Click a cell: its change in dB.")
             return
-        self.note.setText(for_pictures(f"the selected cell: {self.change[cell[1], cell[0]]:+.1f} dB"))
+        self.note.setText(for_pictures(f"the selected cell: {self.change[cell[1], cell[0]]:+z.1f} dB"))
 
     @staticmethod
     def _whole_view(one) -> QtCore.QRectF:
@@ -146,7 +146,7 @@ class ComparePanel(SeenPanel):
 
     def _read(self, distance: float, velocity: float, level: float) -> None:
         unit = "dB" if self.sender() is self.panels["difference"] else "dBm"
-        self.note.setText(for_pictures(f"{distance:.2f} m   {velocity:+.2f} m/s   {level:.1f} {unit}"))
+        self.note.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {level:.1f} {unit}"))
 
     def stop(self) -> None:
         """There is nothing to end."""

@@ -157,12 +157,12 @@ class ContributionsPanel(QtWidgets.QWidget):
     def _show(self, cell) -> None:
         """cell: CellAttribution."""
         spectrum, (distance, velocity) = self.session.parts.whole.spectrum, self.session.cell
-        place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
+        place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+z.2f} m/s"
         if self.session.beam is not None:
-            place += ", beam at {:+.1f}\u00b0, {:+.1f}\u00b0".format(*np.degrees(self.session.beam))
+            place += ", beam at {:+z.1f}\u00b0, {:+z.1f}\u00b0".format(*np.degrees(self.session.beam))
         self._cell_told = (for_pictures(f"{place}: {cell.level_dbm:.1f} dBm"), for_pictures(f"mostly {kind_of(cell.strongest)}"))
         self._break_title()
-        self._told = [for_pictures(f"without {name} {change:+.1f} dB") for name, change in cell.without
+        self._told = [for_pictures(f"without {name} {change:+z.1f} dB") for name, change in cell.without
                       if abs(change) >= LEAST_CHANGE_DB]
         self._break_lines()
         self._cell = self.session.cell, self.session.beam
@@ -184,8 +184,8 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.table.setRowCount(len(rows))
         for number, (one, phase) in enumerate(rows):
             level = float(in_dbm(abs(one.value) ** 2, SMALLEST_POWER))
-            peak = "" if one.group is None else f"{one.group.peak_range:.1f} m, {one.group.peak_velocity:+.1f} m/s"
-            texts = (one.name, f"{level:.1f}", f"{one.without_db:+.1f} dB", peak)
+            peak = "" if one.group is None else f"{one.group.peak_range:.1f} m, {one.group.peak_velocity:+z.1f} m/s"
+            texts = (one.name, f"{level:.1f}", f"{one.without_db:+z.1f} dB", peak)
             for column, text in enumerate(texts):
                 item = QtWidgets.QTableWidgetItem(text if column == 0 else for_pictures(text))
                 item.setToolTip(item.text())
@@ -193,7 +193,7 @@ class ContributionsPanel(QtWidgets.QWidget):
                     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 self.table.setItem(number, column, item)
             self.table.item(number, 0).setIcon(_swatch(COLOURS[min(number, MAX_ARROWS - 1)]))
-            self.table.item(number, 0).setToolTip(f"{one.name}: {phase:+.0f}° from the sum; own peak at {peak or 'no place'}")
+            self.table.item(number, 0).setToolTip(f"{one.name}: {phase:+z.0f}° from the sum; own peak at {peak or 'no place'}")
         self.table.blockSignals(False)
 
     def _row_chosen(self) -> None:

@@ -223,7 +223,7 @@ class MapArea(QtWidgets.QWidget):
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
         title = title_of(self.session.parts[key]) if self.session.has_map else NO_MAP
         told = f"{level:.1f} dBm" if level > NOTHING_DBM else "no signal"
-        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+.2f} m/s   {told}   ({title})"))
+        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {told}   ({title})"))
 
     def set_view(self, view: QtCore.QRectF) -> None:
         """What all maps show: a rectangle of range in m and velocity in m/s."""

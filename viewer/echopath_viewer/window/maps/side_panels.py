@@ -177,7 +177,7 @@ class _AnglePanel(SidePanel):
         self.session.select_beam(x_index, *angles)
 
     def words_of(self, x: float, y: float, level: float) -> str:
-        return for_pictures(f"{x:.2f} m   {y:+.1f}\u00b0   {level:.1f} dBm")
+        return for_pictures(f"{x:.2f} m   {y:+z.1f}\u00b0   {level:.1f} dBm")
 
 
 class AzimuthPanel(_AnglePanel):
@@ -237,7 +237,7 @@ class SpectrogramPanel(SidePanel):
         session.set_chirp(round(1e-3 * float(self.map.x[x_index]) / period))
 
     def words_of(self, x: float, y: float, level: float) -> str:
-        return for_pictures(f"{x:.2f} ms   {y:+.2f} m/s   {level:.1f} dBm")
+        return for_pictures(f"{x:.2f} ms   {y:+z.2f} m/s   {level:.1f} dBm")
 
 
 class BeatPanel(SeenPanel):

@@ -8,7 +8,7 @@ from echopath.signals.measures import for_pictures
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 COLUMNS = ("Bounces", "Range in m", "Speed in m/s", "Power in dBm", "Hits")
-DECIMALS = {1: "{:.3f}", 2: "{:+.3f}", 3: "{:.1f}"}
+DECIMALS = {1: "{:.3f}", 2: "{:+z.3f}", 3: "{:.1f}"}
 POWER = 3
 STRONGEST_FIRST = (POWER, Qt.SortOrder.DescendingOrder)
 WIDTHS = (60, 78, 90, 96)  # pixels; the last column has the rest

@@ -104,6 +104,15 @@ class TimeControl(QtCore.QObject):
         if not self.work.is_running:
             self._start(place)
 
+    def reload(self) -> None:
+        """Finds frames that were written since, and reads that on display anew."""
+        if self.line is None:
+            return
+        self.look()
+        if len(self.line) and not self.work.is_running:
+            self._wanted = self.place
+            self._start(self.place)
+
     def look(self) -> None:
         """Finds frames that were written since."""
         if getattr(self.line, "failure", ""):

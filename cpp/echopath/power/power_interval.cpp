@@ -17,7 +17,7 @@ constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // 
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
 constexpr double kMostOfImage = 2.0;
-constexpr double kOfNearEdge = 0.15;  // 1.2 dB: a straight edge is known to 1.1
+constexpr double kOfEndless = 0.03;  // 0.26 dB, twice the most that polygons of random shapes and places err by
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kFewCells = 600.0;
@@ -104,7 +104,7 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     points += squared(missing_of_points(kind, evidence.num_batches));
     const double smoothness = smoothness_of_edges(kind);
     const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
-    if (lasting == Lasting::kCounted) surface += squared(kOfNearEdge) * kind.beside_edges;
+    if (lasting == Lasting::kCounted) surface += squared(kOfEndless) * kind.endless_with_edges;
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
     const double most_of_edges = squared(most_of(kind));
     if (size == 0.0) {

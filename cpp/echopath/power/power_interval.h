@@ -25,7 +25,7 @@ struct CoherentKind {
   double image_field = INFINITY;              // sqrt(W), what an endless mirror would send back over the shortest path
   double rims_at_most = INFINITY;             // sqrt(W), of the rims of flat facets (mesh_views.h)
   double facet_phase = 0.0;                   // rad, by which the facets stray from a smooth surface (facet_phase.h)
-  double beside_edges = 0.0;                  // W, sum of |a|^2 of images beside the edge of a plane (kBesideEdge)
+  double endless_with_edges = 0.0;            // W, sum of |a|^2 that images beside edges (kBesideEdge) had of endless planes
   bool has_cells = false;                     // else its paths are images
   bool has_bounced = false;                   // off other surfaces before, flagged mirrors aside
 };
@@ -100,7 +100,7 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
 //      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
 //      rays closer than facets see another field than rays farther apart. Images are exact, but for those beside the edge of
-//      an unflagged plane, whose fields are known to kOfNearEdge of each.
+//      an unflagged plane, whose fields are known to kOfEndless of what each had of endless planes.
 // Sums over kinds: the changes (1) add up as fields, but to no less than their root sum of squares, and all other terms as
 // powers, so that kinds whose echoes cancel are known as well as they are one by one. (1) and (2) measure one error: of
 // their two squares the smaller one counts by half. What more rays hardly mend is (7), but for its first term, and the

@@ -1,5 +1,6 @@
 #pragma once
 // Holds the record of a trace: what every ray touched. It is immutable after the trace; selections share the hits.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <complex>
@@ -61,9 +62,17 @@ inline constexpr uint32_t kEdgePath = 4;
 inline constexpr uint32_t kPastEdge = 32;
 // Marks a diffuse path that counts for others, too, which were left out by lot (power/faint_paths.h).
 inline constexpr uint32_t kStandsForOthers = 64;
-// Marks an image over planes that nobody flagged of which one ends near the point of reflection: its field is known as well
-// as field_of_flat_mirror tells it (trace/mirrors/mirror_zone.h).
+// Marks an image over planes that nobody flagged of which one ends within 16 half zones of the point of reflection
+// (trace/mirrors/mirror_zone.h). Its flags also hold the share that the edges leave of the field of endless planes.
 inline constexpr uint32_t kBesideEdge = 128;
+inline constexpr double kSharesOfEndless = 4096.0;
+// Returns the flags of such a path, and from them the share, to 1/4096 and no less than that.
+constexpr uint32_t beside_edge_flags(double share) {
+  return kBesideEdge | static_cast<uint32_t>(std::clamp(kSharesOfEndless * share + 0.5, 1.0, 65535.0)) << 16;
+}
+constexpr double share_of_endless(uint32_t flags) {
+  return flags & kBesideEdge ? std::max(flags >> 16, 1u) / kSharesOfEndless : 1.0;
+}
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
   return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
@@ -156,7 +165,8 @@ struct Paths {
   std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
   std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
-  // bits: kReversedPath, kSecondHalf with turn_flags, kStandsForOthers, kBesideEdge, kEdgePath with edge_flags
+  // bits: kReversedPath, kSecondHalf with turn_flags, kStandsForOthers, kBesideEdge with beside_edge_flags, kEdgePath with
+  // edge_flags
   std::vector<uint32_t> flags;
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.

@@ -17,8 +17,11 @@ constexpr double kFades = 8.0, kFaded = 16.0;
 constexpr int kDirections = 64;
 constexpr double kHalfCell = kPi / kDirections;
 
-// The edges in three neighbouring directions are one straight edge where their closeness is off by no more than this share.
-constexpr double kStraight = 0.02;
+const double kCosCell = std::cos(2.0 * kHalfCell), kSinCell = std::sin(2.0 * kHalfCell);
+
+// The edges in three neighbouring directions are one where their closeness is off that of a straight one by no more than
+// this share: circles about the point have half of it.
+constexpr double kRound = 0.02;
 
 // Returns the direction and distance by which the lit point of the target moves when the point of the mirror moves by 1 m
 // along the axis.
@@ -158,16 +161,12 @@ class EdgesAround {
     }
   }
 
-  bool any_within(double distance) const {
-    return std::ranges::any_of(closeness_, [&](double closeness) { return closeness * distance > 1.0; });
-  }
-
   // Returns the share of the field that the mirror loses at them.
   std::complex<double> lost_field() const {
     std::complex<double> sum = 0.0;
     for (int k = 0; k < kDirections; ++k) {
       if (closeness_[k] == 0.0) continue;
-      for (const int side : {1, -1}) sum += field_of_half_cell(closeness_[k], slope(k, side), turn_[k]);
+      for (const int side : {1, -1}) sum += field_of_half_cell(edge_beside(k, side), turn_[k]);
     }
     return sum / (2.0 * kDirections);
   }
@@ -175,35 +174,40 @@ class EdgesAround {
  private:
   double at(int k) const { return closeness_[(k + kDirections) % kDirections]; }
 
-  // Returns whether the edges in a direction and in both that neighbour it are one straight edge, whose closeness goes as a
-  // sine of the angle.
-  bool is_straight(int k) const {
-    const double before = at(k - 1), here = at(k), behind = at(k + 1);
-    if (before == 0.0 || here == 0.0 || behind == 0.0) return false;
-    return std::abs(before + behind - 2.0 * std::cos(2.0 * kHalfCell) * here) < kStraight * here;
+  // Holds how close an edge is at an angle from a direction on: here cos + slope sin + round (1 - cos). It is straight
+  // where `round` is zero, and an arc about the point where slope is zero and `round` is `here`.
+  struct Edge {
+    double here, slope, round;
+  };
+
+  // Returns by how much the closeness in the directions before and behind one is more than that of one straight edge.
+  double roundness(int k) const { return at(k - 1) + at(k + 1) - 2.0 * kCosCell * at(k); }
+
+  // Returns whether the edges in a direction and in both that neighbour it are one, straight or round.
+  bool is_one_edge(int k) const {
+    return at(k - 1) > 0.0 && at(k) > 0.0 && at(k + 1) > 0.0 && std::abs(roundness(k)) < kRound * at(k);
   }
 
-  // Returns by how much the closeness of the edge in a direction grows per radian toward a side: by the edge in the next
-  // direction there where both are one, else, before a corner, by the one on the other side.
-  double slope(int k, int side) const {
+  // Returns the edge from a direction on toward a side: that through both neighbours where all three are one, else that on
+  // to the next direction where both are one, else, before a corner, that on the other side.
+  Edge edge_beside(int k, int side) const {
     const double here = at(k), next = at(k + side), other = at(k - side);
-    const bool goes_on = next > 0.0 && (other == 0.0 || is_straight(k) || is_straight(k + side));
-    const auto toward = [&](double neighbour) {
-      return (neighbour - here * std::cos(2.0 * kHalfCell)) / std::sin(2.0 * kHalfCell);
-    };
-    if (goes_on) return toward(next);
-    return other > 0.0 ? -toward(other) : 0.0;
+    if (is_one_edge(k)) return {here, (next - other) / (2.0 * kSinCell), roundness(k) / (2.0 - 2.0 * kCosCell)};
+    const auto toward = [&](double neighbour) { return (neighbour - here * kCosCell) / kSinCell; };
+    if (next > 0.0 && (other == 0.0 || is_one_edge(k + side))) return {here, toward(next), 0.0};
+    return {here, other > 0.0 ? -toward(other) : 0.0, 0.0};
   }
 
-  // Returns the mean field of a straight edge over the angles from a direction to the end of its cell, of those that fade;
-  // `turn`: rad, of the phase over the square of the distance.
-  static std::complex<double> field_of_half_cell(double closeness, double slope, double turn) {
+  // Returns the mean field of an edge over the angles from a direction to the end of its cell, of those that fade; `turn`:
+  // rad, of the phase over the square of the distance.
+  static std::complex<double> field_of_half_cell(const Edge& edge, double turn) {
     const auto distance = [&](double angle) {
       const double square = angle * angle;  // of which a half cell needs no more terms
-      const double cosine = 1.0 - square / 2.0 * (1.0 - square / 12.0), sine = angle * (1.0 - square / 6.0);
-      return 1.0 / std::max(closeness * cosine + slope * sine, 1.0 / kFaded);
+      const double sunk = square / 2.0 * (1.0 - square / 12.0), sine = angle * (1.0 - square / 6.0);
+      return 1.0 / std::max(edge.here * (1.0 - sunk) + edge.slope * sine + edge.round * sunk, 1.0 / kFaded);
     };
-    // In each step the phase goes by a straight line from end to end, which its middle misses by an eighth of a radian at most.
+    // In each step the phase goes by a straight line from end to end, which its middle misses by an eighth of a radian at
+    // most.
     const double first = distance(0.0), middle = distance(0.5 * kHalfCell), last = distance(kHalfCell);
     const double bend = turn * std::abs(first * first + last * last - 2.0 * middle * middle);
     const int steps = 1 + static_cast<int>(std::min(2.0 * std::sqrt(bend) + std::abs(last - first), kMostSteps));
@@ -262,12 +266,11 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
   return cover;
 }
 
-FlatMirrorField field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                     int64_t& num_queries) {
+std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
+                                          int64_t& num_queries) {
   const SurfaceAround mirror(geometry, view.point, geometry.plane_tolerance(wavelength), num_queries);
-  if (mirror.holds_circle(ample_squared(view, wavelength, kFaded))) return {};
-  const EdgesAround edges(mirror, view, wavelength);
-  return {1.0 - edges.lost_field(), edges.any_within(kAmple)};
+  if (mirror.holds_circle(ample_squared(view, wavelength, kFaded))) return 1.0;
+  return 1.0 - EdgesAround(mirror, view, wavelength).lost_field();
 }
 
 // Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.

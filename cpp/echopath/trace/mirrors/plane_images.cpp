@@ -154,9 +154,10 @@ bool PlaneImages::is_known(Facets chain, const std::vector<Vec3>& points) {
   return false;
 }
 
-// Returns the field that the edges of its surfaces leave of a path; nothing where one does not cover its Fresnel zone.
-std::optional<FlatMirrorField> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
-  FlatMirrorField field;
+// Returns the share of its field that the edges of its surfaces leave to a path; nothing where one does not cover its
+// Fresnel zone.
+std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
+  std::complex<double> field = 1.0;
   double whole = (settings_.receiver - path.points.back()).norm(), before = 0.0;
   for (size_t k = 0; k < path.points.size(); ++k)
     whole += (path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1])).norm();
@@ -169,9 +170,7 @@ std::optional<FlatMirrorField> PlaneImages::field_beside_edges(const ImagePath& 
     point.normal = lit_normal(line, planes_[k].normal);
     const MirrorView view{point, line.normalized(), before, whole - before};
     if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
-    const FlatMirrorField of_plane = field_of_flat_mirror(geometry_, view, wavelength_, num_queries);
-    field.of_endless *= of_plane.of_endless;
-    field.has_edge = field.has_edge || of_plane.has_edge;
+    field *= field_of_flat_mirror(geometry_, view, wavelength_, num_queries);
   }
   return field;
 }
@@ -208,14 +207,14 @@ PathBlock PlaneImages::find(const Job* job) {
     std::optional<ImagePath> path = images.path_over(sequence);
     block.statistics.num_queries += images.num_queries();
     if (!path) continue;
-    const std::optional<FlatMirrorField> field = field_beside_edges(*path, block.statistics.num_queries);
-    if (!field) continue;
-    path->weight *= field->of_endless;
+    const std::optional<std::complex<double>> share = field_beside_edges(*path, block.statistics.num_queries);
+    if (!share) continue;
+    path->weight *= *share;
     if (!bounces_at_corner(path->points)) path->share = 1.0;
     const std::vector<int> planes = joined(sequence);
     if (!sequences_.insert(planes).second) continue;
     add_path(*path, block);
-    if (field->has_edge) block.rows.flags[block.rows.size() - 1] |= kBesideEdge;
+    if (*share != 1.0) block.rows.flags[block.rows.size() - 1] |= beside_edge_flags(std::abs(*share));
     leave_out(planes, path->points);
   }
   find_triangles();

@@ -50,7 +50,7 @@ class PlaneImages {
   void sort_chains();
   std::vector<int> planes_of(Facets chain);
   bool is_known(Facets chain, const std::vector<Vec3>& points);
-  std::optional<FlatMirrorField> field_beside_edges(const ImagePath& path, int64_t& num_queries) const;
+  std::optional<std::complex<double>> field_beside_edges(const ImagePath& path, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
   void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points);

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from .rates import radar_rate
+
 CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
 
 
@@ -18,6 +20,12 @@ def middle_of_antennas(radar, time: float):
     """[3] m, in the world at a time in s: `centre_of`."""
     world_from_radar = radar.world_from_radar(time)
     return world_from_radar[:3, :3] @ centre_of(radar) + world_from_radar[:3, 3]
+
+
+def velocity_of_antennas(radar, time: float):
+    """[3] m/s, in the world at a time in s, of `centre_of`: with what the turning of the radar's frame adds."""
+    rate = radar_rate(radar, time)
+    return rate[:3, :3] @ centre_of(radar) + rate[:3, 3]
 
 
 def look_of(antenna) -> tuple:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arguments.checks import array, refused
 from ..arguments.iterables import iterable
-from ..base.rates import radar_rate
+from ..base.antennas import velocity_of_antennas
 from ..detections import Detections
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
@@ -47,7 +47,7 @@ class Points:
 class Carrier:
     """What carries the points of a radar into the world at a time.
 
-    world_from_radar: [4, 4]; velocity: [3] m/s, of the radar in the world; ambiguity: m/s, of its radial velocities
+    world_from_radar: [4, 4]; velocity: [3] m/s, of its antennas in the world; ambiguity: m/s, of its radial velocities
     """
 
     world_from_radar: np.ndarray
@@ -58,7 +58,7 @@ class Carrier:
 def carrier_of(radar, time: float) -> Carrier:
     """Of a radar at a time in s."""
     ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
-    return Carrier(radar.world_from_radar(time), radar_rate(radar, time)[:3, 3], ambiguity)
+    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity)
 
 
 def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float | None,

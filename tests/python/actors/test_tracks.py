@@ -175,6 +175,23 @@ def test_a_speed_that_the_ambiguity_hides_is_taken_from_the_places():
     assert tracks.state[-1, 2:] == pytest.approx([15.0, 0.0], abs=0.05)
 
 
+def test_what_stands_stands_for_antennas_ahead_of_the_axle_that_turns():
+    """Antennas that go around at 0.5 rad/s, 4 m from the axis, move at 2 m/s sideways: the closed form of a circle."""
+    turning, centre, post = 0.5, np.array([4.0, 0.0]), np.array([20.0, 15.0])
+    radar = radar_of(100.0).replace(transmitters=[ep.Antenna((4, 0, 0))], receivers=[ep.Antenna((4, 0, 0))], speed=None,
+                                    motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, turning)))
+    angles = turning * TIMES
+    ahead, left = (np.stack([np.cos(angle), np.sin(angle)], axis=1) for angle in (angles, angles + 0.5 * np.pi))
+    way = post - centre[0] * ahead
+    speeds = -np.sum(way * left, axis=1) / np.linalg.norm(way, axis=1) * turning * centre[0]
+    own = np.stack([np.sum(way * ahead, axis=1), np.sum(way * left, axis=1)], axis=1)
+    found = [found_at([point], [speed], (*centre, 0.0)) for point, speed in zip(own, speeds)]
+    tracks = ep.track(found, TIMES, radar=radar, velocity_std=0.05)
+    assert tracks.num_tracks == 1
+    assert np.abs(tracks.state[:, 2:]).max() < 0.05
+    np.testing.assert_allclose(tracks.state[:, :2] - post, 0.0, atol=0.05)
+
+
 # --- assignment ---
 
 def test_the_assignment_is_the_best_one():

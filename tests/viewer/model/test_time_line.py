@@ -114,6 +114,20 @@ def test_tracks_stand_still_before_a_radar_that_was_moved_between_files(stored_r
     assert track_values(tracks, glances, "velocity") == pytest.approx(np.zeros(3), abs=1e-6)
 
 
+def test_ranges_and_velocities_of_tracks_count_from_the_antennas(stored_run):
+    """Antennas 4 m ahead of the middle of a car that turns on the spot go sideways by 4 m times its rate: at a right angle to
+    what stands 5 m ahead of them, and by half of it towards what stands 30 degrees to their left."""
+    turning = 0.5
+    radar = stored_run.radar.replace(transmitters=[ep.Antenna((4, 0, 0))], receivers=[ep.Antenna((4, 0, 0))],
+                                     motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, turning)))
+    glances = [glance_of(0.0, radar, 5.0, stored_run[0].detections)]
+    state = np.array([[9.0, 0.0, 0.0, 0.0], [4.0 + 5.0 * np.cos(np.pi / 6), 2.5, 0.0, 0.0]])
+    tracks = ep.Tracks(track=np.arange(2, dtype=np.int32), frame=np.zeros(2, np.int32), time=np.zeros(2), state=state,
+                       covariance=np.zeros((2, 4, 4)), is_detected=np.ones(2, bool), object=np.array(["", ""]))
+    assert track_values(tracks, glances, "range") == pytest.approx([5.0, 5.0], rel=0, abs=1e-9)
+    assert track_values(tracks, glances, "velocity") == pytest.approx([0.0, -0.5 * 4.0 * turning], rel=0, abs=1e-6)
+
+
 def test_velocities_of_tracks_need_no_motion_beyond_the_last_frame(stored_run):
     """Towards what stands still, a radar of 3 m/s whose keyframes end with the last frame sees -3 m/s."""
     times = 0.2 * np.arange(3)

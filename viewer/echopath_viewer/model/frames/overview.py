@@ -6,8 +6,8 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.base.antennas import middle_of_antennas, velocity_of_antennas
 from echopath.base.decibels import SMALLEST_POWER, in_dbm
-from echopath.base.rates import radar_rate
 from echopath.base.rotations import quaternions
 from echopath.frame_file.container import our_file
 from echopath.frame_file.detections import read_detections
@@ -88,20 +88,19 @@ def _radar_of_all(glances, times):
 
 
 def track_values(tracks, glances, axis: str):
-    """[N], range in m or radial velocity in m/s from the middle of the radar of each row of tracks.
+    """[N], range in m or radial velocity in m/s from the middle of the antennas of each row of tracks.
 
     glances: those that the tracks are of
     """
     radars, times = [glances[frame].radar for frame in tracks.frame], np.asarray(tracks.time)
-    way = tracks.state[:, :2] - _origins(radars, times)
+    way = tracks.state[:, :2] - _for_each(middle_of_antennas, radars, times)
     distance = np.linalg.norm(way, axis=1)
     if axis == "range":
         return distance
-    own = np.array([radar_rate(radar, float(time))[:2, 3] for radar, time in zip(radars, times)]).reshape(-1, 2)
+    own = _for_each(velocity_of_antennas, radars, times)
     return np.einsum("ni,ni->n", way, tracks.state[:, 2:] - own) / np.maximum(distance, 1e-9)
 
 
-def _origins(radars, times):
-    """[N, 2] m, x and y in the world."""
-    frames = [np.asarray(radar.world_from_radar(float(time))) for radar, time in zip(radars, times)]
-    return np.array([frame[:2, 3] for frame in frames]).reshape(-1, 2)
+def _for_each(of_radar, radars, times):
+    """[N, 2], x and y of what `of_radar` gives in the world for each radar and time in s."""
+    return np.array([of_radar(radar, float(time))[:2] for radar, time in zip(radars, times)]).reshape(-1, 2)

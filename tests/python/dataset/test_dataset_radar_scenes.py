@@ -116,6 +116,20 @@ def test_velocities_and_cross_sections_are_those_of_the_targets(written):
         assert ClassificationLabel.label_to_clabel(int(walker["label_id"])) == ClassificationLabel.PEDESTRIAN
 
 
+def test_what_stands_stands_for_radars_beyond_their_unambiguous_speed(tmp_path):
+    """At 15 m/s a radar of +-9.7 m/s sees what stands ahead recede at 4.4 m/s."""
+    speed, unambiguous = 15.0, 299792458.0 / 77e9 / 4e-4
+    (tmp_path / "fast.toml").write_text(TEMPLATE.replace("scenes = 4", "scenes = 1").replace("frames = 3", "frames = 1").replace(
+        f"speed = {EGO}\n", f"speed = {speed}\n", 1))
+    list(dataset.make(tmp_path / "fast.toml", tmp_path / "made"))
+    dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    scene, = sequences_of(tmp_path)[0].scenes()
+    points = scene.radar_data[scene.radar_data["label_id"] == Label.STATIC.value]
+    ball = points[np.argmax(points["rcs"])]
+    assert ball["vr"] == pytest.approx(2.0 * unambiguous - speed * np.cos(ball["azimuth_sc"]), abs=VELOCITY_CELL)
+    assert abs(ball["vr_compensated"]) < VELOCITY_CELL
+
+
 def test_tracks_last_over_the_frames_of_a_scene_alone(written):
     tracks = [{point["track_id"] for point in one.radar_data if point["label_id"] == Label.PEDESTRIAN.value}
               for one in sequences_of(written)]

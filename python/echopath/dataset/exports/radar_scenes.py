@@ -71,7 +71,7 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
         existence_probability 0
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
     the radar equation with the gains of the first antennas), vr and vr_compensated (m/s, receding positive; the second without
-    the radar's own motion), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
+    the radar's own motion, the smallest of those that look the same), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
     clutter), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its
     class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its
     object.
@@ -134,7 +134,8 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     rows["timestamp"] = round(MICRO * time)
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
     rows["rcs"] = cross_sections_dbsm(found, radar, time)
-    rows["vr"], rows["vr_compensated"] = found.velocity, found.velocity - _own_velocity(found, own, pose)
+    rows["vr"] = found.velocity
+    rows["vr_compensated"] = _folded(found.velocity - _own_velocity(found, own, pose), radar)
     rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
     rows["uuid"] = [_identity(number, index) for index in range(len(found))]
     rows["track_id"] = ["" if kind == "static" else _identity(scene, name) for kind, name in zip(kinds, found.object)]
@@ -148,6 +149,12 @@ def _own_velocity(found: Detections, own: NDArray[np.float64], pose: _Pose) -> N
     ways = own - found.centre
     directions = ways / np.linalg.norm(ways, axis=1, keepdims=True)
     return np.asarray(-directions @ pose.velocity_of(found.centre))
+
+
+def _folded(velocities: NDArray[np.float64], radar: Any) -> NDArray[np.float64]:
+    """The smallest of the velocities in m/s that look the same to a radar: what stands, stands at any speed of the radar."""
+    ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
+    return np.asarray(velocities - ambiguity * np.rint(velocities / ambiguity))
 
 
 def _identity(*parts: object) -> str:

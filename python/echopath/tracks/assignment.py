@@ -9,9 +9,31 @@ def assigned(cost, limit: float) -> list[tuple[int, int]]:
 
     cost: [N, M]; pairs of a cost above the limit are never made
     """
-    num_rows, num_columns = cost.shape
-    if not num_rows or not num_columns:
+    if not np.size(cost):
         return []
+    pairs = []
+    for rows, columns in _linked(cost <= limit):
+        pairs += [(int(rows[row]), int(columns[column])) for row, column in _assigned_among(cost[np.ix_(rows, columns)], limit)]
+    return sorted(pairs)
+
+
+def _linked(is_possible) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(rows, columns) of each set that chains of possible pairs [N, M] link: gates leave many small ones, and the work grows with
+    the third power of their size."""
+    of_row = np.arange(len(is_possible))
+    while True:
+        of_column = np.where(is_possible, of_row[:, None], len(of_row)).min(axis=0)
+        lowest = np.minimum(of_row, np.where(is_possible, of_column, len(of_row)).min(axis=1))
+        if np.array_equal(lowest, of_row):
+            break
+        of_row = lowest
+    sets = np.unique(of_column[of_column < len(of_row)])
+    return [(np.flatnonzero(of_row == one), np.flatnonzero(of_column == one)) for one in sets]
+
+
+def _assigned_among(cost, limit: float) -> list[tuple[int, int]]:
+    """`assigned` of a set."""
+    num_rows, num_columns = cost.shape
     alone = np.full((num_rows, num_rows), limit)
     beyond = 4.0 * num_rows * (abs(limit) + 1.0) + np.abs(cost[cost <= limit]).sum()  # dearer than leaving every row alone
     column_of_row = hungarian(np.hstack([np.where(cost <= limit, cost, beyond), alone]))

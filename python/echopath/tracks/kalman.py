@@ -65,7 +65,7 @@ class Filter:
     def _take(self, found: Points, index: int, first: int) -> None:
         """Takes of a point what is measured from x (0), y (1) or the speed (2) on, by the form of Joseph, which keeps the
         covariance symmetric and positive."""
-        rows, innovation, noise, tells = (values[0] for values in self._measured(found.one(index)))
+        rows, innovation, noise, tells = (values[0] for values in self._measured(found.some([index])))
         kept = slice(first, 3 if tells else 2)
         rows, innovation, noise = rows[kept], innovation[kept], noise[kept, kept]
         gain = np.linalg.solve(rows @ self.covariance @ rows.T + noise, rows @ self.covariance).T

@@ -36,11 +36,10 @@ class Points:
         """Minus twice the log likelihood of a speed of which nothing is known, beside that of a Gaussian without its constant."""
         return 2.0 * math.log(self.ambiguity) - math.log(2.0 * math.pi) if 0.0 < self.ambiguity < math.inf else 0.0
 
-    def one(self, index: int) -> Points:
-        """A single one of them."""
-        some = slice(index, index + 1)
-        return dataclasses.replace(self, points=self.points[some], covariances=self.covariances[some],
-                                   speeds=self.speeds[some], sights=self.sights[some])
+    def some(self, indices) -> Points:
+        """Those at [K] places."""
+        return dataclasses.replace(self, points=self.points[indices], covariances=self.covariances[indices],
+                                   speeds=self.speeds[indices], sights=self.sights[indices])
 
 
 @dataclasses.dataclass(frozen=True)

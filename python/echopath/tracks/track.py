@@ -129,10 +129,22 @@ class _Tracker:
     def _pairs(self, found) -> list:
         if not self._live or not len(found.points):
             return []
-        place, speed, cost = (np.array(values) for values in zip(*(one.filter.fit(found) for one in self._live)))
-        cost = np.where((place <= self._gate) & (speed <= self._gate_of_speed), cost, np.inf)
+        cost = np.full((len(self._live), len(found.points)), np.inf)
+        for row, near in enumerate(self._near(found)):
+            if len(near):
+                place, speed, of_near = self._live[row].filter.fit(found.some(near))
+                cost[row, near] = np.where((place <= self._gate) & (speed <= self._gate_of_speed), of_near, np.inf)
         dearest = float(np.max(cost, where=np.isfinite(cost), initial=0.0))
         return assigned(cost, dearest + self._gate + self._gate_of_speed)  # of a track without any
+
+
+    def _near(self, found) -> list:
+        """The points that may be within the gate of each track: no axis of an ellipse is longer than the root of its trace."""
+        places = np.array([one.filter.state[:2] for one in self._live])
+        traces = np.array([np.trace(one.filter.covariance[:2, :2]) for one in self._live])
+        beyond = np.sum((places[:, None] - found.points) ** 2, axis=2)
+        reach = self._gate * (traces[:, None] + np.trace(found.covariances, axis1=1, axis2=2))
+        return [np.flatnonzero(row) for row in beyond <= reach]
 
 
 def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:
@@ -141,9 +153,11 @@ def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:
     A track keeps its object while it is near it; the rest go together so that their distances are least (the rule of CLEAR
     MOT: Bernardin and Stiefelhagen 2008).
     """
-    names, kept = [""] * len(rows), {}
-    for frame in sorted({row[1] for row in rows}) if truth is not None else []:
-        there, here = truth.of_frame(frame), [index for index, row in enumerate(rows) if row[1] == frame]
+    names, kept, rows_of_frame = [""] * len(rows), {}, {}
+    for index, row in enumerate(rows):
+        rows_of_frame.setdefault(row[1], []).append(index)
+    for frame, here in sorted(rows_of_frame.items()) if truth is not None else []:
+        there = truth.of_frame(frame)
         places = (there.position, there.yaw) if in_world else (there.position_in_radar, there.yaw_in_radar)
         distance = _outline_distances(np.array([rows[index][3][:2] for index in here]), *places, there.size)
         is_kept = np.array([there.name == kept.get(rows[index][0], "") for index in here])

@@ -208,6 +208,24 @@ def test_pairs_beyond_the_limit_are_left_alone():
     assert assigned(np.zeros((0, 3)), 1.0) == [] == assigned(np.zeros((3, 0)), 1.0)
 
 
+def test_gated_pairs_are_assigned_at_the_least_sum():
+    """Against all ways to leave rows alone or give them a column, one after the other."""
+    def least(cost, limit, row=0, taken=frozenset()):
+        if row == len(cost):
+            return 0.0
+        free = [(price, column) for column, price in enumerate(cost[row]) if column not in taken and price <= limit]
+        return min([limit + least(cost, limit, row + 1, taken)]
+                   + [price + least(cost, limit, row + 1, taken | {column}) for price, column in free])
+
+    generator = np.random.default_rng(2)
+    for rows, columns in [(1, 4), (4, 1), (5, 5), (6, 4), (4, 6)] * 20:
+        cost = np.where(generator.random((rows, columns)) < 0.3, generator.uniform(-3.0, 6.0, (rows, columns)), np.inf)
+        pairs = assigned(cost, 4.0)
+        taken = [row for row, _ in pairs], [column for _, column in pairs]
+        assert all(len(set(places)) == len(places) for places in taken)
+        assert cost[taken].sum() + 4.0 * (rows - len(pairs)) == pytest.approx(least(cost, 4.0), abs=1e-9)
+
+
 # --- of a simulated scene ---
 
 @pytest.fixture(scope="module")

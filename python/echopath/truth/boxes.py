@@ -70,6 +70,7 @@ class _Body:
     def __init__(self, named: _NamedScene, globs):
         self._scene, self._nodes, self._meshes = named.scene, named.nodes, named.meshes(globs)
         self._node = named.common_node(globs, self._meshes)
+        self._shared = self._shared_motion()
 
     def box(self, time: float, step: float) -> tuple:
         """One row of Boxes."""
@@ -88,8 +89,9 @@ class _Body:
         return origin + rotation @ centre, high - low, rotation, velocity, spin, origin + gone
 
     def _frame(self, time: float):
-        """World from the object's node [4, 4] without its scale; the world itself for objects that share no node."""
-        transform = np.eye(4)
+        """World from the object's node [4, 4] without its scale, and from where the motion of all its meshes has brought that;
+        the world itself for objects that share no node."""
+        transform = np.eye(4) if self._shared is None else _moved(self._shared, time)
         index = self._node
         while index >= 0:
             node = self._nodes[index]
@@ -122,9 +124,29 @@ class _Body:
                 index = self._nodes[index].parent
         return float(np.clip(0.0, first, last))
 
+    def _shared_motion(self):
+        """The node of one mesh, where all meshes are placed and moved as it is right below the object's node, as those of a
+        trailer are that turns at its hitch; None: there is no such motion."""
+        own = [self._nodes[mesh.node] for mesh in self._meshes if mesh.node != self._node]
+        if self._node < 0 or len(own) < len(self._meshes) or own[0].motion is None:
+            return None
+        groups = [self._nodes[index] for mesh in self._meshes for index in self._above(mesh)]
+        if any(group.motion is not None or not np.array_equal(group.placement, np.eye(4)) for group in groups):
+            return None
+        are_alike = all(node.deformation is None and node.motion == own[0].motion
+                        and np.array_equal(node.placement, own[0].placement) for node in own)
+        return own[0] if are_alike else None
+
+    def _above(self, mesh):
+        """Indices of the nodes between that of a mesh and the object's."""
+        index = self._nodes[mesh.node].parent
+        while index not in (self._node, -1):
+            yield index
+            index = self._nodes[index].parent
+
     def _is_rigid(self) -> bool:
-        """Whether nothing between its node and its meshes moves or deforms by itself."""
-        for mesh in self._meshes:
+        """Whether nothing between its axes and its meshes moves or deforms by itself."""
+        for mesh in self._meshes if self._shared is None else []:
             index = mesh.node
             if self._nodes[index].deformation is not None:
                 return False
@@ -144,3 +166,12 @@ def _placed(node, time: float):
     placed[:3, 3] = node.placement[:3, 3] + step[:3, 3]
     return placed
 
+
+def _moved(node, time: float):
+    """[4, 4], what the motion of a node does to what rests in the axes of its parent."""
+    back = np.eye(4)
+    back[:3, 3] = -node.placement[:3, 3]
+    step = node.motion.at(time)
+    forth = np.eye(4)
+    forth[:3, :3], forth[:3, 3] = step[:3, :3], node.placement[:3, 3] + step[:3, 3]
+    return forth @ back

@@ -91,6 +91,31 @@ def test_objects_of_several_nodes_stand_in_the_axes_above_them():
     assert both.size[0, 1] == pytest.approx(4.0 + np.cos(0.5) + np.sin(0.5))
 
 
+def test_a_trailer_that_turns_at_its_hitch_has_its_own_box():
+    """As long and wide in a curve as in line; where it points, and how fast, by the rigid motion that fits its vertices best."""
+    turn = ep.Trajectory([(50, 20), (20, 20), (20, 60)], turn_radius=8, speed=6, goes_on=2)
+    scene = ep.Scene()
+    scene.add(ep.actors.truck(trajectory=turn), name="truck")
+
+    def vertices(time):
+        return np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes if "/trailer/" in mesh.name])
+
+    def direction(time):  # of a yaw, of Procrustes in the plane: argument of the sum of products of complex numbers
+        before, after = ((points - points.mean(axis=0)) @ [1.0, 1j, 0.0] for points in (vertices(0.0), vertices(time)))
+        return np.pi + np.angle(np.sum(np.conj(before) * after))
+
+    in_line = np.ptp(vertices(0.0), axis=0)
+    found = ep.truth(trace(scene, start_time=5.0, num_rays=200), ["truck/trailer"])
+    time, step = found.time[0], 1e-3
+    assert found.size[0] == pytest.approx(in_line, abs=1e-6)
+    assert np.cos(found.yaw[0] - direction(time)) == pytest.approx(1.0, abs=1e-9)
+    rate = np.angle(np.exp(1j * (direction(time + step) - direction(time - step)))) / (2.0 * step)
+    assert found.angular_velocity[0] == pytest.approx([0.0, 0.0, rate], abs=1e-4)
+    velocity = (vertices(time + step) - vertices(time - step)) / (2.0 * step)
+    arm = found.position[0] - vertices(time).mean(axis=0)
+    assert found.velocity[0] == pytest.approx(velocity.mean(axis=0) + rate * np.array([-arm[1], arm[0], 0.0]), abs=1e-3)
+
+
 def test_names_are_those_of_whole_objects_and_the_scene_is_listed_once(monkeypatch):
     from echopath.truth import boxes
 

@@ -167,7 +167,7 @@ class FrameRun:
         if not has_interference(self.scene, self.trace.effects):
             return None
         with clock("interference"):
-            timed = self.trace.replace(start_time=paths.frame.start_time)
+            timed = self.trace.replace(start_time=paths.frame.start_time, scatterers=paths.frame.scatterers)
             return interference_cube(self._scene_of(paths), self.radar, timed, self.signal.replay, progress)
 
     def _scene_of(self, paths):

@@ -156,6 +156,18 @@ def test_sequences_and_files_keep_it(tmp_path):
         other.save(tmp_path / "all")
 
 
+def test_other_radars_are_scattered_by_the_points_that_a_sequence_keeps():
+    """"auto" is "surface" in sequences, for the ways of other radars, too: their speckle goes on from frame to frame."""
+    scene = ep.Scene(interferers=[ep.Interferer(radar=TONE, offset=1e-7, over="paths")])
+    scene.add(ep.actors.plate(2.0, 2.0), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0),
+              position=(20, -6, 0), yaw=0.5 * np.pi)
+    kept, anew = (ep.Sequence(scene, victim(**SLOW), frames=1, interval=0.1, num_rays=2000, max_bounces=2, scatterers=scatterers,
+                              guard=False)[0].interference_cube for scatterers in ("surface", "rays"))
+    found = ep.Sequence(scene, victim(**SLOW), frames=1, interval=0.1, num_rays=2000, max_bounces=2, guard=False)[0]
+    np.testing.assert_array_equal(found.interference_cube, kept)
+    assert np.abs(anew - kept).max() > SHARE * np.abs(kept).max()
+
+
 CHIRPS = "{start_frequency = 77e9, num_samples = 64, sampling_rate = 20e6, num_chirps = 8, chirp_interval = 2e-5, bandwidth = "
 SCENE_FILE = f"""[radar]
 waveform = {CHIRPS} 1e9}}

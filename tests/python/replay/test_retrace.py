@@ -54,6 +54,19 @@ def test_what_comes_in_the_way_takes_its_echoes_out():
 
 
 @pytest.mark.hard
+def test_stretches_of_staggered_chirps_begin_at_their_slots():
+    """What comes closer, and which nothing hides, has the phase of the times at which the chirps are: 2.8 rad a slot."""
+    scene = ep.Scene()
+    scene.add(facing(0.05, 0.05), name="target", material=ROUGH, position=(20, 0, 0), speed=-30.0)
+    waveform = radar_of(num_chirps=23).waveform.replace(extra_idle=(0.0, 7e-5, 2e-5, 4e-5, 1e-5))
+    radar = radar_of().replace(waveform=waveform, transmitters=[ep.Antenna(), ep.Antenna((0, 0.004, 0))])
+    paths = ep.trace(scene, radar, num_rays=500, max_bounces=1)
+    never = ep.synthesize(paths, radar, evaluate="chirps")
+    for keyframes in (1, 4, 23):
+        renewed = ep.synthesize(paths, radar, evaluate="chirps", retrace="invalid", keyframes=keyframes)
+        assert np.abs(renewed - never).max() < 1e-5 * np.abs(never).max()
+
+
 def test_a_scene_at_rest_keeps_its_bits():
     radar = radar_of(num_chirps=12)
     scene = ep.Scene()

@@ -16,6 +16,12 @@ namespace {
 // Returns a seed that gives each look directions and random phases of its own.
 uint64_t seed_of_search(uint64_t seed, int look) { return seed + 0x9e3779b97f4a7c15u * (static_cast<uint64_t>(look) + 1); }
 
+// Has idle times that repeat from slot to slot begin with that of a slot.
+void begin_with(int64_t slot, std::vector<double>& extra_idle) {
+  if (extra_idle.empty()) return;
+  std::rotate(extra_idle.begin(), extra_idle.begin() + slot % std::ssize(extra_idle), extra_idle.end());
+}
+
 bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
 
 // Takes out the paths that a trace at another time could have had, too.
@@ -31,16 +37,16 @@ void take_out(const Radar& radar, double time, Paths& found, Job* job, KeptGeome
 std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int count) {
   const int num_chirps = radar.waveform.num_chirps;
   require(count >= 1 && count <= num_chirps, "keyframes", "must lie in [1, num_chirps]", count);
-  require(radar.waveform.extra_idle.empty(), "radar.waveform.extra_idle", "must be empty with keyframes, values",
-          radar.waveform.extra_idle.size());
   std::vector<Stretch> stretches;
   for (int i = 0; i < count; ++i) {
     const auto bound = [&](int64_t k) { return static_cast<int>(k * num_chirps / count); };
     Stretch stretch;
     stretch.first_chirp = bound(i);
-    stretch.start_time = start_time + radar.waveform.slot_start(int64_t{stretch.first_chirp} * radar.num_slots());
+    const int64_t first_slot = int64_t{stretch.first_chirp} * radar.num_slots();
+    stretch.start_time = start_time + radar.waveform.slot_start(first_slot);
     stretch.radar = radar;
     stretch.radar.waveform.num_chirps = bound(i + 1) - bound(i);
+    begin_with(first_slot, stretch.radar.waveform.extra_idle);
     stretch.middle = stretch.radar.middle_of_frame(stretch.start_time);
     stretches.push_back(std::move(stretch));
   }

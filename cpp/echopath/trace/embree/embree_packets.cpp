@@ -96,6 +96,7 @@ RayHit EmbreeScene::PacketHits::operator[](int lane) const {
   hit.position = position[lane];
   hit.normal = normal[lane];
   hit.distance = distance[lane];
+  hit.reported = reported[lane];
   hit.stretch = stretch[lane];
   hit.is_smooth = is_smooth[lane];
   if (hit.is_smooth) hit.curvature = curvature[lane];
@@ -131,6 +132,9 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   queries_->intersect(valid, queries, PacketWay::kTogether);
   take(queries.hit, out.met);
   name_hits(out.met);
+  for (int lane = 0; has_sheets_ && lane < kPacketSize; ++lane) {
+    out.reported[lane] = double{queries.ray.tfar[lane]} + way_up(unpacked(from), directions.at(lane), reach_);
+  }
   if (std::ranges::none_of(out.met, is_met)) return out.verdicts.fill(Verdict::kMiss);
   PacketFacets facets;
   LaneValues is_close;

@@ -134,6 +134,7 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const RayStart& st
   queries_->intersect(query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
   out.hit = named(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v);
+  out.reported = double{query.ray.tfar} + direction.dot(start.at - from);
   return confirm(from, direction, out);
 }
 

@@ -21,6 +21,7 @@ struct RayHit {
   Vec3 position;          // rebuilt in double from (u, v), relative to the origin; on the curved surface where it is smooth
   Vec3 normal;            // unit, flipped against the ray
   double distance = 0.0;  // m, along the ray
+  double reported = 0.0;  // m, likewise, as Embree has it in single precision: farther off, the more the ray grazes
   bool is_smooth = false;
   double stretch = 1.0;
   Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth/smooth.h); only where smooth
@@ -72,9 +73,11 @@ class EmbreeScene {
   // Finds the closest hit from a point on a surface within `reach` (m). Short rays are quicker, because they miss most of
   // the scene. A hit may lie a little farther than `reach`.
   Verdict intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out, Sees sees) const;
-  // Returns the distance along a ray, m, at which to continue it behind a hit at `distance` (m), so that it does not meet
-  // the same surface again.
-  double behind(double distance) const { return distance * (1.0 + 0x1.0p-20) + 2.0 * lift_; }
+  // Returns the distance along a ray, m, at which to continue it behind a hit, so that it does not meet the same surface
+  // again: for Embree that lies at `reported` (m), not at `distance`.
+  double behind(double distance, double reported) const {
+    return std::max(distance, reported) * (1.0 + 0x1.0p-20) + 2.0 * lift_;
+  }
   bool has_sheets() const { return has_sheets_; }
   bool is_sheet(uint32_t mesh_id) const { return meshes_.is_sheet(mesh_id); }
   // Holds what the rays of a packet meet, lane by lane.
@@ -83,6 +86,7 @@ class EmbreeScene {
     std::array<Hit, kPacketSize> met;
     LaneVectors position, normal;
     LaneValues distance, stretch;
+    LaneValues reported{};  // m, where the scene has sheets
     LaneFlags is_smooth{};
     std::array<Mat3, kPacketSize> curvature;
 

@@ -88,7 +88,7 @@ bool PacketFront::trace_behind_sheets(FirstHits& first, TraceStatistics& statist
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const bool is_at_sheet = lane < first.count && first.hits.verdicts[lane] == EmbreeScene::Verdict::kHit &&
                              context_.geometry.is_sheet(first.hits.met[lane].mesh_id);
-    begins[lane] = is_at_sheet ? context_.geometry.behind(first.hits.distance[lane]) : -1.0;
+    begins[lane] = is_at_sheet ? context_.geometry.behind(first.hits.distance[lane], first.hits.reported[lane]) : -1.0;
     num_rays += is_at_sheet;
   }
   if (num_rays == 0) return false;

@@ -200,7 +200,7 @@ void RayWalk<Weight>::go_on_among_sheets(const ScatterSample& sample, Scratch& s
     }
     reflect_at_sheet(met, scratch, block);
     ++scratch.ray.num_splits;
-    begin = context_.geometry.behind(met.distance);
+    begin = context_.geometry.behind(met.distance, met.reported);
   }
 }
 

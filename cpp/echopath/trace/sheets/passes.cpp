@@ -38,7 +38,7 @@ class SheetScene {
     met.hit.mesh_id = ids_[met.hit.mesh_id];
     return true;
   }
-  double behind(double distance) const { return geometry_.behind(distance); }
+  double behind(const RayHit& met) const { return geometry_.behind(met.distance, met.reported); }
 
  private:
   Scene scene_;
@@ -116,9 +116,10 @@ class PassFinder {
     int count = 0;
     double begin = 0.0;
     while (sheets_.meets(from, direction, begin, met) && met.distance < length) {
-      begin = sheets_.behind(met.distance);
+      begin = sheets_.behind(met);
       if (++count > kMostPasses) {
         paths_.weight[path] = 0.0f;
+        if (!paths_.jones.empty()) paths_.jones[path] = {};
         ++block.num_stopped;
         return;
       }

@@ -34,12 +34,14 @@ bool TriangleRim::is_beyond(const Vec3& from, double squared) const {
   return true;
 }
 
-// Returns where something that rises from the surface stands in the way, or `reach` if nothing is nearer.
+// Returns where something that rises from the surface stands in the way, or `reach` if nothing is nearer. Beside a plane, a
+// surface that bends up from it by little is not such.
 double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   RayHit met;
   ++num_queries_;
   const bool meets = geometry_.intersect_near(above(along, 0.0), along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
-  return meets ? std::min(met.distance, reach) : reach;
+  if (!meets || (extent_ == Extent::kPlane && point_.normal.dot(met.normal) > kCosBend)) return reach;
+  return std::min(met.distance, reach);
 }
 
 bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height) const {
@@ -53,15 +55,22 @@ bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height
   return std::abs(met.distance - distance) <= gap_ || std::abs(aside) <= gap_;
 }
 
+bool SurfaceAround::is_in_plane(const Hit& hit) const {
+  return std::ranges::all_of(geometry_.corners(hit.mesh_id, hit.triangle_id), [&](const Vec3& corner) {
+    return std::abs((corner - point_.position).dot(point_.normal)) <= gap_;
+  });
+}
+
 // Returns how far the triangle at that distance goes on; it is negative where the surface is not there.
 double SurfaceAround::end_of_triangle_at(const Vec3& along, double distance) const {
   RayHit met;
   ++num_queries_;
   const Vec3 from = above(along, distance);
-  const double reach = 2.0 * gap_ + kTanBend * distance;  // where the surface may lie below (depth)
+  const double sinks = extent_ == Extent::kPlane ? 0.0 : kTanBend * distance;  // m, at most
+  const double reach = 2.0 * gap_ + sinks;                                     // where the surface may lie below (depth)
   if (geometry_.intersect_near(from, -point_.normal, reach, met, sees_) != EmbreeScene::Verdict::kHit) return -1.0;
   const double cos_bend = std::min(1.0, point_.normal.dot(met.normal));
-  if (cos_bend < kCosBend) return -1.0;
+  if (cos_bend < kCosBend || (extent_ == Extent::kPlane && !is_in_plane(met.hit))) return -1.0;
   // A surface that has turned by an angle has sunk by no more than the tangent of it per length.
   const double depth = met.distance - gap_, slope = std::sqrt(1.0 - cos_bend * cos_bend) / cos_bend;
   if (depth > gap_ + slope * distance) return -1.0;

@@ -22,14 +22,19 @@ class TriangleRim {
   std::array<Vec3, 3> corners_, outward_;
 };
 
+// Tells over which triangles a surface goes on: those that turn by at most 30 degrees from the point's normal, or those
+// that lie in the point's plane.
+enum class Extent { kBent, kPlane };
+
 // Finds how far the surface around a point extends. A surface extends over triangles that lie on each other's rims within
-// `gap` (m) and turn away by at most 30 degrees from the point's normal; holes between the point and the place in question
-// may be overlooked. `along` is a unit tangent. Its rays are added to num_queries; they meet sheets where the point lies on
-// one. All arguments must outlive it.
+// `gap` (m); of a plane, all their corners lie so near to it. Holes between the point and the place in question may be
+// overlooked. `along` is a unit tangent. Its rays are added to num_queries; they meet sheets where the point lies on one.
+// All arguments must outlive it.
 class SurfaceAround {
  public:
-  SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries)
-      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap),
+  SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries,
+                Extent extent = Extent::kBent)
+      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), extent_(extent),
         sees_(geometry.is_sheet(point.hit.mesh_id) ? Sees::kAll : Sees::kOpaque), num_queries_(num_queries) {}
 
   // Returns how far the point's own triangle goes on.
@@ -52,6 +57,7 @@ class SurfaceAround {
  private:
   double distance_to_wall(const Vec3& along, double reach) const;
   double end_of_triangle_at(const Vec3& along, double distance) const;
+  bool is_in_plane(const Hit& hit) const;
   // Returns the place from which one looks down on the surface.
   Vec3 above(const Vec3& along, double distance) const { return point_.position + distance * along + gap_ * point_.normal; }
 
@@ -59,6 +65,7 @@ class SurfaceAround {
   const RayHit& point_;
   TriangleRim rim_;
   double gap_;
+  Extent extent_;
   Sees sees_;
   int64_t& num_queries_;
 };

@@ -28,6 +28,7 @@ class Plates {
     ASSERT_EQ(geometry_->intersect(Vec3(x, y, 5), -Vec3::UnitZ(), hit_), EmbreeScene::Verdict::kHit);
   }
   SurfaceEnd end(const Vec3& along) { return around().find_end(along, kReach); }
+  SurfaceEnd end_of_plane(const Vec3& along) { return around(Extent::kPlane).find_end(along, kReach); }
   bool reaches(const Vec3& along, double distance) { return around().reaches(along, distance); }
   bool holds_circle(double radius) { return around().holds_circle(radius * radius); }
   ZoneCover cover(double before, double behind, const Vec3& arrival = -Vec3::UnitZ()) {
@@ -37,7 +38,7 @@ class Plates {
   int64_t num_queries() const { return num_queries_; }
 
  private:
-  SurfaceAround around() { return SurfaceAround(*geometry_, hit_, kGap, num_queries_); }
+  SurfaceAround around(Extent extent = Extent::kBent) { return SurfaceAround(*geometry_, hit_, kGap, num_queries_, extent); }
 
   Scene scene_;
   std::unique_ptr<EmbreeScene> geometry_;
@@ -99,6 +100,19 @@ TEST(MirrorZone, AGentleBendGoesOn) {
   plates.add("bent", Vec3(1, -2, 0), Vec3(2, 0, -0.2), Vec3(0, 4, 0));
   plates.look_at(0.3, 0);
   EXPECT_TRUE(plates.reaches(Vec3::UnitX(), 2.0));
+}
+
+TEST(MirrorZone, APlaneEndsAtAGentleBendDownOrUp) {
+  Plates plates;
+  plates.add("flat", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));
+  plates.add("seamless", Vec3(1, -2, 0), Vec3(1, 0, 0.5 * kGap), Vec3(0, 4, 0));
+  plates.add("down", Vec3(2, -2, 0), Vec3(2, 0, -0.01), Vec3(0, 4, 0));
+  plates.add("up", Vec3(-1, -2, 0), Vec3(0, 4, 0), Vec3(-2, 0, 0.01));
+  plates.look_at(0.3, 0);
+  EXPECT_NEAR(plates.end_of_plane(Vec3::UnitX()).distance, 1.7, kRounding);
+  EXPECT_NEAR(plates.end_of_plane(-Vec3::UnitX()).distance, 1.3, kRounding);
+  EXPECT_FALSE(plates.end_of_plane(Vec3::UnitX()).is_wall);
+  EXPECT_FALSE(plates.end_of_plane(-Vec3::UnitX()).is_wall);
 }
 
 // Straight down at the middle of a square: both half zones are sqrt(wavelength / (1/before + 1/behind)).

@@ -137,7 +137,6 @@ class _Tracker:
         dearest = float(np.max(cost, where=np.isfinite(cost), initial=0.0))
         return assigned(cost, dearest + self._gate + self._gate_of_speed)  # of a track without any
 
-
     def _near(self, found) -> list:
         """The points that may be within the gate of each track: no axis of an ellipse is longer than the root of its trace."""
         places = np.array([one.filter.state[:2] for one in self._live])

@@ -1,13 +1,17 @@
 #include "echopath/trace/geometry/surface_extent.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "echopath/base/constants.h"
 
 namespace echopath {
 namespace {
 
 const double kCosBend = std::sqrt(0.75), kTanBend = 1.0 / std::sqrt(3.0);  // 30 degrees, the crease guard of smooth surfaces
+constexpr double kSameAngle = 3.5e-3;  // rad (0.2 degrees): planes and angles of corners that differ by less are the same
 
 }  // namespace
 
@@ -34,14 +38,23 @@ bool TriangleRim::is_beyond(const Vec3& from, double squared) const {
   return true;
 }
 
-// Returns where something that rises from the surface stands in the way, or `reach` if nothing is nearer. Beside a plane, a
-// surface that bends up from it by little is not such.
+// Returns whether what rises from the surface ends it without an edge. Images in both planes of a corner add up to the whole
+// field where its angle is 180 degrees over a whole number; at others the edge between them scatters (Sommerfeld 1896).
+bool SurfaceAround::is_wall(const RayHit& met) const {
+  if (extent_ == Extent::kBent) return true;
+  if (next_ && std::abs(next_->normal.dot(met.normal)) > 1.0 - 0.5 * kSameAngle * kSameAngle &&
+      std::abs(next_->height(met.position)) <= gap_)
+    return true;
+  const double angle = std::acos(std::clamp(-point_.normal.dot(met.normal), -1.0, 1.0));
+  return std::ranges::any_of(std::array{2.0, 3.0, 4.0}, [&](double n) { return std::abs(angle - kPi / n) < kSameAngle; });
+}
+
+// Returns where something that rises from the surface stands in the way, or `reach` if nothing is nearer.
 double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   RayHit met;
   ++num_queries_;
   const bool meets = geometry_.intersect_near(above(along, 0.0), along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
-  if (!meets || (extent_ == Extent::kPlane && point_.normal.dot(met.normal) > kCosBend)) return reach;
-  return std::min(met.distance, reach);
+  return meets && is_wall(met) ? std::min(met.distance, reach) : reach;
 }
 
 bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height) const {

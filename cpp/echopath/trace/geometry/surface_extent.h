@@ -1,5 +1,6 @@
 #pragma once
 // Measures how far a surface goes on around one of its points, whatever meshes and triangles it consists of.
+#include "echopath/base/plane.h"
 #include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
@@ -23,18 +24,19 @@ class TriangleRim {
 };
 
 // Tells over which triangles a surface goes on: those that turn by at most 30 degrees from the point's normal, or those
-// that lie in the point's plane.
+// that lie in the point's plane, which has an edge at each corner but those of 90, 60 and 45 degrees.
 enum class Extent { kBent, kPlane };
 
 // Finds how far the surface around a point extends. A surface extends over triangles that lie on each other's rims within
 // `gap` (m); of a plane, all their corners lie so near to it. Holes between the point and the place in question may be
 // overlooked. `along` is a unit tangent. Its rays are added to num_queries; they meet sheets where the point lies on one.
+// `next` is the plane, if any, that a wave meets next, whose corner with this one is no edge of this one: it counts there.
 // All arguments must outlive it.
 class SurfaceAround {
  public:
   SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries,
-                Extent extent = Extent::kBent)
-      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), extent_(extent),
+                Extent extent = Extent::kBent, const Plane* next = nullptr)
+      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), extent_(extent), next_(next),
         sees_(geometry.is_sheet(point.hit.mesh_id) ? Sees::kAll : Sees::kOpaque), num_queries_(num_queries) {}
 
   // Returns how far the point's own triangle goes on.
@@ -58,6 +60,7 @@ class SurfaceAround {
   double distance_to_wall(const Vec3& along, double reach) const;
   double end_of_triangle_at(const Vec3& along, double distance) const;
   bool is_in_plane(const Hit& hit) const;
+  bool is_wall(const RayHit& met) const;
   // Returns the place from which one looks down on the surface.
   Vec3 above(const Vec3& along, double distance) const { return point_.position + distance * along + gap_ * point_.normal; }
 
@@ -66,6 +69,7 @@ class SurfaceAround {
   TriangleRim rim_;
   double gap_;
   Extent extent_;
+  const Plane* next_;
   Sees sees_;
   int64_t& num_queries_;
 };

@@ -267,9 +267,9 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
 }
 
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          int64_t& num_queries) {
+                                          int64_t& num_queries, const Plane* next) {
   const double gap = geometry.plane_tolerance(wavelength);
-  const SurfaceAround mirror(geometry, view.point, gap, num_queries, Extent::kPlane);
+  const SurfaceAround mirror(geometry, view.point, gap, num_queries, Extent::kPlane, next);
   if (mirror.holds_circle(ample_squared(view, wavelength, kFaded))) return 1.0;
   return 1.0 - EdgesAround(mirror, view, wavelength).lost_field();
 }

@@ -54,14 +54,15 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
 //
 // It is Kirchhoff's integral by stationary phase in polar coordinates about the point of reflection, 1 - <exp(-j pi r^2)>:
 // r is the distance to the mirror's edge in half zones, and the mean is over all directions, between which edges are
-// followed, straight or round. Where the mirror ends at the inside of a corner it has no edge. Where it bends by up to 30
-// degrees, down or up, it has one: the plane behind has echoes of its own, by its image or by rays, with which those of this
-// plane add up. Edges fade between 8 and 16 half zones, so that closed forms of geometrical optics hold beyond. Of the
+// followed, straight or round. Where the mirror ends at the inside of a corner of 90, 60 or 45 degrees it has no edge, and
+// of a wave that goes on to a plane that it has a corner with (`next`, which may be null) that plane has it. Where the
+// mirror bends by however little, it has one: the plane behind has echoes of its own, by its image or by rays, with which
+// those of this plane add up. Edges fade between 8 and 16 half zones, so that closed forms of geometrical optics hold beyond. Of the
 // endless mirror's field it is right to 1.6 % in polygons of up to 8 sides, to 7 % in those of more and in disks, and to
 // 0.4 dB beside a bend, where geometrical optics is wrong by up to all of it. This is valid where no line from the point
 // meets the edge twice.
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          int64_t& num_queries);
+                                          int64_t& num_queries, const Plane* next = nullptr);
 
 // Returns the field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
 std::complex<double> field_beside_edge(double within);

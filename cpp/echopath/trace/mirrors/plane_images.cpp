@@ -170,7 +170,8 @@ std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImageP
     point.normal = lit_normal(line, planes_[k].normal);
     const MirrorView view{point, line.normalized(), before, whole - before};
     if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
-    field *= field_of_flat_mirror(geometry_, view, wavelength_, num_queries);
+    const Plane* next = k + 1 < path.points.size() ? &planes_[k + 1] : nullptr;
+    field *= field_of_flat_mirror(geometry_, view, wavelength_, num_queries, next);
   }
   return field;
 }

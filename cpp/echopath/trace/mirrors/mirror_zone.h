@@ -57,10 +57,10 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
 // followed, straight or round. Where the mirror ends at the inside of a corner of 90, 60 or 45 degrees it has no edge, and
 // of a wave that goes on to a plane that it has a corner with (`next`, which may be null) that plane has it. Where the
 // mirror bends by however little, it has one: the plane behind has echoes of its own, by its image or by rays, with which
-// those of this plane add up. Edges fade between 8 and 16 half zones, so that closed forms of geometrical optics hold beyond. Of the
-// endless mirror's field it is right to 1.6 % in polygons of up to 8 sides, to 7 % in those of more and in disks, and to
-// 0.4 dB beside a bend, where geometrical optics is wrong by up to all of it. This is valid where no line from the point
-// meets the edge twice.
+// those of this plane add up. Edges fade between 8 and 16 half zones, so that closed forms of geometrical optics hold
+// beyond. Of the endless mirror's field it is right to 1.6 % in polygons of up to 8 sides, to 7 % in those of more and in
+// disks, and to 5 % beside bends and corners, where geometrical optics is wrong by up to all of it. This is valid where no
+// line from the point meets the edge twice.
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
                                           int64_t& num_queries, const Plane* next = nullptr);
 

@@ -2,19 +2,24 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+from contextlib import suppress
 
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 from ..base.interrupts import interrupts_are_kept
 from .parser import command_parser
+from .resumable import Unread
 from .warned import warnings_in_lines
 
 EXIT_BAD_INPUT = 2
+EXIT_UNREAD = 128 + signal.SIGPIPE  # what a shell reports of other programs that write to a closed pipe
 
 
 def main(arguments=None) -> int:
-    """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C."""
+    """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C, 141 where nobody reads its output before
+    its work is done."""
     try:
         options = command_parser().parse_args(arguments)
         loading_is_over()
@@ -25,8 +30,12 @@ def main(arguments=None) -> int:
         exec("")  # after a Ctrl-C within the text of an `exec`, Python ends by the signal, until another text has run
         print(f"\n{STOPPED}", file=sys.stderr)
         return EXIT_INTERRUPTED
-    except BrokenPipeError:
+    except BrokenPipeError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, Unread):
+            with suppress(BrokenPipeError):  # nobody may read this, either
+                print(f"echopath: {error}", file=sys.stderr)
+            return EXIT_UNREAD
     except (ValueError, OSError, ModuleNotFoundError, DeviceError) as error:
         print(f"echopath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT

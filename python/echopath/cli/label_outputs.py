@@ -1,6 +1,7 @@
 """Label maps for programs and pictures of labels for people."""
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import echopath as ep
@@ -17,31 +18,47 @@ def write_labels(frame, folder: Path, selections: dict) -> list:
     selections: {partition: {part: selection}} of those partitions that are written, {} for a frame without any.
     """
     of_partitions = {name: labels for name, labels in frame.labels.items() if name in selections or not selections}
-    written = []
+    written, names = [], label_names(of_partitions)
 
     def write(name: str, figure) -> None:
-        path = folder / f"{_file_name(name)}.png"
+        path = folder / f"{name}.png"
         plots.save_png(figure, path, seed=frame.paths.frame.seed)
         written.append(path)
 
     for index, (partition, labels) in enumerate(of_partitions.items()):
-        written += ep.save_label_images(labels, folder / MAPS_FOLDER, _map_names(partition, index == 0))
+        written += ep.save_label_images(labels, folder / MAPS_FOLDER, _map_names(partition, names[partition], index == 0))
         if index == 0:
             write("objects_and_ghosts", plots.plot_ghosts(labels))
         powers = _powers(frame, partition, selections.get(partition, {}))
         title = "Which part made each cell" + (f", by {partition}" if partition != ONLY_PARTITION else "")
-        write(f"labels_{partition}", plots.plot_labels(labels, title=title, powers=powers))
+        write(f"labels_{names[partition]}", plots.plot_labels(labels, title=title, powers=powers))
     return written
 
 
-def _map_names(partition: str, is_first: bool) -> dict:
+def _map_names(partition: str, name: str, is_first: bool) -> dict:
     """File names of label maps; those of objects and ghosts are the same for all partitions."""
-    names = {"parts": "parts" if partition == ONLY_PARTITION else _file_name(f"parts_{partition}")}
+    names = {"parts": "parts" if partition == ONLY_PARTITION else f"parts_{name}"}
     return names | ({"objects": "objects", "ghosts": "ghosts"} if is_first else {})
 
 
-def _file_name(name: str) -> str:
-    return name.replace(" ", "_").replace("/", "_")
+def label_names(partitions: Iterable[str]) -> dict[str, str]:
+    """{partition: what its files are called} behind labels_ and parts_."""
+    return file_names(partitions, {"/": "_", " ": "_"})
+
+
+def file_names(partitions: Iterable[str], instead: dict[str, str], taken: Iterable[str] = ()) -> dict[str, str]:
+    """{partition: name of its file, without the suffix}: its own, unless another file has that, one for each.
+
+    instead: {character: what stands in its place}; taken: names of other files
+    """
+    found, used = {}, set(taken)
+    for partition in partitions:
+        name = partition.translate(str.maketrans(instead))
+        while name in used:
+            name = f"parts_{name}"
+        found[partition] = name
+        used.add(name)
+    return found
 
 
 def _powers(frame, partition: str, selections: dict) -> dict:

@@ -44,7 +44,7 @@ def number_range(text: str) -> tuple[int, int]:
 
 def _whole_number(text: str, least: int) -> int:
     try:
-        value = float(text)
+        value = int(text) if text.strip().replace("_", "").isdecimal() else float(text)  # not all whole numbers are floats
         if value >= least and value == int(value):
             return int(value)
     except (ValueError, OverflowError):

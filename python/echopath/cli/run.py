@@ -21,9 +21,10 @@ from ..scene_file import SceneFile
 from ..signals.measures import for_pictures, with_error
 from ..signals.parts import parts_of_options
 from ..truth.places import true_places
-from .label_outputs import write_labels
+from .label_outputs import file_names, label_names, write_labels
 
 FRAME_NAME, TRUTH_NAME, DETECTIONS_NAME = "frame.h5", "truth.csv", "detections.csv"
+_PICTURES = ("scene", "map", "overview", "range_azimuth", "objects_and_ghosts")  # beside those of partitions
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,9 +78,10 @@ def certify(frame: Frame, *, progress=None):
 def write_outputs(frame: Frame, folder, partitions, objects=None) -> Written:
     """Writes frame.h5, detections.csv and truth.csv where they were asked for, and pictures; adds its stages to the frame's.
 
-    The pictures: scene.png, map.png, a PNG for each of `partitions`, overview.png (map and first partition) and, where
-    the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above); with labels also
-    objects_and_ghosts.png, labels_NAME.png for each partition and label_maps/ for programs.
+    The pictures: scene.png, map.png, a PNG for each of `partitions` (NAME.png, or parts_map.png of one that is called "map", and
+    the like), overview.png (map and first partition) and, where the radar tells azimuths apart, range_azimuth.png (the whole and
+    the first partition from above); with labels also objects_and_ghosts.png, labels_NAME.png for each partition and label_maps/
+    for programs.
     objects: that pictures name, as in `families`; None: the children of the scene's root
     """
     folder = Path(folder)
@@ -116,6 +118,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> lis
     title = title_of(frame)
     mean = for_pictures(f"; in the mean {with_error(frame.mean_power)}")
     write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
+    names = file_names(partitions, {"/": "_"}, [*_PICTURES, *(f"labels_{name}" for name in label_names(partitions).values())])
     for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
         looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition],
@@ -124,7 +127,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> lis
         words += "; mean power of all ranges together and its 95 % interval"
         if not all(power.resolved for power in frame.mean_part_powers[partition].values()):
             words += f" (not resolved: wider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g}\N{NO-BREAK SPACE}dB)"
-        write(partition, plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
+        write(names[partition], plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
         if index == 0:
             words = f"The same {words}"
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))

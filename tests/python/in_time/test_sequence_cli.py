@@ -151,6 +151,20 @@ def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):
     assert ep.load_sequence(out)[1].cube is not None
 
 
+@pytest.mark.parametrize("says_where", [subprocess.PIPE, subprocess.STDOUT])
+def test_a_run_whose_lines_nobody_reads_any_more_says_that_it_is_not_done(scene_path, tmp_path, says_where):
+    """As behind `| head -3`: other programs end by SIGPIPE there, which shells report as 141."""
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "echopath", "run", scene_path, "--out", out, "--interval", "0.1", "--frames", "2000"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=says_where, text=True)
+    told = [process.stdout.readline() for _ in range(3)]
+    process.stdout.close()
+    said = process.stderr.read() if process.stderr else ""
+    assert process.wait(timeout=WAIT) == 141 and told[1].startswith("frame 1 of 2000 at 0 s: ")
+    assert not said or said == f"echopath: stopped, as nobody reads its output any more; the same command goes on in {out}\n"
+    assert 2 <= ep.load_sequence(out).is_done.sum() < 2000
+
+
 def test_ctrl_c_while_a_line_is_printed_says_so_too(scene_path, tmp_path, monkeypatch, capsys):
     def print_until_stopped(text, **keywords):
         print(text, **keywords)

@@ -138,6 +138,25 @@ def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
     assert "2 elements, 2 across x 1 up, 0.517 wavelengths across" in info and "overlaps, gaps" in info
 
 
+@pytest.mark.parametrize("seed", [2**53 + 1, 2**64 - 1])
+def test_a_seed_is_taken_to_its_last_digit(scene_path, tmp_path, seed):
+    """Which is more than a float holds; half of the seeds that are drawn from 64 bits are so large."""
+    assert call("run", scene_path, "--out", tmp_path / "out", "--rays", "2e2", "--seed", seed).returncode == 0
+    assert ep.Paths.load(tmp_path / "out" / "frame.h5").frame.seed == seed
+
+
+def test_partitions_take_no_file_from_others_and_none_out_of_the_folder(scene_path, tmp_path):
+    again = "".join(f'[parts."{name}"]\ndirect = "T . R"\n' for name in ("labels_a_b", "a b", "../b"))
+    scene_path.write_text(SCENE.replace("parts.route", "parts.map") + again + "[labels]\n")
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
+    assert done.returncode == 0, done.stderr
+    told = [name for line in done.stdout.splitlines() if ".png" in line for name in line.strip().split(", ")]
+    assert len(told) == len(set(told)) == 3 * 4 + 6  # three of each partition, six beside them
+    found = [path.relative_to(tmp_path / "out") for path in tmp_path.rglob("*.png")]
+    assert sorted(map(str, found)) == sorted(told)
+    assert {"map.png", "parts_map.png", "parts_labels_a_b.png", "labels_a_b.png"} <= set(told)
+
+
 @pytest.mark.hard
 def test_run_twice_gives_the_same_bytes(finished_run, tmp_path):
     scene, first = finished_run

@@ -32,6 +32,7 @@ ODD = {
     "many axes": lambda: np.zeros((1,) * 9), "no rows": lambda: np.zeros((0, 7)), "NaN [3]": lambda: np.full(3, np.nan),
     "text array": lambda: np.array(["a", "b"]), "object array": lambda: np.array([object(), None]),
     "array of dates": lambda: np.array(["2020-01-01"], "datetime64[D]"), "date": lambda: np.datetime64("2020-01-01"),
+    "span of time": lambda: np.timedelta64(5, "ns"), "span in ms": lambda: np.timedelta64(5, "ms"),
     "NumPy NaN": lambda: np.float32("nan"), "NumPy -1": lambda: np.int8(-1), "array -1": lambda: np.array(-1),
     "array NaN": lambda: np.array(np.nan), "structured": lambda: np.zeros(2, "i4,f4"), "Decimal": lambda: decimal.Decimal("0.5"),
     "Fraction": lambda: fractions.Fraction(-1, 3), "range": lambda: range(-2, 0), "generator": lambda: (n for n in "ab"),

@@ -23,7 +23,8 @@ def _scalar(value):
 
 
 def is_number(value) -> bool:
-    return isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
+    """A real number of no unit: NumPy's spans of time are whole numbers to Python, of nanoseconds or whatever they count."""
+    return isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_, np.timedelta64))
 
 
 def _range_words(low: float, high: float, unit: str = "") -> str:

@@ -170,6 +170,22 @@ def test_whole_floats_and_numpy_integers_are_counts(good, value):
     assert ep.TraceSettings(num_rays=value).num_rays == 100
 
 
+@pytest.mark.parametrize("span", [np.timedelta64(50_000_000, "ns"), np.timedelta64(50, "ms"), np.array(np.timedelta64(5, "ns"))])
+def test_spans_of_time_are_no_numbers(good, span):
+    """50 ms as a table has them, whose whole number of nanoseconds would be as many seconds or rays."""
+    for name, argument in (("Sequence", "interval"), ("trace", "start_time"), ("trace", "num_rays")):
+        with pytest.raises(TypeError, match=f"^{argument}: must be a (finite|whole) number"):
+            getattr(ep, name)(**good[name] | {argument: span})
+
+
+@pytest.mark.parametrize("objects", [{"plate", "pl*"}, frozenset(["plate"])])
+def test_objects_are_no_sets_which_have_no_order(good, objects):
+    """The first that takes a path has it: which is the first of a set hangs on the seed of Python's hashes."""
+    with pytest.raises(TypeError, match="^objects: must be a dict or a list of globs"):
+        ep.families(**good["families"], objects=objects)
+    assert ep.families(**good["families"], objects={"plate": 1}.keys()).objects == ("plate",)
+
+
 def test_arrays_are_not_copied_by_checks():
     from echopath.arguments.checks import array
 

@@ -104,6 +104,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     _require_other_names(parts, beside)
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, of any receiver, got another {field}")
+    if labels is not None:
+        labelling.require_cells_of(spectrum, labels)
     parts = None if parts is None else labelling.maps_of("parts", _signals_of(parts, paths, radar, progress), spectrum, radar)
     beside = labelling.maps_of("beside", beside, spectrum, radar)
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,

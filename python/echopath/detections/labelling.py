@@ -46,10 +46,14 @@ def _map_of(argument: str, name: str, part, spectrum, radar):
     return part
 
 
-def label_powers(spectrum, labels, cells, gains) -> tuple:
-    """As part_powers, from Labels of the range-Doppler map: with the gain in the mean over the channels."""
+def require_cells_of(spectrum, labels) -> None:
+    """Raises ValueError for Labels of another map than the spectrum's."""
     if labels.plane != "range_doppler" or labels.whole.shape != spectrum.values.shape[2:]:
         raise ValueError(f"labels: must be of the spectrum's cells {spectrum.values.shape[2:]}, got {labels!r}")
+
+
+def label_powers(spectrum, labels, cells, gains) -> tuple:
+    """As part_powers, from Labels of the range-Doppler map: with the gain in the mean over the channels."""
     velocity, distance = cells[:, 0], cells[:, 1]
     tx, rx = (np.arange(count) for count in spectrum.values.shape[:2])
     powers = [labels.power[k, velocity, distance] * _mean_gain(gains.of(name, tx[:, None, None], rx[:, None], distance))

@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
 from ..base.callers import warn_user
+from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..transmit.signals import chirp_of, step_names
 
@@ -19,7 +20,7 @@ _PLACES = "range", "velocity", "range_index", "velocity_index"
 
 
 @made_by("ep.path_cells")
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class PathCells:
     """Range, radial velocity and cell of each path at one channel, in the middle of the frame.
 
@@ -47,6 +48,11 @@ class PathCells:
         inside = (self.range_index >= near) & (self.range_index <= far)
         inside &= (self.velocity_index >= slow) & (self.velocity_index <= fast)
         return inside & (self.range_index != OUTSIDE)
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, PathCells) else NotImplemented
+
+    __hash__ = None
 
 
 @checked()

@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..arguments.checks import anything, checked, real, vector
 from ..base.counts import counted
+from ..base.equality import has_same_fields
 
 if TYPE_CHECKING:
     from ..trajectories import Trajectory
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModelNode:
     """One node of a model.
 
@@ -37,6 +38,12 @@ class ModelNode:
     material: _core.Material | str | None = None
     foreign_material: str = ""
     smooth: bool = False
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, ModelNode) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.parent, self.foreign_material))
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, 
     toward = np.stack([np.cos(azimuth), np.sin(azimuth), np.zeros(len(azimuth))])
     steering = np.exp(-1j * wavenumber * places @ toward)
     found = []
-    for velocity, distance in cells:
+    for velocity, distance in cells.tolist():  # numbers of Python: unsigned ones know nothing below 0
         rows = np.arange(velocity - velocity_neighbours, velocity + velocity_neighbours + 1) % values.shape[1]
         columns = np.arange(max(0, distance - range_neighbours), min(values.shape[2], distance + range_neighbours + 1))
         found.append(_pseudo_spectrum(values[:, rows][:, :, columns], steering, num_sources, forward_backward))

@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, count, real
 from ..base.chirps import start_with_middle
+from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..base.mesh_names import object_of
 from ..base.antennas import polarization_of
@@ -23,7 +24,7 @@ NUM_POINTS = 256  # of an object's surface that are looked at
 
 
 @made_by("ep.around_corners")
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class AroundCorner:
     """What an object would send around the strongest edge between it and the radar; made by `around_corners`.
 
@@ -49,6 +50,11 @@ class AroundCorner:
     def resolved(self) -> bool:
         """The rays know the object's level to 0.3 dB; else `power` may be anything from `low` to `high`, and more rays help."""
         return self.high == 0.0 or Interval(self.power, self.low, self.high).resolved
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, AroundCorner) else NotImplemented
+
+    __hash__ = None
 
 
 @checked(time=real(unit="s"), num_rays=count(1, 2**24))

@@ -55,6 +55,9 @@ def test_music_parts_waves_closer_than_a_beam():
     strongest = np.sort(azimuth[peaks[np.argsort(found[peaks])[-2:]]])
     assert np.degrees(strongest) == pytest.approx(np.degrees(wanted), abs=0.3)
     assert found.min() >= 1.0 - 1e-9
+    at_ends = [ep.music(spectrum, radar, azimuth, cells=np.array([(0, 1), (15, 31)], kind)) for kind in (np.int64, np.uint8,
+                                                                                                      np.uint64)]
+    assert np.array_equal(at_ends[1], at_ends[0]) and np.array_equal(at_ends[2], at_ends[0])
     with pytest.raises(IndexError, match="^cells: must lie within"):
         ep.music(spectrum, radar, azimuth, cells=[(16, 0)])
     with pytest.raises(ValueError, match="^num_sources: must be fewer than the 8 channels"):

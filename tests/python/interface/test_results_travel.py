@@ -214,13 +214,18 @@ def test_validity_with_arrays_and_renewals_travel(paths):
 def test_labels_detections_families_and_parts_are_equal_after_the_round_trip(frame, paths):
     values = {"labels": frame.labels["parts"], "detections": frame.detections, "families": ep.families(paths),
               "parts": ep.decompose(paths, parts=PARTS), "visibility": ep.visibility(frame.scene, frame.radar),
-              "cells": ep.unresolved(paths), "effects": frame.effects}
+              "unresolved": ep.unresolved(paths), "effects": frame.effects, "cells": ep.path_cells(paths, frame.spectrum),
+              "corners": ep.around_corners(frame.scene, frame.radar, num_rays=100),
+              "model": ep.Model((ep.ModelNode("a", placement=np.eye(4)),))}
     assert len(values["detections"])
     for name, value in values.items():
         for other in (there_and_back(value), copy.deepcopy(value)):
             assert other == value, name
     assert frame.labels["parts"] != ep.annotate(paths, PARTS, noise_margin_db=20.0)
     assert values["detections"] != ep.detect(frame.spectrum, frame.radar, false_alarm_rate=1e-2)
+    assert values["cells"] != ep.path_cells(paths, frame.spectrum, rx=3)
+    assert values["model"] != ep.Model((ep.ModelNode("a", placement=2.0 * np.eye(4)),))
+    assert hash(values["model"]) == hash(copy.deepcopy(values["model"]))
     changed = copy.deepcopy(values["parts"])
     changed["car"][0, 0, 0, 0] += 1e-18
     assert changed != values["parts"]

@@ -129,6 +129,15 @@ def test_a_map_of_other_chirps_is_refused(spheres, other, receiver):
         ep.detect(spheres[2], radar_with(**other).replace(receiver=receiver))
 
 
+@pytest.mark.parametrize("other", [{"zero_pad": 1}, {"plane": "range_azimuth"}])
+def test_labels_of_another_map_are_refused(spheres, other):
+    """Also of a smaller one, in which cells of the map do not lie."""
+    radar, paths, _ = spheres
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=3), radar, zero_pad=2)
+    with pytest.raises(ValueError, match=r"^labels: must be of the spectrum's cells \(128, 512\), got Labels"):
+        ep.detect(spectrum, radar, labels=ep.annotate(paths, **other))
+
+
 def test_a_map_whose_power_is_not_finite_is_refused():
     radar = radar_with(receivers=1)
     cube = np.array(ep.add_noise(np.zeros((1, 1, 64, 256)), radar, seed=3))

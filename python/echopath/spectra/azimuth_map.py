@@ -1,6 +1,7 @@
 """Settings of the range-azimuth map of a frame."""
 from __future__ import annotations
 
+import copy
 import warnings
 
 import numpy as np
@@ -31,7 +32,7 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
 
     velocity_gate: (lowest, highest) in m/s beside the settings, or None
     """
-    settings = dict(DEFAULTS) if settings is None else dict(_KEYWORDS("angles", settings))
+    settings = dict(DEFAULTS) if settings is None else _kept(_KEYWORDS("angles", settings))
     if velocity_gate is not None:
         if settings.get("velocity_gate") is not None:
             raise refused(ValueError, "velocity_gate", "None where angles has one", velocity_gate)
@@ -51,6 +52,11 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
         range_azimuth(_core.range_doppler(cube, small), small, **checked)
     return settings
+
+
+def _kept(settings: dict) -> dict:
+    """Settings that later changes of the caller's arrays and lists do not reach."""
+    return {name: copy.copy(value) if isinstance(value, (np.ndarray, list)) else value for name, value in settings.items()}
 
 
 def _with_one_sample(radar):

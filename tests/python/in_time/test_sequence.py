@@ -58,6 +58,17 @@ def test_later_changes_of_the_scene_do_not_matter(in_order):
     assert signal_of(sequence[1]) == in_order[1]
 
 
+@pytest.mark.parametrize("kind", [np.array, list])
+def test_later_changes_of_the_arguments_do_not_matter(kind):
+    azimuth, objects, parts = kind([-0.2, 0.1]), ["plate"], {"plate": "T 'plate' R"}
+    receivers = [ep.Antenna((0.0, k * 0.002, 0.0)) for k in range(4)]
+    sequence = ep.Sequence(make_scene(), make_radar().replace(receivers=receivers), frames=1, interval=INTERVAL, **SETTINGS | {
+        "parts": parts, "labels": {"objects": objects}, "angles": {"azimuth": azimuth}})
+    azimuth[1], objects[0], parts["plate"] = 0.4, "nobody", "T 'nobody' R"
+    assert sequence[0].azimuth.tolist() == [-0.2, 0.1]
+    assert [label.name for label in sequence[0].labels["parts"].objects] == ["plate"]
+
+
 @pytest.mark.parametrize("scene_speed, radar_speed", [(SPEED, None), (0.0, 5.0), (SPEED, 5.0)])
 def test_ranges_follow_the_closed_form(scene_speed, radar_speed):
     """The plate is where distance + (its speed - that of the radar) t puts it at mid-frame."""

@@ -148,8 +148,8 @@ class FrameRun:
         signal = self.signal
         return Frame(scene=self._scene_of(paths), radar=self.radar, paths=paths, cube=whole, parts=cubes,
                      selections=self.selections, part_of_path=groups, noise_seed=signal.noise_seed,
-                     spectrum_settings=self.map_settings,
-                     angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
+                     spectrum_settings=dict(self.map_settings),
+                     angle_settings=dict(self.angle_settings), replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
                      effect_choices=self.trace.effects,
                      checks=_checks(whole, probe, signal, paths) if probe else [], stages=stages)

@@ -67,6 +67,9 @@ def test_later_changes_of_the_arguments_do_not_matter(kind):
     azimuth[1], objects[0], parts["plate"] = 0.4, "nobody", "T 'nobody' R"
     assert sequence[0].azimuth.tolist() == [-0.2, 0.1]
     assert [label.name for label in sequence[0].labels["parts"].objects] == ["plate"]
+    frame = sequence[0]
+    frame.angle_settings["azimuth"], frame.spectrum_settings["zero_pad"] = [0.0, 0.1, 0.2], 2
+    assert sequence[0].azimuth.tolist() == [-0.2, 0.1] and sequence[0].spectrum.zero_pad == 1
 
 
 @pytest.mark.parametrize("scene_speed, radar_speed", [(SPEED, None), (0.0, 5.0), (SPEED, 5.0)])

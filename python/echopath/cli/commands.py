@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..arguments.checks import file
 from ..base.files import require_writable
 
 
@@ -27,7 +28,7 @@ def view(options) -> None:
     import echopath as ep
 
     if options.picture is not None:
-        require_writable(Path(options.picture).parent, "--picture")
+        require_writable(Path(file("--picture", options.picture)).parent, "--picture")
     frames = options.frames[0] if len(options.frames) == 1 else options.frames
     ep.view(*([frames] if frames else []), state=options.state, picture=options.picture, scale=options.scale)
 
@@ -44,7 +45,7 @@ def run(options) -> None:
     out = Path(options.out)
     require_writable(out.parent if out.is_file() else out, "--out")
     if options.raw is not None:
-        require_writable(Path(options.raw).parent, "--raw")
+        require_writable(Path(file("--raw", options.raw)).parent, "--raw")
     scene_file = load_scene(options.scene)
     if scene_file.radar is None:
         raise ValueError(f"{options.scene}: has no radar; 'echopath scene {options.scene} --out SCENE.toml' writes a scene file "

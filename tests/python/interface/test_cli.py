@@ -112,6 +112,16 @@ def test_a_file_in_the_place_of_the_folder_of_a_run_is_named_before_the_work(sce
     assert (tmp_path / "file.txt").read_text() == "mine"
 
 
+@pytest.mark.parametrize("command", [["run", "plate.toml", "--out", "out", "--raw"], ["view", "frame.h5", "--picture"]])
+def test_a_folder_in_the_place_of_a_file_is_named_before_the_work(scene_path, tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(ep._core, "trace", None)  # no work begins
+    (tmp_path / "folder").mkdir()
+    assert main([*command, "folder"]) == 2
+    assert capsys.readouterr().err == f"echopath: {command[-1]}: must be the name of a file, not of a folder, got 'folder'\n"
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_folder_that_is_tried_is_not_left_behind(tmp_path):
     require_writable(tmp_path / "a" / "b", "--out")
     assert list(tmp_path.iterdir()) == []

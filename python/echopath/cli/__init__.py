@@ -20,6 +20,7 @@ EXIT_UNREAD = 128 + signal.SIGPIPE  # what a shell reports of other programs tha
 def main(arguments=None) -> int:
     """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C, 141 where nobody reads its output before
     its work is done."""
+    _print_what_the_output_lacks()
     try:
         options = command_parser().parse_args(arguments)
         loading_is_over()
@@ -43,3 +44,10 @@ def main(arguments=None) -> int:
         print("echopath: not enough memory; fewer rays (--rays) need less", file=sys.stderr)
         return EXIT_BAD_INPUT
     return 0
+
+
+def _print_what_the_output_lacks() -> None:
+    """Letters of names and titles that the encoding of the output does not have are printed by number, as on standard error: they
+    are no reason to end a long run."""
+    if getattr(sys.stdout, "errors", None) == "strict" and hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")

@@ -138,6 +138,17 @@ def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
     assert done.stderr == ""  # no bar without a terminal
 
 
+@pytest.mark.parametrize("encoding, title", [("ascii", "M\\xfcll \\u2192 \\u7403"), ("latin-1", "M\xfcll \\u2192 \\u7403"),
+                                             ("utf-8", "M\xfcll \u2192 \u7403")])
+def test_letters_that_the_output_does_not_have_are_no_end_of_a_run(scene_path, tmp_path, encoding, title):
+    scene_path.write_text(SCENE.replace("a plate", "M\xfcll \u2192 \u7403"), encoding="utf-8")
+    arguments = command("run", scene_path, "--rays", "200", "--frames", "2", "--interval", "0.1", "--keep", "maps", "--out",
+                        tmp_path / "out")
+    done = subprocess.run(arguments, capture_output=True, env=os.environ | {"PYTHONIOENCODING": encoding})
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.decode(encoding).startswith(f"{title}: 2 frames")
+
+
 def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
     second = "[[radar.receivers]]\nposition = [0.0, 0.012, 0.0]\n"
     scene_path.write_text(SCENE.replace("[[objects]]", second + "[[objects]]", 1))

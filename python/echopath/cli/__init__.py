@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from contextlib import suppress
 
@@ -14,7 +13,7 @@ from .resumable import Unread
 from .warned import warnings_in_lines
 
 EXIT_BAD_INPUT = 2
-EXIT_UNREAD = 128 + signal.SIGPIPE  # what a shell reports of other programs that write to a closed pipe
+EXIT_UNREAD = 141  # what a shell reports of other programs that write to a closed pipe
 
 
 def main(arguments=None) -> int:

@@ -1,6 +1,7 @@
 """What the pace of a machine is, and which limits are held over it."""
 import json
 
+import numpy as np
 import pytest
 
 from echopath.bench import pace, suite
@@ -96,3 +97,9 @@ def test_a_part_is_judged_by_the_paces_before_and_after_it(tmp_path, monkeypatch
     said = [line for line in suite.describe_parts(parts, results) if line.startswith("pace: ")]
     assert len(said) == sum(pair is not None for pair in paces)
     assert all("2.00 to 3.00 times" in line for line in said[:1])
+
+
+def test_figures_of_numpy_are_written_as_numbers(tmp_path):
+    parts = {"one": type("Counts", (), {"rows": staticmethod(lambda quick: [suite.judged_row("count", np.int64(3), None)])})}
+    suite.run_parts("any", parts, tmp_path, quick=True, progress=None)
+    assert json.loads((tmp_path / "any.json").read_text())["rows"]["one"][0]["measured"] == 3

@@ -140,8 +140,8 @@ class _Content:
         return self._add_found(self._nodes.name[node], self._place[parent], placement, motion, found)
 
     def _add_found(self, name: str, parent: int, placement, motion, found: list[Surface]) -> int:
-        """A node, with its mesh if it has one alone, with a node below it for each otherwise."""
-        if len(found) == 1:
+        """A node, with its mesh if it has one alone that does not deform while the node moves, otherwise with nodes below."""
+        if len(found) == 1 and (motion is None or found[0].deformation is None):
             return self._add_surface(name, parent, placement, motion, found[0])
         index = self._add(name, parent, placement, motion)
         for number, surface in enumerate(found):

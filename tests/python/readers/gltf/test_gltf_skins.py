@@ -101,6 +101,14 @@ def test_morph_targets_follow_their_weights(tmp_path, interpolation):
     assert np.abs(vertices_at(scene, 0.25)["box"] - (BOX * [1 + 0.5 * t, 1, 1] + [0, t, 0])[:, TO_SCENE]).max() < SINGLE
 
 
+def test_a_node_moves_while_morph_targets_shape_its_mesh(tmp_path):
+    file = morph_file()
+    file.animation((0, "weights", [0, 1], [0, 0, 0, 1, 0, 0.5], "LINEAR"),
+                   (0, "translation", [0, 1], [[0, 0, 0], [4, 8, -2]], "LINEAR"))
+    found = vertices_at(scene_of(loaded(tmp_path, file)), 0.25)["box/primitive_0"]
+    assert np.abs(found - (BOX * [1.125, 1, 1] + [1, 2.25, -0.5])[:, TO_SCENE]).max() < SINGLE
+
+
 def test_a_skin_moves_what_morph_targets_shape(tmp_path):
     file = rig_file()
     points = tube()[0]

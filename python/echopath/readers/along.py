@@ -37,26 +37,26 @@ def model_along(model: Model, trajectory, way: float | None) -> Model:
 
 def _period_of(model: Model) -> float:
     """s, of the loop that all moving nodes share. Raises ValueError for models that are not looped or move otherwise."""
-    periods = set()
     for node in model.nodes:
         for moving in (node.motion, node.deformation):
             if not isinstance(moving, (type(None), _core.CurveMotion, _core.Skin, _core.MorphTargets)):
                 rule = "animated by curves (glTF, USD) to go along a trajectory"
                 raise refused(ValueError, "model", rule, type(moving).__name__)
-            periods |= set(_periods(moving))
+    periods = {moving.period for moving in _all_moving(model)}
     if len(periods) != 1 or None in periods:
         raise ValueError("model: must have a looped animation (load_model(..., loop=True)) to go along a trajectory, "
                          f"got {model.animation!r}")
     return float(periods.pop())
 
 
-def _periods(moving):
-    if isinstance(moving, _core.Skin):
-        for joint in moving.joints:
-            yield from _periods(joint.motion)
-        yield from _periods(moving.shape)
-    elif moving is not None:
-        yield moving.period
+def _all_moving(model: Model):
+    """What follows the animation's clock: the motions of nodes and joints, and the shares of morph targets."""
+    for node in model.nodes:
+        skin = node.deformation if isinstance(node.deformation, _core.Skin) else None
+        joints = [] if skin is None else [*(joint.motion for joint in skin.joints), skin.shape]
+        for moving in (node.motion, *joints, None if skin else node.deformation):
+            if moving is not None:
+                yield moving
 
 
 class _Player:
@@ -116,7 +116,6 @@ def _poses(model: Model, period: float):
 
     scene = Scene()
     scene.add(dataclasses.replace(model, motion=None), name="model")
-    offsets = {moving.offset for node in model.nodes for moving in (node.motion,) if moving is not None} or {0.0}
-    begin = -min(offsets)
+    begin = -min(moving.offset for moving in _all_moving(model))
     times = begin + period * np.linspace(0.0, 1.0 - 1e-9, SAMPLES + 1)
     return np.array([np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes]) for time in times])

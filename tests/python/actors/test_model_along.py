@@ -93,6 +93,20 @@ def test_a_skin_bends_by_the_distance(tmp_path, interpolation):
         given.along(even)
 
 
+@pytest.mark.parametrize("offset", [0.0, 0.3, -0.9])
+def test_bones_that_go_ahead_do_so_along_the_trajectory_whatever_the_offset(tmp_path, offset):
+    """A tube whose lower bone goes 3 m ahead in its loop of 2 s, while the upper one bends aside and back."""
+    file = rig_file()
+    animation = file.json["animations"][0]
+    animation["channels"].append({"sampler": len(animation["samplers"]), "target": {"node": 1, "path": "translation"}})
+    animation["samplers"].append({"input": file.accessor([0, 2]), "output": file.accessor([[0, 0, 0], [0, 0, 3]])})
+    model = loaded(tmp_path, file, offset=offset).along(ep.Trajectory([(0, 0), (9, 0)], speed=3.0))
+    assert any("played once in 3 m" in note for note in model.notes)
+    lower, upper = (world(model, name, [0.0, 0.5])[:, :2] for name in ("lower", "upper"))
+    assert np.abs(lower - [[0, 0], [1.5, 0]]).max() < 0.1
+    assert upper[1, 1] < -0.1  # the file's -x, the right of who looks along its z
+
+
 def test_what_cannot_go_along_is_refused(tmp_path):
     file = two_feet()
     with pytest.raises(ValueError, match="model: must have a looped animation"):

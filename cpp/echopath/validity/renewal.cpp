@@ -88,7 +88,9 @@ class Renewer {
   bool move_hit(int k, const Vec3& step, Scratch& scratch) const {
     LocalHit& hit = scratch.hits[k];
     const uint32_t mesh_id = hit.mesh_id;
-    const Vec3 point = surface_point(scratch.posed[k], step);
+    const PosedHit& from = scratch.posed[k];
+    Vec3 point = surface_point(from, step);
+    if (from.is_smooth) point += from.facet - from.point;  // without a step it is the hit itself
     const Vec3 in_mesh = scene_at_.linear(mesh_id).inverse() * (point - scene_at_.translation(mesh_id));
     const auto spot = walk_.find(mesh_id, hit.triangle_id, pose_.local_vertices(mesh_id), in_mesh);
     if (!spot) return false;

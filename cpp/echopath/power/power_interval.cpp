@@ -17,7 +17,7 @@ constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // 
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
 constexpr double kMostOfImage = 2.0;
-constexpr double kOfEndless = 0.03;  // 0.26 dB, twice the most that polygons of random shapes and places err by
+constexpr double kOfEndless = 0.03;  // 0.26 dB, of which random polygons of up to 8 sides err by half at most
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kFewCells = 600.0;

@@ -31,7 +31,6 @@ def main(arguments=None) -> int:
         print(f"\n{STOPPED}", file=sys.stderr)
         return EXIT_INTERRUPTED
     except BrokenPipeError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(error, Unread):
             with suppress(BrokenPipeError):  # nobody may read this, either
                 print(f"echopath: {error}", file=sys.stderr)
@@ -42,6 +41,8 @@ def main(arguments=None) -> int:
     except MemoryError:
         print("echopath: not enough memory; fewer rays (--rays) need less", file=sys.stderr)
         return EXIT_BAD_INPUT
+    finally:
+        _let_go_of_unread_outputs()
     return 0
 
 
@@ -50,3 +51,12 @@ def _print_what_the_output_lacks() -> None:
     are no reason to end a long run."""
     if getattr(sys.stdout, "errors", None) == "strict" and hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")
+
+
+def _let_go_of_unread_outputs() -> None:
+    """What is left in the buffers of outputs that nobody reads goes nowhere: Python would end with 120 because of it."""
+    for output in (sys.stdout, sys.stderr):
+        try:
+            output.flush()
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())

@@ -5,7 +5,7 @@ import re
 import sys
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from ..base.counts import counted
 from ..base.work_at_hand import work_at_hand
@@ -60,4 +60,5 @@ def _print(message: str, is_late: bool = False) -> None:
 
         tqdm.write(text, file=sys.stderr)  # above a progress bar
     else:
-        print(text, file=sys.stderr, flush=True)
+        with suppress(BrokenPipeError):  # that nobody reads its warnings is no reason to end a run
+            print(text, file=sys.stderr, flush=True)

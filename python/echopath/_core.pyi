@@ -2437,7 +2437,7 @@ class Paths:
     @property
     def flags(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
-        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out. Without 4, flags >> 8 & 63 is the place of its ray among its neighbours in the lattice: 1 to 63 over and over, 0 not known
+        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out; 128, an image over unmarked planes beside an edge, which leaves (flags >> 20) / 1024 of the field of endless ones with the phase (flags >> 8 & 4095) / 4096 of a turn. Without 4 and 128, flags >> 8 & 63 is the place of its ray among its neighbours in the lattice: 1 to 63 over and over, 0 not known
         """
     @property
     def frame(self) -> TraceFrame:
@@ -2725,6 +2725,11 @@ class ValidityShares:
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
+    def beside_edges(self) -> float:
+        """
+        share: what edges of unmarked planes leave of images over them changes by more than 0.3 of the field
+        """
+    @property
     def blocked(self) -> float:
         """
         share: something comes in the way
@@ -2832,6 +2837,11 @@ class Validity:
         A table for notebooks.
         """
     @property
+    def beside_edges_share(self) -> float:
+        """
+        share of the power of images of which edges of unmarked planes leave another share of the field
+        """
+    @property
     def blocked(self) -> numpy.typing.NDArray[numpy.uint64]:
         """
         [P] bit k: something comes in the way of the leg that arrives at hit k
@@ -2842,6 +2852,11 @@ class Validity:
         [P] largest of a cosine, linear
         """
     @property
+    def edge_change(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        [P] largest of what edges leave of an image's field, over the larger of both
+        """
+    @property
     def keyframes(self) -> int:
         """
         traces, each for its own part of the frame, that bring the error by motion below 0.3 rad
@@ -2850,6 +2865,11 @@ class Validity:
     def largest_cosine_change(self) -> float:
         """
         largest change of a cosine, linear
+        """
+    @property
+    def largest_edge_change(self) -> float:
+        """
+        largest change of what edges of unmarked planes leave of a field, over the larger of both
         """
     @property
     def largest_phase_error(self) -> float:

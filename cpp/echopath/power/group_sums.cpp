@@ -153,10 +153,8 @@ class Sums {
     const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
     of_kind.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
-    if (const uint32_t flags = paths_.flags[path]; flags & kBesideEdge) {
-      const double share = share_of_endless(flags);
-      of_kind.endless_with_edges += power / (share * share);
-    }
+    if (const uint32_t flags = paths_.flags[path]; flags & kBesideEdge)
+      of_kind.endless_with_edges += power / std::norm(share_of_endless(flags));
     if (has_cell && power > 0.0) {  // no lattice can miss images
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
       sums.steady_power += steady;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/posed/posed_antenna.h"
 #include "echopath/scene/scene_edges.h"
@@ -134,7 +135,20 @@ void validate_foci(const std::vector<Stratum>& strata) {
   }
 }
 
+constexpr double kSizesOfShare = 1024.0, kPhasesOfShare = 4096.0;
+
 }  // namespace
+
+uint32_t beside_edge_flags(std::complex<double> share) {
+  const auto size = static_cast<uint32_t>(std::clamp(std::round(kSizesOfShare * std::abs(share)), 1.0, 4095.0));
+  const auto phase = static_cast<int>(std::round(kPhasesOfShare / kTwoPi * std::arg(share)));
+  return kBesideEdge | size << 20 | (static_cast<uint32_t>(phase) & 4095u) << 8;
+}
+
+std::complex<double> share_of_endless(uint32_t flags) {
+  if (!(flags & kBesideEdge)) return 1.0;
+  return std::polar(std::max(flags >> 20, 1u) / kSizesOfShare, kTwoPi / kPhasesOfShare * (flags >> 8 & 4095u));
+}
 
 Vec3 Paths::mode_polarization() const {
   const Antenna& first = radar.transmitters.front();

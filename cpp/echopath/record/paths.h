@@ -63,16 +63,13 @@ inline constexpr uint32_t kPastEdge = 32;
 // Marks a diffuse path that counts for others, too, which were left out by lot (power/faint_paths.h).
 inline constexpr uint32_t kStandsForOthers = 64;
 // Marks an image over planes that nobody flagged of which one ends within 16 half zones of the point of reflection
-// (trace/mirrors/mirror_zone.h). Its flags also hold the share that the edges leave of the field of endless planes.
-inline constexpr uint32_t kBesideEdge = 128;
-inline constexpr double kSharesOfEndless = 4096.0;
-// Returns the flags of such a path, and from them the share, to 1/4096 and no less than that.
-constexpr uint32_t beside_edge_flags(double share) {
-  return kBesideEdge | static_cast<uint32_t>(std::clamp(kSharesOfEndless * share + 0.5, 1.0, 65535.0)) << 16;
-}
-constexpr double share_of_endless(uint32_t flags) {
-  return flags & kBesideEdge ? std::max(flags >> 16, 1u) / kSharesOfEndless : 1.0;
-}
+// (trace/mirrors/mirror_zone.h). Its flags also hold the share that the edges leave of the field of endless planes,
+// which is a factor of its weight: the size in 1/1024, at least one of them, and the phase in 1/4096 of a turn.
+inline constexpr uint32_t kBesideEdge = 128, kShareBesideEdge = 0xffffff00u;
+uint32_t beside_edge_flags(std::complex<double> share);
+// Returns that share to kShareRounding, and 1 for other paths.
+std::complex<double> share_of_endless(uint32_t flags);
+inline constexpr double kShareRounding = 2e-3;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
   return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
@@ -88,7 +85,9 @@ constexpr int num_edge_pieces(uint32_t flags) { return static_cast<int>(flags >>
 // other rays.
 inline constexpr int kRaysInTurn = 63;
 constexpr uint32_t turn_flags(int64_t index) { return static_cast<uint32_t>(index % kRaysInTurn + 1) << 8; }
-constexpr int turn_of_ray(uint32_t flags) { return flags & kEdgePath ? 0 : static_cast<int>(flags >> 8 & 63u); }
+constexpr int turn_of_ray(uint32_t flags) {
+  return flags & (kEdgePath | kBesideEdge) ? 0 : static_cast<int>(flags >> 8 & 63u);
+}
 // Returns the flag of a ray's paths by its index: 0 or kSecondHalf. It is the parity of the index's digits (Thue and Morse),
 // so that both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them
 // apart.

@@ -7,7 +7,7 @@ namespace echopath {
 
 // Holds sums of power over paths, W.
 struct PowerSums {
-  double power = 0.0, squared = 0.0, slid = 0.0, left = 0.0, blocked = 0.0, turned = 0.0;
+  double power = 0.0, squared = 0.0, slid = 0.0, left = 0.0, blocked = 0.0, turned = 0.0, beside_edges = 0.0;
 
   void add(const PathState& state, double p, double phase) {
     power += p;
@@ -16,6 +16,7 @@ struct PowerSums {
     if (state.left != 0) left += p;
     if (state.blocked != 0 || state.is_receiver_blocked) blocked += p;
     if (state.is_turned) turned += p;
+    if (state.edge_change > kEdgeLimit) beside_edges += p;
   }
   void add(const PowerSums& other, double scale = 1.0) {
     power += scale * other.power;
@@ -24,10 +25,11 @@ struct PowerSums {
     left += scale * other.left;
     blocked += scale * other.blocked;
     turned += scale * other.turned;
+    beside_edges += scale * other.beside_edges;
   }
   ValidityShares shares() const {
     const double unit = power > 0 ? 1.0 / power : 0.0;
-    return {power, unit * slid, unit * left, unit * blocked, unit * turned, 0.0};
+    return {power, unit * slid, unit * left, unit * blocked, unit * turned, unit * beside_edges, 0.0};
   }
 };
 

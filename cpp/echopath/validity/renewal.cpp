@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/replay/factors/radio_constants.h"
 #include "echopath/validity/frame/frame_probe.h"
+#include "echopath/validity/legs/edge_share.h"
 
 namespace echopath {
 namespace {
@@ -19,10 +21,17 @@ enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
 
 bool stays(Outcome outcome) { return outcome == Outcome::kKept || outcome == Outcome::kMoved; }
 
+// Holds what edges leave of an image that stays.
+struct ShareOfImage {
+  int64_t path;
+  std::complex<double> share;
+};
+
 // Holds what became of a block of paths, and the hits of those that moved, in the order of the record.
 struct BlockOutcome {
   std::vector<Outcome> of_path;
   std::vector<Hit> moved_hits;
+  std::vector<ShareOfImage> shares;
 };
 
 class Renewer {
@@ -38,7 +47,12 @@ class Renewer {
     BlockOutcome block;
     const LocalPaths local = preparer_(indices);
     Scratch scratch(local.longest);
-    for (const LocalPath& path : local.paths) block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
+    for (size_t i = 0; i < indices.size(); ++i) {
+      const LocalPath& path = local.paths[i];
+      block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
+      if (block.of_path.back() == Outcome::kKept && is_over_unflagged_planes(path, preparer_))
+        renew_share(indices[i], path, scratch, block.shares);
+    }
     return block;
   }
 
@@ -63,6 +77,13 @@ class Renewer {
     if (is_blocked(path, scratch.posed.data())) return Outcome::kBlocked;
     if (outcome == Outcome::kMoved) append_hits(path, moved_hits);
     return outcome;
+  }
+
+  // Takes the hits as renew_path has posed them.
+  void renew_share(int64_t index, const LocalPath& path, const Scratch& scratch, std::vector<ShareOfImage>& shares) const {
+    const auto found =
+        find_edge_share(geometry_, path, scratch.posed.data(), start_of(path), end_of(path), kTwoPi / wavenumber_);
+    if (found) shares.push_back({index, found->share});
   }
 
   const Vec3& start_of(const LocalPath& path) const {
@@ -132,6 +153,27 @@ class Renewer {
   PosedScene scene_at_;
 };
 
+// Gives an image the share of the field that edges leave it at the time; one that has not changed stays as it is.
+void set_share(std::complex<double> share, size_t path, Paths& paths) {
+  uint32_t& flags = paths.flags[path];
+  const std::complex<double> recorded = share_of_endless(flags);
+  if (std::abs(share - recorded) < kShareRounding) return;
+  paths.weight[path] *= std::complex<float>(share / recorded);
+  flags &= ~(kBesideEdge | kShareBesideEdge);
+  if (share != 1.0) flags |= beside_edge_flags(share);
+}
+
+// `keep` tells which of the paths of the record are in `paths`.
+void set_shares(const std::vector<BlockOutcome>& blocks, const std::vector<uint8_t>& keep, Paths& paths) {
+  size_t next = 0, path = 0;  // of the record, and its place in `paths`
+  for (const BlockOutcome& block : blocks) {
+    for (const ShareOfImage& image : block.shares) {
+      while (next < static_cast<size_t>(image.path)) path += keep[next++];
+      set_share(image.share, path, paths);
+    }
+  }
+}
+
 // Collects the paths that are still there; those that moved get hits of their own behind those of the record.
 void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Renewal& renewal, Job* job) {
   std::vector<uint8_t> keep;
@@ -156,6 +198,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
     }
   }
   renewal.paths = record.select(keep, job);
+  set_shares(blocks, keep, renewal.paths);
   if (!grown) return;
   renewal.paths.hits = grown;
   for (size_t i = 0; i < moved_offsets.size(); ++i) {

@@ -120,7 +120,20 @@ class ValidityCheck {
     for (size_t i = 0; i < echoes.size() && first + i < num_base(); ++i) {
       times[first + i].replayed.add(echoes[i], found.is_field, weight, band_);
       if (echoes[i].is_lost) times[first + i].lost.add(echoes[i], found.is_field, weight, band_);
+      else if (echoes[i].edge_ratio != 1.0) times[first + i].edges.add(change_by_edges(echoes[i], found.is_field, weight));
     }
+  }
+
+  // Returns what the replay lacks of an echo, since edges leave another share of its field than at the trace.
+  BandSum change_by_edges(const Echo& echo, bool is_field, double weight) const {
+    Echo there = echo;
+    there.amplitude *= echo.edge_ratio;
+    BandSum change;
+    change.add(there, is_field, weight, band_);
+    BandSum replayed;
+    replayed.add(echo, is_field, weight, band_);
+    change.add(replayed, -1.0);
+    return change;
   }
 
   double phase(double length) const { return check_.wavenumber() * length; }
@@ -141,6 +154,8 @@ class ValidityCheck {
       raise(report_.motion_phase_error, phase(check_.error_of(found.state).motion));
       raise(report_.stepped_phase_error, phase(found.state.stepped.largest));
       raise(report_.largest_cosine_change, found.state.cosine_change);
+      raise(report_.largest_edge_change, found.state.edge_change);
+      if (found.state.edge_change > kEdgeLimit) raise(report_.edge_slide, found.state.edge_slide);
     }
     const PowerSums sum = whole.combined(whole.field_scale());
     report_.shares = sum.shares();
@@ -154,7 +169,7 @@ class ValidityCheck {
     const auto size = static_cast<size_t>(paths_.num_paths());
     const auto resize = [size](auto&... columns) { (columns.resize(size), ...); };
     resize(arrays.power, arrays.phase_error, arrays.stepped_phase_error, arrays.left, arrays.blocked,
-           arrays.receiver_blocked, arrays.turned, arrays.cosine_change);
+           arrays.receiver_blocked, arrays.turned, arrays.cosine_change, arrays.edge_change);
   }
 
   void keep(size_t path, const PathFinding& found) {
@@ -167,6 +182,7 @@ class ValidityCheck {
     arrays.receiver_blocked[path] = found.state.is_receiver_blocked;
     arrays.turned[path] = found.state.is_turned;
     arrays.cosine_change[path] = static_cast<float>(found.state.cosine_change);
+    arrays.edge_change[path] = static_cast<float>(found.state.edge_change);
   }
 
   void make_objects() {
@@ -236,7 +252,7 @@ class ValidityCheck {
 bool ObjectValidity::ok() const {
   if (!is_in_range || !is_asked) return true;
   if (!has_paths || is_too_fast || std::abs(error_db) > kObjectErrorDb) return false;
-  return std::max({slid, left, blocked, turned, new_surface}) <= kObjectLimit;
+  return std::max({slid, left, blocked, turned, beside_edges, new_surface}) <= kObjectLimit;
 }
 
 Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings, Job* job) {

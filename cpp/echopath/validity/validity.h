@@ -21,15 +21,17 @@ struct ValiditySettings {
 // fields, are scaled in common to the power of their sum, averaged over the band: else their share would depend on the
 // number of rays.
 struct ValidityShares {
-  double power = 0.0;        // W, the whole of the shares
-  double slid = 0.0;         // phase error of points of reflection above kPhaseLimit
-  double left = 0.0;         // points of reflection that leave the surface around their hit
-  double blocked = 0.0;      // something comes in the way of a leg
-  double turned = 0.0;       // a cosine of incidence or departure changes its sign or by more than a factor of two
-  double new_surface = 0.0;  // of what is seen at the times of the check: power from surface that was hidden from the trace
+  double power = 0.0;         // W, the whole of the shares
+  double slid = 0.0;          // phase error of points of reflection above kPhaseLimit
+  double left = 0.0;          // points of reflection that leave the surface around their hit
+  double blocked = 0.0;       // something comes in the way of a leg
+  double turned = 0.0;        // a cosine of incidence or departure changes its sign or by more than a factor of two
+  double beside_edges = 0.0;  // what edges of planes leave of images over them changes by more than kEdgeLimit
+  double new_surface = 0.0;   // of what is seen at the times of the check: power from surface that was hidden from the trace
 };
 
 inline constexpr double kPhaseLimit = 0.3;       // rad
+inline constexpr double kEdgeLimit = 0.3;        // of a field, which changes by as much with kPhaseLimit
 inline constexpr double kValidityLimit = 0.01;   // share of the power above which a warning is due
 inline constexpr double kObjectLimit = 0.05;     // the same for the power of an object
 inline constexpr double kObjectErrorDb = 0.5;    // dB, the same for the error of an object's power over the frame
@@ -48,6 +50,7 @@ struct ValidityArrays {
   std::vector<uint8_t> receiver_blocked;   // 1: something comes in the way of the leg to the receiver
   std::vector<uint8_t> turned;             // 1: see ValidityShares
   std::vector<float> cosine_change;
+  std::vector<float> edge_change;  // largest of the field that edges of planes leave, over the larger of both
 };
 
 // Describes the paths whose last hit that is no image lies on the object, and all of the object that is seen.
@@ -76,13 +79,17 @@ struct Validity {
   // largest by motion alone (for the trace's own antennas); and the largest that a Newton step leaves.
   double rms_phase_error = 0.0, largest_phase_error = 0.0, motion_phase_error = 0.0, stepped_phase_error = 0.0;
   double largest_cosine_change = 0.0;
+  // These are the largest change of what edges of planes leave of a field (ValidityArrays::edge_change), over the paths that
+  // carry any power, and the largest way in half Fresnel zones of a point of reflection by which it changes too much.
+  double largest_edge_change = 0.0, edge_slide = 0.0;
   std::vector<ObjectValidity> objects;  // by strength
   double cell_noise = 0.0;              // W at the antenna, of an echo as strong as the noise of a range-Doppler cell
   ValidityArrays arrays;
 
   // Returns how many traces, each for its own part of the frame, serve it. The phase error of motion, which falls with the
-  // square of the time from the trace, is then below kPhaseLimit, and what shows new surface turns by kKeyframeTurn at most.
-  // There are at least kOcclusionKeyframes where something is blocked or comes into view.
+  // square of the time from the trace, is then below kPhaseLimit, the change of what edges leave is below kEdgeLimit, and
+  // what shows new surface turns by kKeyframeTurn at most. There are at least kOcclusionKeyframes where something is blocked
+  // or comes into view.
   int keyframes() const;
   bool shares_hold() const;  // each share of the whole is below kValidityLimit
   // Returns what does not hold and what to do about it, a sentence each; empty where one trace serves.
@@ -92,11 +99,12 @@ struct Validity {
 
 // Checks paths at the times of check_times.h, or at those given, for the trace's own antennas and those at the rim of the
 // array of `radar`. It finds the error of the length by points of reflection that slide (specular_slide.h; images are
-// exact), whether they still lie on their surface, which legs are blocked (by shadow rays), how cosines change and, with
-// rays of its own, surface that was hidden from the trace. Of paths that end in a rough surface it checks at most
-// kPathsChecked of each object and number of bounces, evenly spread over the record; with `arrays` it checks all. Memory
-// grows with those alone. The result has the same bits for any number of threads. Raises invalid_argument for a bad radar
-// and for motions that do not cover the times or the frame; raises Cancelled.
+// exact), whether they still lie on their surface, which legs are blocked (by shadow rays), how cosines change and what
+// edges of planes leave of images over them, and, with rays of its own, surface that was hidden from the trace. Of paths
+// that end in a rough surface it checks at most kPathsChecked of each object and number of bounces, evenly spread over the
+// record; with `arrays` it checks all. Memory grows with those alone. The result has the same bits for any number of
+// threads. Raises invalid_argument for a bad radar and for motions that do not cover the times or the frame; raises
+// Cancelled.
 inline constexpr int64_t kPathsChecked = 1 << 14;
 Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings = {}, Job* job = nullptr);
 

@@ -38,12 +38,14 @@ void ObjectAtTime::add(const ObjectAtTime& other) {
   replayed.add(other.replayed);
   lost.add(other.lost);
   fresh.add(other.fresh);
+  edges.add(other.edges);
 }
 
 double ObjectAtTime::true_power() const {
   BandSum sum = replayed;
   sum.add(lost, -1.0);
   sum.add(fresh);
+  sum.add(edges);
   return sum.power();
 }
 

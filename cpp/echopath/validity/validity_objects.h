@@ -28,6 +28,7 @@ class BandSum {
 struct ObjectAtTime {
   BandSum replayed, lost;  // recorded paths: all, and those that are no longer there
   BandSum fresh;           // paths on new surface
+  BandSum edges;           // what recorded paths would have more with what edges of planes leave of them at the time
 
   void add(const ObjectAtTime& other);
   double true_power() const;  // W, of what is left and what is new together

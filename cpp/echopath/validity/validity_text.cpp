@@ -12,6 +12,9 @@ namespace {
 constexpr size_t kMaxObjects = 3;    // in the text
 constexpr size_t kValueColumn = 37;  // of the text
 
+// By so much changes what two edges opposite each other leave of a field, per half Fresnel zone, at most.
+constexpr double kMostPerHalfZone = 2.0;
+
 std::string percent(double share) { return with_digits(share < 0.1 ? 2 : 3, 100.0 * share) + " %"; }
 
 std::string radians(double phase) { return with_digits(2, phase) + " rad"; }
@@ -82,6 +85,7 @@ std::string object_concerns(const ObjectValidity& object, const Validity& report
   add(&ValidityShares::left, "leaves its surface");
   add(&ValidityShares::slid, "slides");
   add(&ValidityShares::turned, "turns to or away from the rays");
+  add(&ValidityShares::beside_edges, "lies beside edges that come nearer or go farther off");
   return text;
 }
 
@@ -109,6 +113,7 @@ std::string concerns(const ValidityShares& shares) {
   add("left", shares.left);
   add("blocked", shares.blocked);
   add("turned", shares.turned);
+  add("beside edges", shares.beside_edges);
   add("new surface", shares.new_surface);
   return text;
 }
@@ -137,6 +142,7 @@ int Validity::keyframes() const {
   double most = std::max(1.0, std::sqrt(motion_phase_error / kPhaseLimit));
   if (std::max({shares.blocked, shares.left, shares.new_surface}) > kValidityLimit)
     most = std::max<double>(most, kOcclusionKeyframes);
+  if (shares.beside_edges > kValidityLimit) most = std::max({most, 2.0, kMostPerHalfZone * edge_slide / kEdgeLimit});
   for (const ObjectValidity& object : objects) {
     const bool changes = std::max({object.blocked, object.new_surface, object.disappears}) > kObjectLimit;
     if (object.ok() || !(changes || !object.has_paths)) continue;
@@ -146,7 +152,8 @@ int Validity::keyframes() const {
 }
 
 bool Validity::shares_hold() const {
-  return std::max({shares.slid, shares.left, shares.blocked, shares.turned, shares.new_surface}) <= kValidityLimit;
+  return std::max({shares.slid, shares.left, shares.blocked, shares.turned, shares.beside_edges, shares.new_surface}) <=
+         kValidityLimit;
 }
 
 std::vector<std::string> Validity::warnings() const {
@@ -163,6 +170,11 @@ std::vector<std::string> Validity::warnings() const {
   if (shares.turned > kValidityLimit) {
     out.push_back(percent(shares.turned) + " of the power comes from surfaces that turn to or away from the rays within "
                                            "the frame. Trace shorter frames.");
+  }
+  if (shares.beside_edges > kValidityLimit) {
+    out.push_back("Edges of planes leave another share of " + percent(shares.beside_edges) + " of the power " +
+                  where(*this) + ", by up to " + percent(largest_edge_change) + " of the field. " + advice(*this) +
+                  most_of(*this, &ValidityShares::beside_edges));
   }
   if (shares.new_surface > kValidityLimit) {
     out.push_back(percent(shares.new_surface) + " of what is seen " + where(*this) +
@@ -187,6 +199,7 @@ std::string Validity::text() const {
   text += line("reflection leaves its surface", percent(shares.left));
   text += line("something comes in the way", percent(shares.blocked));
   text += line("surfaces turn", percent(shares.turned));
+  text += line("edges of planes come near", percent(shares.beside_edges));
   text += line("surface that was hidden", percent(shares.new_surface));
   return text + object_lines(*this);
 }

@@ -219,8 +219,12 @@ share hits; selections share all hits of their trace.)");
           "flags", view_of(&Paths::flags),
           "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on "
           "1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, "
-          "around an edge to a mirror; 64, diffuse, and counts for others that were left out. Without 4, flags >> 8 & 63 is "
-          "the place of its ray among its neighbours in the lattice: 1 to 63 over and over, 0 not known")
+          "around an edge to a mirror; 64, diffuse, and counts for others that were left out; 128, an image over unmarked "
+          "planes beside an edge, which leaves (flags >> 20) / 1024 of the field of endless ones with the phase (flags >> 8 "
+          "& "
+          "4095) / 4096 of a turn. Without 4 and 128, flags >> 8 & 63 is the place of its ray among its neighbours in the "
+          "lattice: 1 to 63 "
+          "over and over, 0 not known")
       .def_property_readonly("jones", &jones_of,
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
                              "transmitter")

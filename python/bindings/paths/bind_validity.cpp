@@ -58,17 +58,21 @@ void bind_shares(py::module_& m) {
       .def_readonly("blocked", &ValidityShares::blocked, "share: something comes in the way")
       .def_readonly("turned", &ValidityShares::turned,
                     "share: a cosine of incidence or departure changes its sign or by more than a factor of two")
+      .def_readonly("beside_edges", &ValidityShares::beside_edges,
+                    "share: what edges of unmarked planes leave of images over them changes by more than 0.3 of the field")
       .def_readonly("new_surface", &ValidityShares::new_surface,
                     "share of single echoes of all that is seen: of what was hidden from the trace")
       .def("__repr__", [](const ValidityShares& self) {
         std::ostringstream text;
         text << "ValidityShares(slid=" << self.slid << ", left=" << self.left << ", blocked=" << self.blocked
-             << ", turned=" << self.turned << ", new_surface=" << self.new_surface << ")";
+             << ", turned=" << self.turned << ", beside_edges=" << self.beside_edges << ", new_surface=" << self.new_surface
+             << ")";
         return text.str();
       });
   def_travel(bound, field("power", &ValidityShares::power), field("slid", &ValidityShares::slid),
              field("left", &ValidityShares::left), field("blocked", &ValidityShares::blocked),
-             field("turned", &ValidityShares::turned), field("new_surface", &ValidityShares::new_surface));
+             field("turned", &ValidityShares::turned), field("beside_edges", &ValidityShares::beside_edges),
+             field("new_surface", &ValidityShares::new_surface));
 }
 
 void bind_objects(py::module_& m) {
@@ -96,11 +100,11 @@ void bind_objects(py::module_& m) {
   def_travel(bound, field("name", &ObjectValidity::name), field("power", &ObjectValidity::power),
              field("slid", &ObjectValidity::slid), field("left", &ObjectValidity::left),
              field("blocked", &ObjectValidity::blocked), field("turned", &ObjectValidity::turned),
-             field("new_surface", &ObjectValidity::new_surface), field("disappears", &ObjectValidity::disappears),
-             field("error_db", &ObjectValidity::error_db), field("seen_power", &ObjectValidity::seen_power),
-             field("turn", &ObjectValidity::turn), field("has_paths", &ObjectValidity::has_paths),
-             field("is_in_range", &ObjectValidity::is_in_range), field("is_too_fast", &ObjectValidity::is_too_fast),
-             field("is_asked", &ObjectValidity::is_asked));
+             field("beside_edges", &ObjectValidity::beside_edges), field("new_surface", &ObjectValidity::new_surface),
+             field("disappears", &ObjectValidity::disappears), field("error_db", &ObjectValidity::error_db),
+             field("seen_power", &ObjectValidity::seen_power), field("turn", &ObjectValidity::turn),
+             field("has_paths", &ObjectValidity::has_paths), field("is_in_range", &ObjectValidity::is_in_range),
+             field("is_too_fast", &ObjectValidity::is_too_fast), field("is_asked", &ObjectValidity::is_asked));
 }
 
 // A column of what was found of each path.
@@ -116,12 +120,15 @@ void def_validity_travel(py::class_<Validity, ValidityPtr>& bound) {
       field("rms_phase_error", &Validity::rms_phase_error), field("largest_phase_error", &Validity::largest_phase_error),
       field("motion_phase_error", &Validity::motion_phase_error),
       field("stepped_phase_error", &Validity::stepped_phase_error),
-      field("largest_cosine_change", &Validity::largest_cosine_change), field("objects", &Validity::objects),
-      field("cell_noise", &Validity::cell_noise), field("specular", &Validity::specular, kSpecularPoints),
-      found("path_power", &ValidityArrays::power), found("path_phase_error", &ValidityArrays::phase_error),
+      field("largest_cosine_change", &Validity::largest_cosine_change),
+      field("largest_edge_change", &Validity::largest_edge_change), field("edge_slide", &Validity::edge_slide),
+      field("objects", &Validity::objects), field("cell_noise", &Validity::cell_noise),
+      field("specular", &Validity::specular, kSpecularPoints), found("path_power", &ValidityArrays::power),
+      found("path_phase_error", &ValidityArrays::phase_error),
       found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error), found("path_left", &ValidityArrays::left),
       found("path_blocked", &ValidityArrays::blocked), found("path_receiver_blocked", &ValidityArrays::receiver_blocked),
-      found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change));
+      found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change),
+      found("path_edge_change", &ValidityArrays::edge_change));
 }
 
 void bind_report(py::module_& m) {
@@ -144,6 +151,9 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
                              "share of the power whose points of reflection leave the surface around their hit")
       .def_property_readonly("turned_share", share(&ValidityShares::turned),
                              "share of the power of surfaces that turn to or away from the rays")
+      .def_property_readonly(
+          "beside_edges_share", share(&ValidityShares::beside_edges),
+          "share of the power of images of which edges of unmarked planes leave another share of the field")
       .def_property_readonly("new_surface_share", share(&ValidityShares::new_surface),
                              "share of single echoes of all that is seen: of what was hidden from the trace")
       .def_property_readonly(
@@ -155,6 +165,8 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
       .def_readonly("stepped_phase_error", &Validity::stepped_phase_error,
                     "rad, largest that a Newton step to the moved points of reflection leaves")
       .def_readonly("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear")
+      .def_readonly("largest_edge_change", &Validity::largest_edge_change,
+                    "largest change of what edges of unmarked planes leave of a field, over the larger of both")
       .def_property_readonly("keyframes", &Validity::keyframes,
                              "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
       .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
@@ -183,6 +195,8 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
       .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
       .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
                              "[P] largest of a cosine, linear")
+      .def_property_readonly("edge_change", array_column(&ValidityArrays::edge_change),
+                             "[P] largest of what edges leave of an image's field, over the larger of both")
       .def("__str__", &Validity::text)
       .def("__repr__", &repr_of);
   define(bound, "_repr_html_", from_package("presentation.notebook", "validity_html"), "A table for notebooks.");

@@ -35,7 +35,8 @@ def _moved_points(case: Case):
 @rule("records renewed at keyframes", "synthesize.retrace")
 def _renewed(case: Case):
     what = {"never": "one record serves the frame",
-            "invalid": f"shadows, points of reflection and new surface, in {SURFACE_SEARCHES} of the stretches at most",
+            "invalid": "shadows, points of reflection, what edges leave of images and new surface, "
+                       f"in {SURFACE_SEARCHES} of the stretches at most",
             "always": "the scene is traced anew"}[case.settings.retrace]
     return case.settings.retrace != "never", f'{what}; retrace = "{case.settings.retrace}"'
 

@@ -15,11 +15,12 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
 
     Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two
     for each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points
-    of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene
-    at these times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors)
-    have no phase error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked
-    at. What more than 256 times would have to follow is a warning. Where the report asks for parts of the frame by themselves,
-    `retrace` of `synthesize` and `simulate` does so, in as many stretches with keyframes=0.
+    of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines, what edges of
+    unmarked planes leave of images over them; and traces the scene at these times for surface that was hidden from the trace.
+    Exact parts of the replay (single bounces, images in mirrors) have no phase error. Of paths that end in a rough surface at
+    most 16384 of each object and number of bounces are looked at. What more than 256 times would have to follow is a warning.
+    Where the report asks for parts of the frame by themselves, `retrace` of `synthesize` and `simulate` does so, in as many
+    stretches with keyframes=0.
     paths: of a trace, all or a selection of them, which asks about these alone
     radar: another waveform, array or motion than that of the trace, or None
     replay: of the replay that is to be certified, as in `synthesize`
@@ -41,7 +42,8 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
 def renew(paths: _core.Paths, radar: _core.Radar | None = None, *, time: float, progress: Progress = None) -> _core.Renewal:
     """A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
 
-    Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into
+    Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Weights of images over
+    unmarked planes get the share of the field that edges leave at the time. Surface that came into
     view has no paths here; `synthesize(retrace="invalid")` adds it.
     paths: of a trace
     radar: whose motion carries the antennas of the trace along, or None: that of the trace

@@ -150,16 +150,17 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   path.recorded = paths_.hits_of(index);
   path.count = paths_.num_bounces[index];
   path.is_reversed = paths_.is_reversed(index);
-  path.edge = echopath::edge_hit(paths_.flags[index]);
-  path.num_edges = num_edge_hits(paths_.flags[index]);
+  path.flags = paths_.flags[index];
+  path.edge = echopath::edge_hit(path.flags);
+  path.num_edges = num_edge_hits(path.flags);
   if (path.edge >= 0 && path.is_reversed) path.edge = path.count - path.edge - path.num_edges;
-  path.is_past_edge = (paths_.flags[index] & kPastEdge) != 0;
+  path.is_past_edge = (path.flags & kPastEdge) != 0;
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[index] >> recorded & 1) << k;
     if (path.is_edge(k)) {
-      block.hits.push_back(edge_hit(hit, num_edge_pieces(paths_.flags[index])));
+      block.hits.push_back(edge_hit(hit, num_edge_pieces(path.flags)));
       path.first_material = path.edge;
       path.last_material = k;
       continue;

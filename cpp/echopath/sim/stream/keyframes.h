@@ -12,7 +12,7 @@ namespace echopath {
 
 enum class Retrace {
   kNever,  // one record serves the frame
-  // Hits stay, shadow rays and points of reflection are renewed (validity/renewal.h), and new surface gets paths.
+  // Hits stay, what became of the legs between them is renewed (validity/renewal.h), and new surface gets paths.
   kInvalid,
   // The scene is traced anew with the same rays. Unless scatterers are those of the surface (record/scatterers.h),
   // phases of rough surfaces then belong to rays, so that their echoes have wrong Doppler: a reference for coherent echoes.

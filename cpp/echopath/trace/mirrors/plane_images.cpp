@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/mirrors/mirror_zone.h"
+#include "echopath/trace/mirrors/plane_bounces.h"
 
 namespace echopath {
 namespace {
@@ -157,23 +157,12 @@ bool PlaneImages::is_known(Facets chain, const std::vector<Vec3>& points) {
 // Returns the share of its field that the edges of its surfaces leave to a path; nothing where one does not cover its
 // Fresnel zone.
 std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
-  std::complex<double> field = 1.0;
-  double whole = (settings_.receiver - path.points.back()).norm(), before = 0.0;
-  for (size_t k = 0; k < path.points.size(); ++k)
-    whole += (path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1])).norm();
+  PlaneBounces bounces(settings_.transmitter, settings_.receiver);
+  for (size_t k = 0; k < path.points.size(); ++k) bounces.add(path.hits[k], path.points[k], planes_[k].normal);
   for (size_t k = 0; k < path.points.size(); ++k) {
-    const Vec3 line = path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1]);
-    before += line.norm();
-    RayHit point;
-    point.hit = path.hits[k];
-    point.position = path.points[k];
-    point.normal = lit_normal(line, planes_[k].normal);
-    const MirrorView view{point, line.normalized(), before, whole - before};
-    if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
-    const Plane* next = k + 1 < path.points.size() ? &planes_[k + 1] : nullptr;
-    field *= field_of_flat_mirror(geometry_, view, wavelength_, num_queries, next);
+    if (cover_of_zone(geometry_, bounces.view(k), nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
   }
-  return field;
+  return bounces.field_beside_edges(geometry_, wavelength_, num_queries);
 }
 
 bool PlaneImages::is_same_plane(const Mirror& plane, const Mirror& other) const {
@@ -215,7 +204,7 @@ PathBlock PlaneImages::find(const Job* job) {
     const std::vector<int> planes = joined(sequence);
     if (!sequences_.insert(planes).second) continue;
     add_path(*path, block);
-    if (*share != 1.0) block.rows.flags[block.rows.size() - 1] |= beside_edge_flags(std::abs(*share));
+    if (*share != 1.0) block.rows.flags[block.rows.size() - 1] |= beside_edge_flags(*share);
     leave_out(planes, path->points);
   }
   find_triangles();

@@ -28,6 +28,8 @@ void merge(const PathState& at, PathState& worst) {
   worst.is_receiver_blocked |= at.is_receiver_blocked;
   worst.is_turned |= at.is_turned;
   worst.cosine_change = std::max(worst.cosine_change, at.cosine_change);
+  worst.edge_change = std::max(worst.edge_change, at.edge_change);
+  worst.edge_slide = std::max(worst.edge_slide, at.edge_slide);
 }
 
 bool is_lost(const PathState& state) { return state.left != 0 || state.blocked != 0 || state.is_receiver_blocked; }
@@ -215,6 +217,7 @@ size_t FrameCheck::check(const LocalPath& path, int num_times, const Echo& trace
   for (size_t i = 0; i < count; ++i) {
     const PathState state = views_[i]->probe.check(path, scratch.probe, scratch.known[i]);
     posed[i].is_lost = is_lost(state);
+    posed[i].edge_ratio = state.edge_ratio;
     found.power += std::norm(posed[i].amplitude);
     ++found.num_powers;
     merge(state, found.state);

@@ -13,9 +13,10 @@ namespace echopath {
 
 // Holds the echo of a path between the first antennas, at one time.
 struct Echo {
-  std::complex<double> amplitude;  // sqrt(W)
-  double length = 0.0;             // m
-  bool is_lost = false;            // something blocks a leg, or a point of reflection has left its surface
+  std::complex<double> amplitude;         // sqrt(W)
+  double length = 0.0;                    // m
+  bool is_lost = false;                   // something blocks a leg, or a point of reflection has left its surface
+  std::complex<double> edge_ratio = 1.0;  // PathState::edge_ratio
 };
 
 // Holds what was found of one path over the times that were checked.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/constants.h"
 #include "echopath/validity/array_corners.h"
+#include "echopath/validity/legs/edge_share.h"
 
 namespace echopath {
 namespace {
@@ -108,6 +110,7 @@ PathState FrameProbe::check(const LocalPath& path, ProbeScratch& scratch, LegMem
   const PosedHit* hits = scratch.hits.data();
   store_shadows(path, path.first_material < 0 ? shadows_of_images(path, hits) : shadows_of(path, hits, known), state);
   check_cosines(path, scratch, state);
+  if (is_over_unflagged_planes(path, preparer_)) check_edges(path, hits, state);
   return state;
 }
 
@@ -218,21 +221,33 @@ void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vect
   fill_cosines(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
 }
 
-// Takes the antennas at both rims by turns, because the cosines at an end change with its own antenna only.
+// The cosines at an end change with its own antenna only.
 void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
   if (path.first_material < 0) return;
   scratch.cosines.assign(2 * path.count, 0.0);
-  const size_t num_pairs = std::max(starts(path).size(), ends(path).size());
-  for (size_t i = 0; i < num_pairs; ++i) {
-    const Vec3& start = starts(path)[std::min(i, starts(path).size() - 1)].position;
-    const Vec3& end = ends(path)[std::min(i, ends(path).size() - 1)].position;
+  for_antennas_in_turn(path, [&](const Vec3& start, const Vec3& end) {
     fill_cosines(path, scratch.hits.data(), start, end, scratch.cosines);
     for (size_t k = 0; k < scratch.cosines.size(); ++k) {
       const double before = scratch.reference[k], now = scratch.cosines[k];
       state.cosine_change = std::max(state.cosine_change, std::abs(now - before));
       if (before != 0 && !(now / before > 1.0 / kTurned && now / before < kTurned)) state.is_turned = true;
     }
-  }
+  });
+}
+
+// Antennas that do not see the image are those of LegShadows.
+void FrameProbe::check_edges(const LocalPath& path, const PosedHit* hits, PathState& state) const {
+  const std::complex<double> recorded = share_of_endless(path.flags);
+  bool is_own = true;
+  for_antennas_in_turn(path, [&](const Vec3& start, const Vec3& end) {
+    const auto found = find_edge_share(geometry_, path, hits, start, end, kTwoPi / wavenumber_);
+    if (!found) return;
+    const double largest = std::max(std::abs(found->share), std::abs(recorded));
+    state.edge_change = std::max(state.edge_change, std::abs(found->share - recorded) / largest);
+    state.edge_slide = std::max(state.edge_slide, found->slide);
+    if (is_own) state.edge_ratio = found->share / recorded;
+    is_own = false;
+  });
 }
 
 }  // namespace echopath

@@ -1,6 +1,8 @@
 #pragma once
 // Finds what has become of recorded paths at one instant of a frame: how far their frozen points of reflection are off,
-// which legs something blocks, how the surfaces have turned.
+// which legs something blocks, how the surfaces have turned, and what edges of planes leave of images over them.
+#include <algorithm>
+#include <complex>
 
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"
@@ -25,6 +27,10 @@ struct PathState {
   bool is_receiver_blocked = false;
   bool is_turned = false;      // some cosine changes by more than a factor of two, or its sign
   double cosine_change = 0.0;  // largest change of a cosine of incidence or departure
+  // Of an image over unmarked planes these are the field that edges leave for the trace's antennas, over that of the record;
+  // the largest change of it for some antenna, over the larger of both; and EdgeShare::slide at most.
+  std::complex<double> edge_ratio = 1.0;
+  double edge_change = 0.0, edge_slide = 0.0;
 };
 
 // Returns `radar` with the trace's antennas, carried along by its motion, first, and then those at the rim of its array.
@@ -62,6 +68,15 @@ class FrameProbe {
   LegShadows shadows_of_images(const LocalPath& path, const PosedHit* hits) const;
   LegShadows shadows_of(const LocalPath& path, const PosedHit* hits, LegMemo& known) const;
   void check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
+  void check_edges(const LocalPath& path, const PosedHit* hits, PathState& state) const;
+  // Calls `visit` with the ends of a path at each of its antennas: both go from rim to rim by turns.
+  template <class Visit>
+  void for_antennas_in_turn(const LocalPath& path, Visit visit) const {
+    const size_t num_pairs = std::max(starts(path).size(), ends(path).size());
+    for (size_t i = 0; i < num_pairs; ++i)
+      visit(starts(path)[std::min(i, starts(path).size() - 1)].position,
+            ends(path)[std::min(i, ends(path).size() - 1)].position);
+  }
   const std::vector<PosedAntenna>& starts(const LocalPath& path) const {
     return path.is_reversed ? rim_.receivers : rim_.transmitters;
   }

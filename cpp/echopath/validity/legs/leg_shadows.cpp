@@ -73,8 +73,11 @@ bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   const bool is_there = verdict == EmbreeScene::Verdict::kHit;
   const double slack = kOnMirrorAbsolute + kOnMirrorRelative * length;
   const bool is_on_plane = is_there && std::abs(hits_[image].height(met.position)) < slack;
-  if (is_on_plane && met.hit.mesh_id == path_.hits[image].mesh_id) return false;
-  if (is_there && std::abs(met.distance - length) < slack) return false;
+  if ((is_on_plane && met.hit.mesh_id == path_.hits[image].mesh_id) ||
+      (is_there && std::abs(met.distance - length) < slack)) {
+    meet_image(image, met);
+    return false;
+  }
   if (is_there && met.distance < length) return true;
   shadows_.off_mirror |= uint64_t{1} << image;
   return false;
@@ -89,8 +92,14 @@ bool LegTester::is_blocked_before_sheet(const Vec3& from, const Vec3& to, int im
   const bool is_there =
       geometry_.intersect_from_surface(start, direction, met, Sees::kSheets) == EmbreeScene::Verdict::kHit &&
       met.hit.mesh_id == path_.hits[image].mesh_id && met.distance < 4.0 * slack;
-  if (!is_there) shadows_.off_mirror |= uint64_t{1} << image;
+  if (is_there) meet_image(image, met);
+  else shadows_.off_mirror |= uint64_t{1} << image;
   return false;
+}
+
+void LegTester::meet_image(int image, const RayHit& met) {
+  image_hits_[image] = met.hit;
+  met_images_ |= uint64_t{1} << image;
 }
 
 // Tests the legs from `from` over the mirrors [first, last) to `to`; they arrive at the hits first to last.

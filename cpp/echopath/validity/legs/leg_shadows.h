@@ -1,5 +1,6 @@
 #pragma once
 // Finds the legs of a path that something stands in the way of, at one instant.
+#include <bit>
 #include <cstdint>
 
 #include "echopath/replay/posed/path_geometry.h"
@@ -35,6 +36,10 @@ class LegTester {
   // Tests the legs of a path over images alone.
   void test_images(const Vec3& start, const Vec3& end);
   const LegShadows& shadows() const { return shadows_; }
+  // Returns whether a wave was found, by one test, that meets all hits of the path in turn as images; then these are where.
+  bool meets_all_images() const { return std::popcount(met_images_) == path_.count; }
+  const Vec3& image_point(int hit) const { return image_points_[hit]; }
+  const Hit& image_hit(int hit) const { return image_hits_[hit]; }
 
  private:
   struct End;
@@ -48,6 +53,7 @@ class LegTester {
   Vec3 lifted_end(const End& end, const Vec3& point, const Vec3& toward) const;
   bool is_blocked(const Vec3& from, const Vec3& to, int image);
   bool is_blocked_before_sheet(const Vec3& from, const Vec3& to, int image);
+  void meet_image(int image, const RayHit& met);
   bool is_known_blocked(int first, int last) const;
   void block(int leg);
 
@@ -56,6 +62,8 @@ class LegTester {
   const PosedHit* hits_;
   LegShadows shadows_;
   Vec3 image_points_[64];
+  Hit image_hits_[64];
+  uint64_t met_images_ = 0;  // bit per hit: its point and hit as an image are known
 };
 
 }  // namespace echopath

@@ -1,0 +1,26 @@
+#pragma once
+// Tells what the edges of planes leave of the field of a path over them.
+#include <complex>
+#include <vector>
+
+#include "echopath/trace/mirrors/mirror_zone.h"
+
+namespace echopath {
+
+// Holds where a path from antenna to antenna bounces off planes, in the order of travel.
+class PlaneBounces {
+ public:
+  PlaneBounces(const Vec3& from, const Vec3& to) : from_(from), to_(to) {}
+  // `normal` is that of the plane, unit, on either side.
+  void add(const Hit& hit, const Vec3& point, const Vec3& normal);
+  // Returns a bounce as the wave sees it that comes from one antenna and goes to the other. It refers to the bounce.
+  MirrorView view(size_t bounce) const;
+  // Returns the field of the path over that of endless planes (field_of_flat_mirror); e^{+jwt}.
+  std::complex<double> field_beside_edges(const EmbreeScene& geometry, double wavelength, int64_t& num_queries) const;
+
+ private:
+  Vec3 from_, to_;
+  std::vector<RayHit> points_;
+};
+
+}  // namespace echopath

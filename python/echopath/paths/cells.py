@@ -10,6 +10,7 @@ from ..arguments.checks import ArrayLike, anything, array, checked, row_of_chann
 from ..base.callers import warn_user
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
+from ..base.velocities import ambiguity_of
 from ..transmit.signals import chirp_of, step_names
 
 TURNING_STEP = 0.125  # chirps, over which the phase of an amplitude is followed: by less than half a turn
@@ -149,5 +150,5 @@ def _range_index(beat, waveform, axis):
 def _velocity_index(velocity, axis, radar):
     """Nearest cell of each velocity in m/s, folded into the axis: i32 [P]."""
     count = len(axis)
-    step = 2.0 * radar.waveform.max_velocity(radar.num_slots) / count
+    step = ambiguity_of(radar) / count
     return ((np.rint(velocity / step).astype(np.int64) + count // 2) % count).astype(np.int32)

@@ -1,11 +1,11 @@
 """A Kalman filter of points in the plane that go straight at constant speed but for random accelerations."""
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.velocities import folded
 from .points import Points
 
 KNOWN = 0.25  # of the ambiguity, the most that a speed may be uncertain by to be told from those that look the same
@@ -84,6 +84,4 @@ class Filter:
         of_speed = np.einsum("mi,ij,mj->m", found.sights, self.covariance[2:, 2:], found.sights) + found.speed_std**2
         tells = found.ambiguity * KNOWN > np.sqrt(of_speed)
         off = found.speeds - found.sights @ self.state[2:]
-        if 0.0 < found.ambiguity < math.inf:
-            off -= found.ambiguity * np.rint(off / found.ambiguity)
-        return rows, np.column_stack([found.points - self.state[:2], off]), noise, tells
+        return rows, np.column_stack([found.points - self.state[:2], folded(off, found.ambiguity)]), noise, tells

@@ -9,6 +9,7 @@ import numpy as np
 from ..arguments.checks import array, refused
 from ..arguments.iterables import iterable
 from ..base.antennas import velocity_of_antennas
+from ..base.velocities import ambiguity_of
 from ..detections import Detections
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
@@ -56,8 +57,7 @@ class Carrier:
 
 def carrier_of(radar, time: float) -> Carrier:
     """Of a radar at a time in s."""
-    ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
-    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity)
+    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity_of(radar))
 
 
 def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float | None,

@@ -19,6 +19,7 @@ from ...arguments.checks import path as folder_rule
 from ...base.antennas import centre_of
 from ...base.files import write_texts, written_whole
 from ...base.rates import radar_rate
+from ...base.velocities import ambiguity_of, folded
 from ...detections.detections import Detections
 from ...frame_file.h5 import writing
 from ..classes import CODES
@@ -135,7 +136,7 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
     rows["rcs"] = cross_sections_dbsm(found, radar, time)
     rows["vr"] = found.velocity
-    rows["vr_compensated"] = _folded(found.velocity - _own_velocity(found, own, pose), radar)
+    rows["vr_compensated"] = folded(found.velocity - _own_velocity(found, own, pose), ambiguity_of(radar))
     rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
     rows["uuid"] = [_identity(number, index) for index in range(len(found))]
     rows["track_id"] = ["" if kind == "static" else _identity(scene, name) for kind, name in zip(kinds, found.object)]
@@ -149,12 +150,6 @@ def _own_velocity(found: Detections, own: NDArray[np.float64], pose: _Pose) -> N
     ways = own - found.centre
     directions = ways / np.linalg.norm(ways, axis=1, keepdims=True)
     return np.asarray(-directions @ pose.velocity_of(found.centre))
-
-
-def _folded(velocities: NDArray[np.float64], radar: Any) -> NDArray[np.float64]:
-    """The smallest of the velocities in m/s that look the same to a radar: what stands, stands at any speed of the radar."""
-    ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
-    return np.asarray(velocities - ambiguity * np.rint(velocities / ambiguity))
 
 
 def _identity(*parts: object) -> str:

@@ -1,0 +1,19 @@
+"""Radial velocities that look the same to a radar."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def ambiguity_of(radar: Any) -> float:
+    """m/s, by which radial velocities differ that look the same; inf for a single chirp."""
+    return 2.0 * float(radar.waveform.max_velocity(radar.num_slots))
+
+
+def folded(velocities: NDArray[np.float64], ambiguity: float) -> NDArray[np.float64]:
+    """The smallest of the velocities in m/s that look the same as each: themselves where none or all do (inf, 0)."""
+    if not 0.0 < ambiguity < np.inf:
+        return velocities
+    return np.asarray(velocities - ambiguity * np.rint(velocities / ambiguity))

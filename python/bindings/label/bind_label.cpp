@@ -138,6 +138,7 @@ void bind_num_bounces(py::module_& m) {
       .def("__lt__", [](const NumBounces&, BounceCount count) { return ~between(*count, kUnlimited); })
       .def("__le__", [](const NumBounces&, BounceCount count) { return between(0, *count); })
       .def("__bool__", [](const NumBounces&) -> bool { refuse_truth("ep.num_bounces"); })
+      .def("__reduce__", [](const NumBounces&) { return "num_bounces"; })  // of this module, itself
       .def("__repr__", [](const NumBounces&) { return "ep.num_bounces"; });
   m.attr("num_bounces") = NumBounces{};
 }
@@ -157,6 +158,7 @@ ep.power > 1e-15 is a Selection; `paths.power` has the values.)");
       .def("__eq__", [](const Power&, const py::object&) -> bool { refuse_equality(); })
       .def("__ne__", [](const Power&, const py::object&) -> bool { refuse_equality(); })
       .def("__bool__", [](const Power&) -> bool { refuse_truth("ep.power"); })
+      .def("__reduce__", [](const Power&) { return "power"; })
       .def("__repr__", [](const Power&) { return "ep.power"; });
   m.attr("power") = Power{};
 }

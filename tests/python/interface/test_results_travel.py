@@ -269,3 +269,9 @@ def test_meshes_of_a_scene_travel(copied):
         assert other.mesh == mesh.mesh and np.array_equal(other.triangles, mesh.triangles)
     with pytest.raises(ValueError, match="state: must have the field 'node'"):
         type(mesh).__new__(type(mesh)).__setstate__({"id": 0, "node_index": 0})
+
+
+@pytest.mark.parametrize("name", ["power", "num_bounces"])
+def test_what_rules_begin_with_stays_itself(name):
+    value = getattr(ep, name)
+    assert there_and_back(value) is value and copy.copy(value) is value and copy.deepcopy([value])[0] is value

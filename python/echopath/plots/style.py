@@ -117,21 +117,39 @@ def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *,
     if not isinstance(drawn, FigureBase):
         raise refused(TypeError, "figure", "a figure of matplotlib, or axes in it", figure)
 
-    with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary:
-        _settle(drawn.figure)
+    with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary, _settled(drawn.figure):
         drawn.figure.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))
 
 
-def _settle(figure: Figure) -> None:
-    """Lays a figure out until nothing moves any more: each drawing goes on from the layout of the last."""
-    dpi, figure.dpi = figure.dpi, DPI
+@contextmanager
+def _settled(figure: Figure):
+    """Lays a figure out until nothing moves any more, each time going on from the last, and keeps it so meanwhile: saving would
+    lay it out and draw it once more before it draws it."""
+    import matplotlib
+
+    engine, dpi = figure.get_layout_engine(), figure.dpi
+    if engine is None:
+        yield
+        return
+    figure.dpi = DPI
     try:
-        before = None
-        for _ in range(_MOST_LAYOUTS):
-            figure.draw_without_rendering()
-            places = [axes.get_position().bounds for axes in figure.get_axes()]
-            if before is not None and np.allclose(places, before, rtol=0.0, atol=_SETTLED):
-                return
-            before = places
+        figure.draw_without_rendering()  # what has never been drawn does not know all of its sides
+        before = _places(figure)
+        for _ in range(_MOST_LAYOUTS - 1):
+            engine.execute(figure)
+            after = _places(figure)
+            if np.allclose(after, before, rtol=0.0, atol=_SETTLED):
+                break
+            before = after
     finally:
         figure.dpi = dpi
+    with matplotlib.rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+    try:
+        yield
+    finally:
+        figure.set_layout_engine(engine)
+
+
+def _places(figure: Figure) -> list:
+    return [axes.get_position().bounds for axes in figure.get_axes()]

@@ -1,6 +1,7 @@
 """Fixtures of several tests."""
 import os
 import signal
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,6 +35,14 @@ def pytest_collection_modifyitems(items):
     """Begins with the longest files; all others come by name, in all processes alike."""
     place = {name: index for index, name in enumerate(LONGEST_FILES)}
     items.sort(key=lambda item: (place.get("/".join(item.path.parts[-2:]), len(place)), item.path))
+
+
+@pytest.fixture
+def blank_pictures(monkeypatch):
+    """The figures and films of commands are made but not drawn, which they spend most of their time with: for tests of all else.
+    Their files are there, and empty."""
+    monkeypatch.setattr(ep.plots, "save_png", lambda figure, path, **_: Path(path).write_bytes(b""))
+    monkeypatch.setattr("echopath.cli.run_sequence.write_film_of", lambda drive, path, interval: Path(path).write_bytes(b""))
 
 
 @pytest.fixture

@@ -153,6 +153,7 @@ def test_files_of_a_run_know_who_was_there(tmp_path, keep):
         assert np.array_equal(loaded.cube, sequence[0].cube)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_scene_files_and_the_command_line_do_the_same(tmp_path):
     (tmp_path / "fcd.xml").write_text(fcd())
     parts = "\n".join(f"""[[objects]]

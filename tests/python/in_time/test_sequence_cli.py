@@ -44,6 +44,7 @@ def run(scene: Path, out: Path, *options) -> int:
     return main(["run", str(scene), "--out", str(out), *map(str, options)])
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_a_run_tells_of_each_frame_and_goes_on(scene_path, tmp_path, capsys):
     out = tmp_path / "out"
     assert run(scene_path, out, "--frames", 2, "--interval", 0.1) == 0
@@ -61,6 +62,7 @@ def test_a_run_tells_of_each_frame_and_goes_on(scene_path, tmp_path, capsys):
     assert (ep.load_sequence(out)[3].noisy_cube == alone.noisy_cube).all()
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_a_run_ends_with_what_its_rays_do_not_resolve_in_some_frame(scene_path, tmp_path, capsys):
     """The last lines, of the frames that were made; those that were there are not asked."""
     plate = 'actor = "plate"\nparameters = {width = 1.0, height = 1.0}\nmaterial = "metal"'
@@ -95,6 +97,7 @@ def test_frames_are_read_once_for_their_pictures_whose_failure_is_a_warning(scen
     assert ep.load_sequence(out).is_done.all()
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_a_scene_file_may_ask_for_frames_in_time(scene_path, tmp_path, capsys):
     scene_path.write_text(SCENE + IN_TIME)
     table = ep.load_scene(scene_path).sequence
@@ -129,6 +132,7 @@ def test_wrong_options_are_named(scene_path, tmp_path, capsys, options, told):
     assert capsys.readouterr().err.startswith(f"echopath: {told}")
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
     out = tmp_path / "out"
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 0
@@ -184,6 +188,7 @@ def test_the_viewer_takes_a_folder_or_several_files(monkeypatch):
         assert main(["view", *given]) == 0 and opened.pop() == viewed
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_info_tells_of_a_folder_and_small_files_say_what_they_lack(scene_path, tmp_path, capsys):
     out = tmp_path / "out"
     run(scene_path, out, "--frames", 3, "--interval", 0.1, "--keep", "maps")
@@ -218,6 +223,7 @@ def test_info_names_objects_or_their_parts_and_tells_which_move(tmp_path, capsys
     assert all(("/" in line[0]) == shows_parts for line in of_cars)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_one_file_of_all_frames_is_written_goes_on_and_is_told_of(scene_path, tmp_path, capsys):
     out = tmp_path / "drive.h5"
     for frames in (1, 2):
@@ -250,6 +256,7 @@ def test_a_shard_belongs_to_frames_in_time(scene_path, tmp_path, capsys):
     assert "--shard: belongs to frames in time, give --frames too, got 1/2" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_warnings_are_lines_that_name_the_frame(scene_path, tmp_path, capsys):
     """A plate that goes beyond the last range: after 100 s it is heard no longer."""
     assert run(scene_path, tmp_path / "out", "--frames", 2, "--interval", 100) == 0

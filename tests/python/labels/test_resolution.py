@@ -256,6 +256,7 @@ def test_groups_of_the_wrong_size_are_refused(frame):
         ep.received_powers(frame.paths, np.ones(frame.paths.num_paths, np.uint32), 1)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_the_label_command_says_what_is_not_resolved(frame, tmp_path, capsys):
     """In the rows of its tables and in its last lines, by the names of the objects that it was asked for."""
     ep.save_frame(frame, tmp_path / "frame.h5")

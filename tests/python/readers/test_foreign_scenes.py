@@ -258,6 +258,7 @@ def test_an_object_alone_is_no_mirror_in_the_scene_that_is_written_for_it(tmp_pa
     assert ep.trace(found.scene, found.radar, num_rays=2000).num_paths > 100
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_things_of_a_street_are_told_apart_in_the_scene_that_is_written_for_it(tmp_path, capsys):
     boxes = {"ground": ((60, 30, 0.1), (20, 0, -0.05)), "house": ((30, 10, 8), (20, 14, 4)),
              "wall": ((30, 0.3, 5), (20, -8, 2.5)), "van": ((4.5, 1.9, 2), (8, 2.2, 1.1)),

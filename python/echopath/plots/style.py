@@ -128,7 +128,7 @@ def _settled(figure: Figure):
     import matplotlib
 
     engine, dpi = figure.get_layout_engine(), figure.dpi
-    if engine is None:
+    if engine is None or not figure.get_axes():
         yield
         return
     figure.dpi = DPI

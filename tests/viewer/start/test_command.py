@@ -11,6 +11,7 @@ import time
 import pytest
 
 import echopath as ep
+from echopath.cli import main
 
 PATIENCE = 60  # s
 VIEW = [sys.executable, "-m", "echopath", "view"]
@@ -51,11 +52,14 @@ def run(command, **environment) -> subprocess.CompletedProcess:
                           text=True, timeout=PATIENCE)
 
 
-def test_a_file_that_is_none_of_ours_is_refused_before_a_window_opens(tmp_path):
+def test_a_file_that_is_none_of_ours_is_refused_before_a_window_opens(tmp_path, monkeypatch, capsys):
     (tmp_path / "frame.h5").write_text("not HDF5")
-    done = run([*VIEW, str(tmp_path / "frame.h5")])
-    assert done.returncode == 2 and done.stderr.startswith("echopath: ") and "frame.h5" in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+    from echopath_viewer.window import MainWindow
+
+    monkeypatch.setattr(MainWindow, "showEvent", None)  # no window opens
+    assert main(["view", str(tmp_path / "frame.h5")]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("echopath: ") and "frame.h5" in told and len(told.splitlines()) == 1
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have a screen")

@@ -176,9 +176,10 @@ keep_bytecode() {
 # On all processors, files as a whole, since the tests of a file share what is slow to make, and in the order of
 # tests/python/conftest.py: xdist would begin those of few tests last, which are the longest.
 # NumPy and FINUFFT keep to one thread each: those of several processes would wait for each other at full speed.
+# Without what tests of windows need, whose library looks at every import.
 run_python_tests() {
   OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile \
-    --no-loadscope-reorder tests/python "$@"
+    --no-loadscope-reorder -p no:pytest-qt tests/python "$@"
 }
 
 # Runs a command with a screen of its own, in a shell of its own, which ends it however it ends. The screen does not begin anew

@@ -74,6 +74,17 @@ TEST(EdgeShadow, IsReciprocal) {
     EXPECT_NEAR(std::abs(element(there, beyond, field) - element(back, field, beyond)), 0.0, 1e-12);
 }
 
+// The other face of the wedge is another direction, in which the wave may well go straight on.
+TEST(EdgeShadow, HasAlongAFaceTheFieldBesideIt) {
+  const Wedge wedge = wedge_of(1.5 * kPi);
+  const double source = 0.5 * kPi - 2e-3;
+  const double beside = std::abs(coefficients(wedge, source, 1e-6, 1e3).magnetic);
+  for (const double rounding : {-1e-16, 0.0, 1e-16}) {
+    EXPECT_NEAR(std::abs(coefficients(wedge, source, rounding, 1e3).magnetic), beside, 1e-4 * beside) << rounding;
+    EXPECT_NEAR(std::abs(coefficients(wedge, rounding, source, 1e3).magnetic), beside, 1e-4 * beside) << rounding;
+  }
+}
+
 TEST(EdgeShadow, VanishesInsideOfTheWedgeAndAlongTheEdge) {
   const Wedge wedge = wedge_of(1.5 * kPi);
   EXPECT_EQ(diffraction_matrix(wedge, -across(1.0), across(1.8 * kPi), 10.0).norm(), 0.0);

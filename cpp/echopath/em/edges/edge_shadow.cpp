@@ -34,12 +34,8 @@ Eigen::Matrix3cd diffraction_matrix(const Wedge& wedge, const Vec3& in, const Ve
   const double sine = across_in.norm();
   if (std::min(sine, across_out.norm()) < kLeastAcross || !is_outside(wedge, -in) || !is_outside(wedge, out))
     return Eigen::Matrix3cd::Zero();
-  const auto angle = [&](const Vec3& direction) {
-    const double about = std::atan2(direction.dot(wedge.faces[0].normal), direction.dot(wedge.faces[0].inward));
-    return std::clamp(about < 0 ? about + kTwoPi : about, 0.0, wedge.exterior_angle);
-  };
   const double n = wedge.exterior_angle / kPi, zone = std::sqrt(2.0 * phase / kPi) * sine;
-  const double turn = angle(out) - angle(-in), sum = angle(out) + angle(-in);
+  const double source = angle_about(wedge, -in), at = angle_about(wedge, out), turn = at - source, sum = at + source;
   const std::complex<double> shadow = Term{kPi + turn, n, zone}.value() + Term{kPi - turn, n, zone}.value();
   const std::complex<double> reflection =
       Term{kPi - sum, n, zone}.faded() + Term{kPi + sum - 2.0 * wedge.exterior_angle, n, zone}.faded();

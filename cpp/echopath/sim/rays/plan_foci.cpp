@@ -23,6 +23,9 @@ constexpr double kMinGain = 1.5;       // of the density of rays in a focus, ove
 // them before the power would earn it them.
 constexpr double kChainShare = 0.25;  // of the stratum's rays, at most
 constexpr double kCellsInZone = 1.5;  // of a focus, in the half width of a Fresnel zone, which resolve it
+// Where a focus fades the cells of its stratum count in part. The phase of another glint may turn by so many cycles within
+// one of them, beyond which its footprint would leave the rest of that glint out.
+constexpr double kCyclesInCell = 0.1;
 
 // Describes a glint behind several bounces with the focus that it needs, whose share is in rays.
 struct ChainFocus {
@@ -30,6 +33,13 @@ struct ChainFocus {
   double power = 0.0;  // W
 
   double field_per_ray() const { return std::sqrt(power) / focus.share; }
+};
+
+// Describes a glint of one bounce with the focus that would have it to itself.
+struct SingleGlint {
+  LaunchFocus focus;
+  double power = 0.0;   // W
+  double narrow = 0.0;  // rad, half width of the Fresnel zone
 };
 
 // Describes a stratum of the trace to come.
@@ -43,6 +53,7 @@ struct StratumPlan {
   double of_glints = 0.0, of_foci = 0.0;  // W, powers of all glints added up, and of those in a focus
   double power() const { return std::max(echo.power, of_glints); }
   std::vector<LaunchFocus> foci;
+  std::vector<SingleGlint> singles;  // all that are not faint, with foci or without
   std::vector<ChainFocus> chains;
 };
 
@@ -89,7 +100,9 @@ void add_glint(const Glint& glint, StratumPlan& plan) {
   plan.of_glints += power;
   const auto fits = [&](const LaunchFocus& focus) { return kTwoPi * focus.versine <= kLargestPart * plan.solid_angle; };
   const LaunchFocus focus = focus_on(glint, power, plan);
-  if (!fits(focus) || !(power >= kFaintest * plan.power())) return;
+  if (!(power >= kFaintest * plan.power())) return;
+  plan.singles.push_back({focus, power, glint.narrow});
+  if (!fits(focus)) return;
   const auto shared = std::ranges::find_if(
       plan.foci, [&](const LaunchFocus& other) { return cuts(other, focus) && fits(around(other, focus)); });
   if (shared == plan.foci.end() && plan.foci.size() == kMaxFoci) return;
@@ -105,13 +118,25 @@ void add_chain(const Glint& glint, StratumPlan& plan) {
   plan.chains.push_back({focus, std::min(glint.power, plan.echo.high)});
 }
 
+// Returns whether a focus would fade where a stronger glint of one bounce, which has none, turns its phase within the cells of
+// the stratum: the parts on both sides would no longer add up to that glint.
+bool would_cut_stronger(const ChainFocus& chain, const StratumPlan& plan) {
+  const double reach = radius_of(chain.focus) * plan.cell;
+  return std::ranges::any_of(plan.singles, [&](const SingleGlint& single) {
+    return single.power > chain.power && reach > kCyclesInCell * single.narrow * single.narrow &&
+           cuts(chain.focus, single.focus);
+  });
+}
+
 // Sets a focus about a glint behind several bounces with the rays that it needs, or with those that are `left` of those for
 // such glints, unless they would lie hardly closer than without it. One that another focus would cut shares a focus with it,
 // if that is still small and has rays as close as before. Returns the rays that it takes.
-double serve_chain(const LaunchFocus& wanted, double left, StratumPlan& plan) {
+double serve_chain(const ChainFocus& chain, double left, StratumPlan& plan) {
+  const LaunchFocus& wanted = chain.focus;
   const auto fits = [&](const LaunchFocus& focus) { return size_of(focus) <= kLargestPart * plan.solid_angle; };
   const auto shared = std::ranges::find_if(plan.foci, [&](const LaunchFocus& other) { return cuts(other, wanted); });
   const bool is_new = shared == plan.foci.end();
+  if (is_new && would_cut_stronger(chain, plan)) return 0.0;
   LaunchFocus focus = is_new ? wanted : around(*shared, wanted);
   if (!fits(focus) || (is_new && plan.foci.size() == kMaxFoci)) return 0.0;
   const double before = is_new ? 0.0 : shared->share;
@@ -129,7 +154,7 @@ void serve_chains(StratumPlan& plan) {
                            [](const ChainFocus& a, const ChainFocus& b) { return a.field_per_ray() > b.field_per_ray(); });
   double left = kChainShare * plan.rays;
   for (const ChainFocus& chain : plan.chains) {
-    if (chain.power >= kFaintest * plan.power()) left -= serve_chain(chain.focus, left, plan);
+    if (chain.power >= kFaintest * plan.power()) left -= serve_chain(chain, left, plan);
   }
 }
 

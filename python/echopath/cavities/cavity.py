@@ -45,9 +45,11 @@ class Cavity:
 
     @property
     def triangles_of_mouth(self) -> np.ndarray:
-        """Corners [T, 3, 3] in m of triangles that make up the mouth."""
+        """Corners [T, 3, 3] in m of triangles that make up the mouth, without those of corners that lie on one side."""
         corners = np.array(self.mouth)
-        return np.array([corners[[0, i, i + 1]] for i in range(1, len(corners) - 1)])
+        fan = np.array([corners[[0, i, i + 1]] for i in range(1, len(corners) - 1)])
+        sizes = np.linalg.norm(np.cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]), axis=1)
+        return fan[sizes > FLAT * sizes.sum()]
 
 
 def _is_convex(corners) -> bool:

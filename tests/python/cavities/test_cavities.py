@@ -22,6 +22,7 @@ PLATE_SIDE = 0.06  # m
 FRINGES = np.arange(3) / 6.0  # wavelengths: thirds of a turn there and back
 AZIMUTHS = np.arange(0.0, 65.0, 8.0)       # deg
 MODES_TOLERANCE = 0.1    # of the strongest field: modes that are cut off, and what the mouth sends back; .04 to .085 found
+SUMMATION = 0.01        # of the strongest field: a mouth of other triangles
 RECIPROCITY = 1e-9      # of the strongest field: rounding
 
 
@@ -116,6 +117,15 @@ def test_parts_and_shapes_are_those_of_other_cross_sections():
     parts = ep.rcs(scene, frequency=FREQUENCY, incidence=(1, 0, 0), polarization="vv", cavities=cavity, components=True)
     assert parts == {"coherent": pytest.approx(both[0, 0], rel=1e-6), "diffuse": 0.0}
     assert isinstance(parts["coherent"], float)
+
+
+def test_corners_of_a_mouth_may_lie_on_its_sides():
+    """As those of the rim of a mesh do."""
+    scene, cavity = small_guide()
+    corners = np.array(cavity.mouth)
+    rim = np.stack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))], axis=1).reshape(-1, 3)
+    four, eight = (np.sqrt(echoes(scene, one, "vv")) for one in (cavity, ep.Cavity(cavity.walls, rim)))
+    assert eight == pytest.approx(four, abs=SUMMATION * four.max())
 
 
 def test_a_cavity_is_a_value():

@@ -118,8 +118,8 @@ void add_chain(const Glint& glint, StratumPlan& plan) {
   plan.chains.push_back({focus, std::min(glint.power, plan.echo.high)});
 }
 
-// Returns whether a focus would fade where a stronger glint of one bounce, which has none, turns its phase within the cells of
-// the stratum: the parts on both sides would no longer add up to that glint.
+// Returns whether a focus would fade where a stronger glint of one bounce, which has none, turns its phase within the cells
+// of the stratum: the parts on both sides would no longer add up to that glint.
 bool would_cut_stronger(const ChainFocus& chain, const StratumPlan& plan) {
   const double reach = radius_of(chain.focus) * plan.cell;
   return std::ranges::any_of(plan.singles, [&](const SingleGlint& single) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/validity/array_corners.h"
@@ -238,15 +239,15 @@ void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, Pat
 // Antennas that do not see the image are those of LegShadows.
 void FrameProbe::check_edges(const LocalPath& path, const PosedHit* hits, PathState& state) const {
   const std::complex<double> recorded = share_of_endless(path.flags);
-  bool is_own = true;
+  bool is_next_own = true;  // the trace's antennas come first
   for_antennas_in_turn(path, [&](const Vec3& start, const Vec3& end) {
+    const bool is_own = std::exchange(is_next_own, false);
     const auto found = find_edge_share(geometry_, path, hits, start, end, kTwoPi / wavenumber_);
     if (!found) return;
     const double largest = std::max(std::abs(found->share), std::abs(recorded));
     state.edge_change = std::max(state.edge_change, std::abs(found->share - recorded) / largest);
     state.edge_slide = std::max(state.edge_slide, found->slide);
     if (is_own) state.edge_ratio = found->share / recorded;
-    is_own = false;
   });
 }
 

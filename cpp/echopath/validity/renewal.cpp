@@ -43,14 +43,15 @@ class Renewer {
         loan_(kept, *paths.scene, pose_, paths.frame.transmitter, EmbreeScene::Upkeep::kTimes, job), geometry_(*loan_),
         origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}
 
-  BlockOutcome renew_block(std::span<const int64_t> indices) const {
+  // Shares are found of what stays, and only where they are asked for.
+  BlockOutcome renew_block(std::span<const int64_t> indices, bool with_shares) const {
     BlockOutcome block;
     const LocalPaths local = preparer_(indices);
     Scratch scratch(local.longest);
     for (size_t i = 0; i < indices.size(); ++i) {
       const LocalPath& path = local.paths[i];
       block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
-      if (block.of_path.back() == Outcome::kKept && is_over_unflagged_planes(path, preparer_))
+      if (with_shares && stays(block.of_path.back()) && is_over_unflagged_planes(path, preparer_))
         renew_share(indices[i], path, scratch, block.shares);
     }
     return block;
@@ -206,14 +207,15 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
   }
 }
 
-std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
+std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, bool with_shares, Job* job,
+                                       KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
   std::vector<BlockOutcome> blocks(num_chunks(paths.num_paths(), kPathsRenewedTogether));
   if (job) job->start(std::ssize(blocks));
   parallel_for_chunks(paths.num_paths(), kPathsRenewedTogether, [&](int64_t begin, int64_t end) {
     std::vector<int64_t> indices(end - begin);
     std::iota(indices.begin(), indices.end(), begin);
-    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices);
+    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices, with_shares);
   }, job);
   return blocks;
 }
@@ -222,13 +224,13 @@ std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, d
 
 Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   Renewal renewal;
-  assemble(paths, renew_blocks(paths, radar, time, job, kept), renewal, job);
+  assemble(paths, renew_blocks(paths, radar, time, true, job, kept), renewal, job);
   return renewal;
 }
 
 std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   std::vector<uint8_t> out;
-  for (const BlockOutcome& block : renew_blocks(paths, radar, time, job, kept)) {
+  for (const BlockOutcome& block : renew_blocks(paths, radar, time, false, job, kept)) {
     std::ranges::transform(block.of_path, std::back_inserter(out), stays);
   }
   return out;

@@ -74,7 +74,7 @@ class EdgeEchoes {
     else multiple_.reset();
     if (multiple_) piece_ = multiple_->last_piece(piece_);
     is_reversed_ = path.is_reversed;
-    is_past_edge_ = path.is_past_edge;
+    is_past_edge_ = (path.flags & kPastEdge) != 0;
     find_waves(path, scene.antennas(is_reversed_), true, in_);
     find_waves(path, scene.antennas(!is_reversed_), false, out_);
   }

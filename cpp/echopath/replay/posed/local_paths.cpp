@@ -154,7 +154,6 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   path.edge = echopath::edge_hit(path.flags);
   path.num_edges = num_edge_hits(path.flags);
   if (path.edge >= 0 && path.is_reversed) path.edge = path.count - path.edge - path.num_edges;
-  path.is_past_edge = (path.flags & kPastEdge) != 0;
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];

@@ -47,10 +47,9 @@ struct LocalPath {
   uint64_t image = 0;    // bit per hit: specular on a flagged mirror, replayed by images
   uint64_t sliding = 0;  // bit per hit: other specular hits, whose point of reflection slides over the surface
 
-  uint32_t flags = 0;         // of the record
-  bool is_past_edge = false;  // kPastEdge
-  int edge = -1;              // the first hit on an edge
-  int num_edges = 0;          // how many there are in a row: the material points of the path
+  uint32_t flags = 0;  // of the record
+  int edge = -1;       // the first hit on an edge
+  int num_edges = 0;   // how many there are in a row: the material points of the path
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

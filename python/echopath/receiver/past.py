@@ -11,6 +11,7 @@ import numpy as np
 _ORDER = 8  # of the model
 _STEP = 64  # samples that are foretold at once
 CHIRPS_AT_ONCE = 256
+_LEAST_REST = 1e-12  # of the power, that a model leaves unexplained: below it roundings would make it grow without bound
 
 
 def models_of(cube: np.ndarray) -> np.ndarray:
@@ -42,9 +43,10 @@ def _burg(chirps, order: int) -> np.ndarray:
     forward, backward = chirps, chirps
     model = np.zeros((len(chirps), order + 1), np.complex128)
     model[:, 0] = 1.0
+    rest = 2.0 * _LEAST_REST * np.sum(np.abs(chirps) ** 2, axis=1)
     for step in range(order):
         ahead, behind = forward[:, 1:], backward[:, :-1]
-        power = np.sum(np.abs(ahead) ** 2 + np.abs(behind) ** 2, axis=1)
+        power = np.sum(np.abs(ahead) ** 2 + np.abs(behind) ** 2, axis=1) + rest
         turn = -2.0 * np.sum(ahead * np.conj(behind), axis=1) / np.maximum(power, np.finfo(float).tiny)
         turn = turn[:, None]
         forward, backward = ahead + turn * behind, behind + np.conj(turn) * ahead

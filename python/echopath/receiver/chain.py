@@ -8,6 +8,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
+from ..base.analytic import turned
+from ..base.past import models_of
 from ..transmit import code_of, is_coded, radar_of_noise
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
 from .converter import converted, jittered, noise_of_branch, warn_of_levels
@@ -15,7 +17,6 @@ from .filters import filtered, has_filters
 from .imbalance import compressed, compression, unbalanced, with_offset
 from .leakage import leakage
 from .oscillator import Oscillator
-from .past import models_of
 from .settings import Receiver
 from .slots import SlotTimes
 
@@ -81,10 +82,10 @@ def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time
 
 def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: float, interference) -> Reception:
     chain = Chain(radar, receiver, seed, start_time)
-    cube = chain.mixed(cube)
+    cube = chain.mixed(chain.sent(cube))
     for other in (None if interference is None else chain.mixed_alone(interference), chain.leaked()):
         cube = cube if other is None else cube + other
-    cube = chain.amplified(cube)
+    cube = chain.amplified(chain.coupled(cube))
     if seed is not None:
         cube = _noise(cube, radar_of_noise(radar), seed, start_time)
     gain = compression(cube, radar, receiver)
@@ -111,11 +112,13 @@ class Chain:
         self._slots = SlotTimes(radar, start_time)
         self._oscillator = Oscillator(radar, receiver, self._slots, self._slots.generator(seed, "phase noise"))
 
-    def mixed(self, cube):
-        """Echoes after the mixers: with the errors of the transmitters, those of simultaneous codes have them already, and with
-        what the oscillator does in the meantime of each delay."""
+    def sent(self, cube, whole=None):
+        """Echoes with the errors of the transmitters, those of simultaneous codes have them already; whole: as in `turned`."""
         factors = None if is_coded(self._radar) else transmitter_factors(self._receiver, self._radar)
-        cube = cube if factors is None else cube * factors[:, None, None, None]
+        return cube if factors is None else self._turned(cube, factors[:, None, None, None], whole)
+
+    def mixed(self, cube):
+        """Echoes after the mixers: with what the oscillator does in the meantime of each delay."""
         return cube if self._oscillator.is_ideal else self._oscillator.mixed(cube)
 
     def mixed_alone(self, cube):
@@ -126,11 +129,14 @@ class Chain:
         """The leakage after the mixers, in a shape that a cube takes; None: none."""
         return leakage(self._radar, self._receiver, self._slots, self._oscillator)
 
-    def amplified(self, cube):
-        """With what couples from receiver to receiver, and the errors of each."""
-        cube = coupled(cube, self._radar, self._receiver, self._slots)
+    def coupled(self, cube, whole=None):
+        """With what couples from receiver to receiver; whole: as in `turned`."""
+        return coupled(cube, self._radar, self._receiver, self._slots, whole)
+
+    def amplified(self, cube, whole=None):
+        """With the errors of the receivers; whole: as in `turned`."""
         factors = receiver_factors(self._receiver, self._radar, self._slots)
-        return cube if factors is None else cube * factors
+        return cube if factors is None else self._turned(cube, factors, whole)
 
     def models_of(self, cube):
         """What `filtered` needs to know of the whole; None: nothing."""
@@ -148,6 +154,9 @@ class Chain:
         """At the instants of the converter's clock."""
         adc = self._receiver.adc
         return cube if adc is None else jittered(cube, self._radar.waveform, adc, self._slots.generator(self._seed, "jitter"))
+
+    def _turned(self, cube, factors, whole):
+        return turned(cube, factors, self._radar.waveform.real, whole)
 
 
 def _noise(cube, radar, seed: int, start_time: float):

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.analytic import as_samples
 from ..transmit import code_of, is_coded
-from .analytic import as_samples
 from .channels import transmitter_factors
 from .settings import Receiver
 

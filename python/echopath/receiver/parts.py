@@ -45,12 +45,12 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
 
 def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: float, interference) -> dict:
     chain, shape = Chain(radar, receiver, seed, start_time), signal_shape(radar)
-    found = {name: chain.mixed(cube) for name, cube in cubes.items()}
+    found = {name: chain.mixed(cube) for name, cube in _through(chain.sent, cubes).items()}
     if interference is not None:
         found[INTERFERENCE] = chain.mixed_alone(interference)
     if (leaked := chain.leaked()) is not None:
         found[LEAKAGE] = np.broadcast_to(leaked, shape)
-    found = {name: chain.amplified(cube) for name, cube in found.items()}
+    found = _through(chain.amplified, _through(chain.coupled, found))
     if seed is not None:
         found[NOISE] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver)
@@ -60,6 +60,12 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     if receiver.dc_offset != (0.0, 0.0):
         found[OFFSET] = with_offset(np.zeros(shape, np.complex128), radar.waveform, receiver)
     return {name: chain.sampled(cube) for name, cube in found.items()}
+
+
+def _through(stage, parts: dict) -> dict:
+    """Parts behind a stage that is linear where it knows the whole of them."""
+    whole = sum(parts.values())
+    return {name: stage(cube, whole) for name, cube in parts.items()}
 
 
 def _checked_table(parts) -> Mapping:

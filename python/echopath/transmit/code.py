@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..base.analytic import as_samples, continued
 
 
 def is_coded(radar: _core.Radar) -> bool:
@@ -57,10 +58,13 @@ def slots_radar(radar: _core.Radar) -> _core.Radar:
     return radar.replace(waveform=waveform, multiplexing="cdm", code_phases=np.zeros((len(radar.transmitters), 1)))
 
 
-def code_signal(separate: np.ndarray, code: np.ndarray) -> np.ndarray:
+def code_signal(separate: np.ndarray, code: np.ndarray, real: bool, whole: np.ndarray | None = None) -> np.ndarray:
     """What the receivers have of transmitters that send at once.
 
-    separate: [tx, rx, slots, sample] in sqrt(W), each transmitter alone; code: complex [tx, slots]
+    separate: [tx, rx, slots, sample] in sqrt(W), each transmitter alone; code: complex [tx, slots]; real: whether samples are,
+        which phases of the code turn as `turned` says; whole: of which `separate` is a part, None: itself
     Returns [1, rx, slots, sample] in sqrt(W).
     """
-    return np.einsum("trks,tk->rks", separate, code, optimize=True)[None]
+    turns = real and np.any(code.imag)
+    sent = np.einsum("trks,tk->rks", continued(separate, whole) if turns else separate, code, optimize=True)[None]
+    return as_samples(sent, real) if turns else sent

@@ -9,6 +9,7 @@ from support.radars import build_radar
 import echopath as ep
 from echopath.receiver.oscillator import Oscillator
 from echopath.receiver.slots import SlotTimes
+from echopath.transmit import code_signal
 from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 C = ep.speed_of_light
@@ -162,6 +163,41 @@ def test_errors_of_channels_and_their_drift():
     assert np.angle(out[1, 0, :, 0] * np.exp(-1j * (5.0 * time - 0.2))) == pytest.approx(0.0, abs=1e-9)
     assert 20 * np.log10(np.abs(out[1, 1, :, 0])) == pytest.approx(1.0 + 2.0 * time, rel=1e-9)
     assert np.angle(out[1, 1, :, 0]) == pytest.approx(0.1, abs=1e-9)
+
+
+def pairs_of_real_samples(multiplexing, **faults):
+    """A radar of 2 x 2 antennas with real samples, and its echo z [tx, rx, 1, sample] between the cells, as complex samples."""
+    radar = build_radar(receivers=((0, 0, 0), (0, 0.01, 0)), transmitters=((0, 0, 0), (0, 0.02, 0)), num_samples=COUNT,
+                        num_chirps=4, real=True, multiplexing=multiplexing, receiver=ep.Receiver(**faults))
+    phases = np.array([[0.3, 2.0], [-1.0, 1.4]])[..., None, None]
+    return radar, np.exp(1j * phases + 2j * np.pi * 60.37 * np.arange(COUNT) / COUNT)
+
+
+@pytest.mark.parametrize("multiplexing", ["tdm", "bpm"])
+def test_phases_of_channels_turn_real_samples(multiplexing):
+    """sqrt(2) Re(z e^{j phase}), which stays real: a quarter of a turn is no silence behind the converter."""
+    sent, had = np.array([0.4, np.pi / 2]), np.array([np.pi / 2, -2.1])
+    radar, echo = pairs_of_real_samples(multiplexing, transmitter_phase=sent, receiver_phase=had, phase_drift=[9.0, 0.0],
+                                        adc=ep.Adc(bits=16, full_scale_dbm=40.0, gain_db=0.0))
+    cube = np.repeat(np.sqrt(2.0) * echo.real, 4, axis=2)
+    rate, begin = np.array([9.0, 0.0])[:, None], 60e-6 * np.arange(8)
+    turned = echo[:, :, 0] * np.exp(1j * (sent[:, None] + had))[..., None]
+    if multiplexing == "bpm":
+        signs = np.stack([np.ones(8), np.tile([1.0, -1.0], 4)])
+        cube = code_signal(np.repeat(np.sqrt(2.0) * echo.real, 8, axis=2), signs * np.exp(1j * sent)[:, None], True)
+        wanted = np.einsum("trs,tk->rks", turned, signs)[None] * np.exp(1j * rate * begin)[..., None]
+    else:
+        wanted = turned[:, :, None] * np.exp(1j * rate * begin.reshape(4, 2).T[:, None])[..., None]
+    out = ep.receive(cube, radar, seed=None).cube
+    np.testing.assert_allclose(out, np.sqrt(2.0) * wanted.real, atol=2e-3)
+
+
+def test_coupling_turns_real_samples_by_its_delay():
+    radar, echo = pairs_of_real_samples("tdm", coupling_db=[[0, -20.0], [-30.0, 0]], coupling_delay=0.1e-9)
+    out = ep.receive(np.repeat(np.sqrt(2.0) * echo.real, 4, axis=2), radar, seed=None).cube
+    turn = np.exp(2j * np.pi * (77e9 + SLOPE * np.arange(COUNT) / RATE) * 0.1e-9)
+    others = echo[:, ::-1] * np.array([10 ** -1.5, 0.1])[:, None, None] * turn
+    np.testing.assert_allclose(out, np.repeat(np.sqrt(2.0) * (echo + others).real, 4, axis=2), atol=1e-4)
 
 
 def test_thermal_noise_goes_through_the_errors_of_the_converter_and_not_of_the_transmitters():

@@ -1,0 +1,49 @@
+"""Cubes of real samples as the complex ones that they are the real part of."""
+from __future__ import annotations
+
+import numpy as np
+
+from .past import CHIRPS_AT_ONCE, models_of, past_of
+
+_SHORTEST_PAST = 256  # samples, over which ends of a chirp fade into each other
+
+
+def analytic(cube: np.ndarray, real: bool) -> np.ndarray:
+    """z with cube = sqrt(2) Re z, without negative frequencies; a cube of complex samples as it is."""
+    if not real:
+        return cube
+    count = cube.shape[-1]
+    spectrum = np.fft.fft(cube.real, axis=-1) * np.sqrt(2.0)
+    spectrum[..., 0] *= 0.5
+    spectrum[..., (count + 1) // 2:] = 0.0
+    if count % 2 == 0:
+        spectrum[..., count // 2] = np.fft.fft(cube.real, axis=-1)[..., count // 2] / np.sqrt(2.0)
+    return np.fft.ifft(spectrum, axis=-1)
+
+
+def as_samples(values: np.ndarray, real: bool) -> np.ndarray:
+    """The samples of what `analytic` gave, complex128."""
+    return (np.sqrt(2.0) * values.real).astype(np.complex128) if real else values
+
+
+def turned(cube: np.ndarray, factors: np.ndarray, real: bool, whole: np.ndarray | None = None) -> np.ndarray:
+    """A cube [..., sample] times complex factors that broadcast to it. Of real samples that is what the signal becomes whose real
+    part they are: a phase turns each tone, and is not lost with the imaginary part.
+
+    whole: of which the cube is a part, None: itself; parts of one whole add up to what becomes of it
+    """
+    if not real or not np.any(np.imag(factors)):
+        return cube * factors
+    return as_samples(continued(cube, whole) * factors, real)
+
+
+def continued(cube: np.ndarray, whole: np.ndarray | None = None) -> np.ndarray:
+    """`analytic` of real samples that go on before and behind a chirp (`past_of`), so that tones between the cells of its
+    transform are true up to its ends; whole: as in `turned`."""
+    chirps, of_whole = (one.reshape(-1, one.shape[-1]) for one in (cube, cube if whole is None else whole))
+    past = max(_SHORTEST_PAST, chirps.shape[1])
+    made = np.empty(chirps.shape, np.complex128)
+    for begin in range(0, len(chirps), CHIRPS_AT_ONCE):
+        piece, model = chirps[begin:begin + CHIRPS_AT_ONCE], models_of(of_whole[begin:begin + CHIRPS_AT_ONCE])
+        made[begin:begin + len(piece)] = analytic(np.concatenate([past_of(piece, model, past), piece], axis=1), True)[:, past:]
+    return made.reshape(cube.shape)

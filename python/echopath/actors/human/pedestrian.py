@@ -99,8 +99,8 @@ def walk_along(body, gait_at, speeds, trajectory, *, edge, keyframe_rate, clothi
     if speed > speeds[1]:
         rule = f"one of at most {speeds[1]:.3g} m/s for a person of {body.height:g} m, as most of its way is"
         raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
-    gait = GaitAlong(gait_at(max(speed, speeds[0])), trajectory._track)
     times = key_times(trajectory, keyframe_rate)
+    gait = GaitAlong(gait_at(max(speed, speeds[0])), trajectory._track)
     arrays = body_arrays(body, gait.frames(times), times, edge=edge, clothing=clothing, skin=skin)
     return Actor([part.build() for part in with_rates(arrays, gait.frames, times)], trajectory)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import _core
 from ..base.interrupts import heed
-from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of
+from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of, text_type
 
 CHUNK_BYTES = 1 << 20   # of compression
 SMALL_BYTES = 1 << 12   # up to it a dataset is not compressed
@@ -114,12 +114,17 @@ def _text_dtype(length: int):
 
 
 def write_attribute(item, name: str, value) -> None:
-    """Writes an attribute: a number, or a text in UTF-8 of fixed length."""
+    """Writes an attribute, in the place of one of that name: a number, or a text in UTF-8 of fixed length."""
+    h5py = library()
+    if h5py.h5a.exists(item.id, name.encode()):
+        h5py.h5a.delete(item.id, name.encode())
     if isinstance(value, str):
         text = _encoded(name, value)
-        item.attrs.create(name, text, dtype=_text_dtype(len(text)))
+        value, kind = np.array(text, dtype=f"S{max(1, len(text))}"), text_type(max(1, len(text)))
     else:
-        item.attrs[name] = value
+        value = np.asarray(value)
+        kind = memory_type(value.dtype)
+    h5py.h5a.create(item.id, name.encode(), kind, h5py.h5s.create(h5py.h5s.SCALAR)).write(value, kind)
 
 
 def _encoded(name: str, text: str) -> bytes:

@@ -76,6 +76,13 @@ def memory_type(dtype):
     return None if dtype.kind in "SO" else _number_type(dtype)
 
 
+@functools.cache
+def text_type(length: int):
+    """The HDF5 type of texts in UTF-8 of a fixed length in bytes."""
+    h5py = library()
+    return h5py.h5t.py_create(h5py.string_dtype("utf-8", length), logical=True)
+
+
 def read_blocks(dataset, values):
     """Fills an array with the values of a dataset, and yields what is read at a time."""
     h5py = library()

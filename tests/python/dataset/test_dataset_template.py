@@ -110,6 +110,14 @@ def test_faults_of_a_template_are_told_before_the_first_frame(tmp_path, before, 
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("line, key", [("uniform = [0, 1]", "uniform"), ('same_as = "radar"', "same_as")])
+def test_a_template_that_is_a_distribution_itself_is_refused(tmp_path, line, key):
+    path = written(tmp_path, f"{line}\n[dataset]\nscenes = 1\n")
+    with pytest.raises(ValueError) as caught:
+        dataset.Template(path)
+    assert str(caught.value) == f"{path}: line 1: {key}: must stand below a key, whose value it draws, got it at the top"
+
+
 @pytest.mark.parametrize("before, after, told", [
     ("num_rays = 400", "num_rays = 0", "line {line}: scene 0: trace.num_rays: must be at least 1, got 0"),
     ('actor = "wall"', 'actor = "wal"', "line {line}: scene 0: objects.wall.actor: unknown actor 'wal'"),

@@ -21,9 +21,10 @@ from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
 from ..classes import ClassName, classes_of
+from .distributions import is_distribution
 from .drawing import Drawing, DrawnObjects, random_at
 from .faults import Faults
-from .references import Source
+from .references import Source, is_reference
 
 MOST_SCENES = 10 ** 6
 _SEEDS = 2 ** 32  # of rays and noise
@@ -78,6 +79,8 @@ class Template:
                 raise ValueError("dataset.interval: is missing, in s from the start of a frame to that of the next")
             if "sequence" in scene:
                 raise ValueError("sequence: must not stand in a template: [dataset] has frames, interval and keep")
+            if is_distribution(scene) or is_reference(scene):
+                raise ValueError(f"{next(iter(scene))}: must stand below a key, whose value it draws, got it at the top")
         except ValueError as error:
             raise self._faults.told(error) from None
         self._objects = scene.pop("objects", [])

@@ -11,7 +11,7 @@ from ..sampled import Clock, deformed, moved_rigidly
 from ..tree import MAX_NODES, Tree
 from .skeletons import Skeletons
 from .stage import Timeline, changes_visibility, is_left_out
-from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, surface_of
+from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, numbers, surface_of
 from .transforms import sampled_transforms
 
 MAX_DEPTH = 200         # of instances within instances
@@ -143,9 +143,12 @@ class Content:
             return self._shapes(prim, surface)
         if len(codes) * surface.points.size > MAX_VALUES:
             raise _core.FileError(f"{self._path}: the points of {prim.GetPath()} have more than {MAX_VALUES} values over time")
-        frames = [np.array(attribute.Get(code), float) for code in codes]
-        if any(frame.shape != surface.points.shape or not np.isfinite(frame).all() for frame in frames):
-            self._tree.count("a mesh whose number of points changes over time stays as it is at first")
+        try:
+            frames = [numbers(attribute.Get(code), (-1, 3)) for code in codes]
+        except BadMesh:
+            frames = []
+        if not frames or any(frame.shape != surface.points.shape for frame in frames):
+            self._tree.count("a mesh whose points change in number over time, or are no points, stays as it is at first")
             return None
         vertices = self._axes.points(np.stack(frames)[:, surface.kept])
         if self._clock.steps:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import _core
 from ...base.libraries import needed_module
+from .trial import first_line, refuse_what_ends_usd, unreadable
 
 LEFT_OUT = ("guide", "proxy")  # purposes that are not part of the scene
 LONGEST, SHORTEST = 1e6, 1e-5  # s, from the first frame and between two samples
@@ -24,6 +25,7 @@ def pxr_module(name: str):
 def opened(path: Path) -> Iterator[tuple[Any, list[str]]]:
     """(Usd.Stage, list of sentences that it warned of, filled as it is read). Raises FileError naming the file."""
     usd, tf, utils = (pxr_module(name) for name in ("Usd", "Tf", "UsdUtils"))
+    refuse_what_ends_usd(path)
     delegate = utils.CoalescingDiagnosticDelegate()
     said: list[str] = []
     try:
@@ -32,11 +34,11 @@ def opened(path: Path) -> Iterator[tuple[Any, list[str]]]:
             raise _core.FileError(f"{path}: is no USD stage")
         _check_rates(path, stage)
         yield stage, said
-        said += dict.fromkeys(_first_line(one.commentary) for one in delegate.TakeUncoalescedDiagnostics())
+        said += dict.fromkeys(first_line(one.commentary) for one in delegate.TakeUncoalescedDiagnostics())
     except UnicodeError:  # of names and messages that USD passes on as they are
-        raise _core.FileError(f"{path}: is no USD stage that can be read (it holds text that is not UTF-8)") from None
+        raise unreadable(path, "it holds text that is not UTF-8") from None
     except tf.ErrorException as error:
-        raise _core.FileError(f"{path}: is no USD stage that can be read ({_first_line(_reason(error))})") from None
+        raise unreadable(path, first_line(_reason(error))) from None
     finally:
         delegate.TakeUncoalescedDiagnostics()
 
@@ -55,11 +57,6 @@ def _check_rates(path: Path, stage) -> None:
             rate = getattr(layer, name)
             if not (np.isfinite(rate) and rate != 0.0):
                 raise _core.FileError(f"{path}: the layer '{layer.GetDisplayName()}' must have {name} other than 0, got {rate}")
-
-
-def _first_line(text: str) -> str:
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return (lines[0] if lines else "no reason given")[:300]
 
 
 class Timeline:

@@ -40,7 +40,7 @@ def surface_of(prim, time, axes: Axes, pxr) -> Surface:
         surface = Surface(points, np.arange(len(points)), smooth=prim.GetTypeName() in CURVED)
         return _with_parts(surface, axes, np.asarray(triangles), np.arange(len(triangles)), [("", prim, None)], pxr)
     mesh = pxr.UsdGeom.Mesh(prim)
-    points, corners, counts = (_array(attribute.Get(time), shape) for attribute, shape in (
+    points, corners, counts = (numbers(attribute.Get(time), shape) for attribute, shape in (
         (mesh.GetPointsAttr(), (-1, 3)), (mesh.GetFaceVertexIndicesAttr(), (-1,)), (mesh.GetFaceVertexCountsAttr(), (-1,))))
     holes = integers(mesh.GetHoleIndicesAttr(), time)
     polygons = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), holes)
@@ -74,7 +74,8 @@ def _normals(mesh, time, corners: Polygons, num_points: int, pxr) -> np.ndarray 
     return normals[entries] if size and len(normals) == size and np.isfinite(normals).all() else None
 
 
-def _array(value, shape) -> np.ndarray:
+def numbers(value, shape) -> np.ndarray:
+    """An array of floats of a shape, empty for no value. Raises BadMesh for another type and for what is not finite."""
     try:
         array = np.array(value if value is not None else [], float).reshape(shape)
     except (TypeError, ValueError):
@@ -87,9 +88,12 @@ def _array(value, shape) -> np.ndarray:
 def integers(attribute, time) -> np.ndarray:
     """The whole numbers [N] of an attribute, none for one without a value. Raises BadMesh for another type."""
     try:
-        return np.array(attribute.Get(time) or [], np.int64)
-    except (TypeError, ValueError):
-        raise BadMesh(f"has {attribute.GetName()} of another type than the schema of USD") from None
+        values = np.array(attribute.Get(time) or [], np.int64)
+    except (TypeError, ValueError, OverflowError):
+        values = None
+    if values is None or values.ndim != 1:
+        raise BadMesh(f"has {attribute.GetName()} of another type than the schema of USD")
+    return values
 
 
 class Polygons(NamedTuple):

@@ -24,7 +24,7 @@ def _refined(xformable, codes: list[float]) -> list[float]:
     turning = [op for op in xformable.GetOrderedXformOps() if "rotate" in op.GetOpName() and op.MightBeTimeVarying()]
     if not turning:
         return codes
-    angles = np.array([np.concatenate([_angles(op, code) for op in turning]) for code in codes])
+    angles = np.array([[_angles(op, code) for op in turning] for code in codes]).reshape(len(codes), -1)
     change = np.abs(np.diff(angles, axis=0)).sum(axis=1)
     refined = [codes[0]]
     for before, after, turned in zip(codes, codes[1:], change):
@@ -34,5 +34,15 @@ def _refined(xformable, codes: list[float]) -> list[float]:
 
 
 def _angles(op, code) -> np.ndarray:
-    value = op.Get(code)
-    return np.nan_to_num(np.atleast_1d(np.array(value if value is not None else 0.0, float)))
+    """[3] degrees about the axes of a rotation, about one axis as the first; zeros for values that are no angles.
+
+    Of those USD makes no transform, and says so.
+    """
+    angles = np.zeros(3)
+    try:
+        values = np.nan_to_num(np.array(op.Get(code), float)).ravel()
+    except (TypeError, ValueError):
+        return angles
+    if len(values) <= len(angles):
+        angles[:len(values)] = values
+    return angles

@@ -1,0 +1,76 @@
+"""Opens a stage in a process of its own first: some damaged binary files end the process that opens them by USD's own library,
+fill its memory, or keep it busy for minutes."""
+from __future__ import annotations
+
+import mmap
+import multiprocessing.spawn
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from ... import _core
+
+MOST_SECONDS = 60.0  # that opening may take, and one more for each MiB of the file
+MOST_BYTES = 2**33   # of addresses that it may take, and a hundred for each byte of the file
+REFUSED = 3          # what the process returns where USD says what is wrong, which it prints
+
+_OPEN = f"""
+import resource, sys
+for kind, most in ((resource.RLIMIT_AS, int(sys.argv[2])), (resource.RLIMIT_CORE, 0)):
+    hard = resource.getrlimit(kind)[1]
+    resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+from pxr import Tf, Usd
+try:
+    Usd.Stage.Open(sys.argv[1])
+except Tf.ErrorException as error:
+    if error.args:
+        print(error.args[0].commentary[:1000])
+        sys.exit({REFUSED})
+"""
+
+
+def refuse_what_ends_usd(path: Path) -> None:
+    """Raises FileError for a file on which USD crashes or takes minutes, and for what it refuses so.
+
+    Returns for others, be they stages or not. Text that refers to no other file is not tried: USD reads or refuses all of it.
+    """
+    if not path.is_file() or _is_text_alone(path) or getattr(sys, "frozen", False):
+        return
+    size = path.stat().st_size
+    longest = MOST_SECONDS + size / 2**20
+    try:
+        done = _opened_apart(path, longest, MOST_BYTES + 100 * size)
+    except subprocess.TimeoutExpired:
+        raise unreadable(path, f"USD takes more than {longest:.0f} s to open it") from None
+    if done.returncode < 0:
+        raise unreadable(path, f"USD crashes on it by {signal.Signals(-done.returncode).name}")
+    if done.returncode == REFUSED:
+        raise unreadable(path, first_line(done.stdout))
+
+
+def unreadable(path: Path, why: str) -> _core.FileError:
+    """The error of a file that USD cannot read."""
+    return _core.FileError(f"{path}: is no USD stage that can be read ({why})")
+
+
+def first_line(text: str) -> str:
+    """The first line of what USD says, short enough to be shown."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return (lines[0] if lines else "no reason given")[:300]
+
+
+def _opened_apart(path: Path, seconds: float, memory: int) -> subprocess.CompletedProcess:
+    searched = os.pathsep.join(folder for folder in sys.path if folder)
+    return subprocess.run([multiprocessing.spawn.get_executable(), "-S", "-c", _OPEN, path, str(memory)],
+                          env=os.environ | {"PYTHONPATH": searched}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, text=True, errors="replace", timeout=seconds, check=False)
+
+
+def _is_text_alone(path: Path) -> bool:
+    with path.open("rb") as file:
+        if file.read(5) != b"#usda":
+            return False
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+            return content.find(b"@") < 0

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .past import CHIRPS_AT_ONCE, models_of, past_of
+from .past import models_of, with_pasts
 
 _SHORTEST_PAST = 256  # samples, over which ends of a chirp fade into each other
 
@@ -40,10 +40,5 @@ def turned(cube: np.ndarray, factors: np.ndarray, real: bool, whole: np.ndarray 
 def continued(cube: np.ndarray, whole: np.ndarray | None = None) -> np.ndarray:
     """`analytic` of real samples that go on before and behind a chirp (`past_of`), so that tones between the cells of its
     transform are true up to its ends; whole: as in `turned`."""
-    chirps, of_whole = (one.reshape(-1, one.shape[-1]) for one in (cube, cube if whole is None else whole))
-    past = max(_SHORTEST_PAST, chirps.shape[1])
-    made = np.empty(chirps.shape, np.complex128)
-    for begin in range(0, len(chirps), CHIRPS_AT_ONCE):
-        piece, model = chirps[begin:begin + CHIRPS_AT_ONCE], models_of(of_whole[begin:begin + CHIRPS_AT_ONCE])
-        made[begin:begin + len(piece)] = analytic(np.concatenate([past_of(piece, model, past), piece], axis=1), True)[:, past:]
-    return made.reshape(cube.shape)
+    past = max(_SHORTEST_PAST, cube.shape[-1])
+    return with_pasts(cube, models_of(cube if whole is None else whole), past, lambda chirps: analytic(chirps, True))

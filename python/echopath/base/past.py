@@ -6,6 +6,8 @@ given: parts of a signal have pasts that add up, by the model of the whole.
 """
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 _ORDER = 8  # of the model
@@ -20,6 +22,21 @@ def models_of(cube: np.ndarray) -> np.ndarray:
     order = min(_ORDER, chirps.shape[1] - 1)
     return np.concatenate([_burg(chirps[begin:begin + CHIRPS_AT_ONCE], order)
                            for begin in range(0, len(chirps), CHIRPS_AT_ONCE)])
+
+
+def with_pasts(cube: np.ndarray, models: np.ndarray, past: int, made_of: Callable[[np.ndarray], np.ndarray],
+               at_once: int = CHIRPS_AT_ONCE) -> np.ndarray:
+    """What is made of chirps that go on before their begins: a cube of the same shape, complex128.
+
+    models: `models_of` the cube, or of that of which it is a part; past: samples; made_of: takes and returns
+    [R, past + N], of which the last N are kept; at_once: chirps, the most that R is
+    """
+    chirps = cube.reshape(-1, cube.shape[-1])
+    made = np.empty(chirps.shape, np.complex128)
+    for begin in range(0, len(chirps), at_once):
+        piece, model = (rows[begin:begin + at_once] for rows in (chirps, models))
+        made[begin:begin + len(piece)] = made_of(np.concatenate([past_of(piece, model, past), piece], axis=1))[:, past:]
+    return made.reshape(cube.shape)
 
 
 def past_of(chirps: np.ndarray, model: np.ndarray, count: int) -> np.ndarray:

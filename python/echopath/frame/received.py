@@ -27,7 +27,8 @@ def _arriving(frame, partition: str, parts: dict) -> dict:
         return parts
     if frame.cube.shape[2] != num_frame_slots(frame.radar):
         parts = _in_every_slot(frame, partition)
-    code, real, whole = transmitted_code(frame.radar), frame.radar.waveform.real, sum(parts.values())
+    code, real = transmitted_code(frame.radar), frame.radar.waveform.real
+    whole = sum(parts.values()) if real else None
     return {name: code_signal(cube, code, real, whole) for name, cube in parts.items()}
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import _core
 from ..base.interrupts import heed
-from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of, text_type
+from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of, text_types
 
 CHUNK_BYTES = 1 << 20   # of compression
 SMALL_BYTES = 1 << 12   # up to it a dataset is not compressed
@@ -105,12 +105,7 @@ def write_texts(group, name: str, texts) -> None:
     """Writes a list of texts as a [N] array of UTF-8; raises ValueError for one that holds NUL, which would end it."""
     encoded = [_encoded(name, text) for text in texts]
     length = max((len(text) for text in encoded), default=1)
-    write_array(group, name, np.array(encoded, dtype=_text_dtype(length)), compress=True)
-
-
-def _text_dtype(length: int):
-    h5py = library()
-    return h5py.string_dtype("utf-8", max(1, length))
+    write_array(group, name, np.array(encoded, dtype=text_types(length)[0]), compress=True)
 
 
 def write_attribute(item, name: str, value) -> None:
@@ -120,7 +115,8 @@ def write_attribute(item, name: str, value) -> None:
         h5py.h5a.delete(item.id, name.encode())
     if isinstance(value, str):
         text = _encoded(name, value)
-        value, kind = np.array(text, dtype=f"S{max(1, len(text))}"), text_type(max(1, len(text)))
+        dtype, kind = text_types(len(text))
+        value = np.array(text, dtype=dtype)
     else:
         value = np.asarray(value)
         kind = memory_type(value.dtype)

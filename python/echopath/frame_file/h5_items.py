@@ -77,10 +77,11 @@ def memory_type(dtype):
 
 
 @functools.cache
-def text_type(length: int):
-    """The HDF5 type of texts in UTF-8 of a fixed length in bytes."""
+def text_types(length: int):
+    """(NumPy's type, HDF5's type) of texts in UTF-8 of a fixed length in bytes; there are none of length 0."""
     h5py = library()
-    return h5py.h5t.py_create(h5py.string_dtype("utf-8", length), logical=True)
+    dtype = h5py.string_dtype("utf-8", max(1, length))
+    return dtype, h5py.h5t.py_create(dtype, logical=True)
 
 
 def read_blocks(dataset, values):

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.past import CHIRPS_AT_ONCE, past_of
+from ..base.past import CHIRPS_AT_ONCE, with_pasts
 from .settings import Receiver
 
 # Beat frequencies from -1/16 of the sampling rate on: below 0 stand the sidelobes of what is near.
@@ -46,18 +46,12 @@ def filtered(cube: np.ndarray, waveform, receiver: Receiver, models: np.ndarray)
 
     models: `models_of` the cube, or of that of which it is a part
     """
-    chirps = cube.reshape(-1, cube.shape[-1])
     past = length_of_past(waveform, receiver)
-    gain = response(receiver, beat_frequencies(waveform, chirps.shape[1] + past))
+    gain = response(receiver, beat_frequencies(waveform, cube.shape[-1] + past))
     if waveform.real and len(gain) % 2 == 0:
         gain[len(gain) // 2] = abs(gain[len(gain) // 2])
-    made = np.empty(chirps.shape, np.complex128)
     at_once = min(CHIRPS_AT_ONCE, max(1, _MOST_SAMPLES // len(gain)))
-    for begin in range(0, len(chirps), at_once):
-        piece, model = (rows[begin:begin + at_once] for rows in (chirps, models))
-        whole = np.concatenate([past_of(piece, model, past), piece], axis=1)
-        made[begin:begin + len(piece)] = np.fft.ifft(np.fft.fft(whole) * gain)[:, past:]
-    return made.reshape(cube.shape)
+    return with_pasts(cube, models, past, lambda chirps: np.fft.ifft(np.fft.fft(chirps) * gain), at_once)
 
 
 def length_of_past(waveform, receiver: Receiver) -> int:

@@ -45,12 +45,12 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
 
 def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: float, interference) -> dict:
     chain, shape = Chain(radar, receiver, seed, start_time), signal_shape(radar)
-    found = {name: chain.mixed(cube) for name, cube in _through(chain.sent, cubes).items()}
+    found = {name: chain.mixed(cube) for name, cube in _through(chain.sent, cubes, radar).items()}
     if interference is not None:
         found[INTERFERENCE] = chain.mixed_alone(interference)
     if (leaked := chain.leaked()) is not None:
         found[LEAKAGE] = np.broadcast_to(leaked, shape)
-    found = _through(chain.amplified, _through(chain.coupled, found))
+    found = _through(chain.amplified, _through(chain.coupled, found, radar), radar)
     if seed is not None:
         found[NOISE] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver)
@@ -62,9 +62,9 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     return {name: chain.sampled(cube) for name, cube in found.items()}
 
 
-def _through(stage, parts: dict) -> dict:
-    """Parts behind a stage that is linear where it knows the whole of them."""
-    whole = sum(parts.values())
+def _through(stage, parts: dict, radar) -> dict:
+    """Parts behind a stage that is linear, of real samples where it knows the whole of them (`base.analytic.turned`)."""
+    whole = sum(parts.values()) if radar.waveform.real else None
     return {name: stage(cube, whole) for name, cube in parts.items()}
 
 

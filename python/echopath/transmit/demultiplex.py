@@ -19,7 +19,8 @@ def demultiplex(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]:
     each slot turned back to the time of the first by the velocity of its Doppler cell; exact for what stands still, and up to
     the ends of the frame for velocities within +-`max_velocity(num_slots)`. "ddm": each cell of range and velocity is one
     transmitter's, by the empty shares of the Doppler axis, so that velocities are known within +-`max_velocity()`; of two
-    targets at one range whose velocities are a share apart the stronger one is right (see `transmit/doppler_division.py`).
+    targets at one range whose velocities are a share apart the stronger one is right (see `transmit/doppler_division.py`). With
+    fewer than four chirps to a share transmitters do not come apart, and RuntimeWarning says so.
     "cdm": compressed by the conjugate code, which leaves what the codes correlate.
     cube: [1, rx, slots, sample] in sqrt(W) as `synthesize` and `receive` give it, or one that is apart already,
         [tx, rx, chirp, sample], which is returned as it is

@@ -25,7 +25,7 @@ def wet_scene():
 
 
 def coded_radar():
-    return build_radar([(0, 0, 0), (0, 0.01, 0)], [(0, 0, 0)], num_samples=16, num_chirps=6, multiplexing="ddm",
+    return build_radar([(0, 0, 0), (0, 0.01, 0)], [(0, 0, 0)], num_samples=16, num_chirps=12, multiplexing="ddm",
                        receiver=ep.Receiver(iq_gain_db=0.5))
 
 

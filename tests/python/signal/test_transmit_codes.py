@@ -268,7 +268,7 @@ def test_chirps_that_do_not_fit_a_code_are_refused_when_the_radar_is_made():
 
 def test_a_map_of_what_receivers_have_names_what_takes_it_apart():
     for code in ("ddm", "bpm"):
-        radar = array_radar(code, num_chirps=8)
+        radar = array_radar(code, num_chirps=16)
         cube = ep.synthesize(plates(0.0, radar=radar), radar)
         with pytest.raises(ValueError, match=r"^cube: .* ep.demultiplex\(cube, radar\)"):
             ep.range_doppler(cube, radar)
@@ -320,3 +320,30 @@ def test_what_looks_at_one_antenna_takes_any_radar_that_sends_at_once(num_tx, em
     frame = ep.simulate(paths.scene, radar, num_rays=2000, max_bounces=1, labels=True, detections=True, truth=True,
                         retrace="invalid", keyframes=0)
     assert set(frame.detections.object) == {"ball0"}
+
+
+def sent_at_once(radar, turn: float):
+    """(signal [1, rx, chirp, S] of a tone that turns by so many rad a chirp, [tx, rx, chirp, S] of each transmitter alone)."""
+    shares = len(radar.transmitters) + radar.empty_slots
+    chirps, samples = np.arange(radar.waveform.num_chirps)[:, None], np.arange(radar.waveform.num_samples)
+    factors = np.exp(1j * np.arange(NUM_TX))[:, None, None, None]
+    apart = factors * np.exp(1j * (turn * chirps + 1.3 * samples))[None, None] * np.ones((1, NUM_RX, 1, 1))
+    shifts = np.exp(2j * np.pi * np.arange(NUM_TX)[:, None] * chirps[:, 0] / shares)
+    return np.sum(apart * shifts[:, None, :, None], axis=0)[None], apart
+
+
+@pytest.mark.parametrize("turn", np.linspace(0.05, 6.2, 9))
+def test_four_chirps_to_a_share_are_enough_for_transmitters_to_come_apart(turn):
+    radar = array_radar("ddm", num_chirps=4 * (NUM_TX + 1), num_samples=32)
+    signal, apart = sent_at_once(radar, turn)
+    window = np.outer(np.hanning(16), np.hanning(32))
+    found, true = (np.fft.fft2(cube * window) for cube in (ep.demultiplex(signal, radar), apart))
+    assert np.abs(found - true).max() < 0.03 * np.abs(true).max()
+
+
+def test_fewer_chirps_to_a_share_are_told():
+    radar = array_radar("ddm", num_chirps=3 * (NUM_TX + 1), num_samples=32)
+    rule = r"radar.waveform.num_chirps: should be 16 or more, 4 for each of 4 shares .* got 12"
+    with pytest.warns(RuntimeWarning, match=rule) as told:
+        ep.demultiplex(sent_at_once(radar, 1.0)[0], radar)
+    assert told[0].filename == __file__

@@ -3,11 +3,11 @@ fill its memory, or keep it busy for minutes."""
 from __future__ import annotations
 
 import mmap
-import multiprocessing.spawn
 import os
 import signal
 import subprocess
 import sys
+from multiprocessing.spawn import get_executable
 from pathlib import Path
 
 from ... import _core
@@ -36,7 +36,7 @@ def refuse_what_ends_usd(path: Path) -> None:
 
     Returns for others, be they stages or not. Text that refers to no other file is not tried: USD reads or refuses all of it.
     """
-    if not path.is_file() or _is_text_alone(path) or getattr(sys, "frozen", False):
+    if not _has_python() or not path.is_file() or _is_text_alone(path):
         return
     size = path.stat().st_size
     longest = MOST_SECONDS + size / 2**20
@@ -61,9 +61,14 @@ def first_line(text: str) -> str:
     return (lines[0] if lines else "no reason given")[:300]
 
 
+def _has_python() -> bool:
+    """Whether there is a program of Python: none in one that holds Python itself."""
+    return bool(get_executable()) and not getattr(sys, "frozen", False)
+
+
 def _opened_apart(path: Path, seconds: float, memory: int) -> subprocess.CompletedProcess:
     searched = os.pathsep.join(folder for folder in sys.path if folder)
-    return subprocess.run([multiprocessing.spawn.get_executable(), "-S", "-c", _OPEN, path, str(memory)],
+    return subprocess.run([get_executable(), "-S", "-c", _OPEN, path, str(memory)],
                           env=os.environ | {"PYTHONPATH": searched}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, text=True, errors="replace", timeout=seconds, check=False)
 

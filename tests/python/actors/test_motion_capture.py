@@ -1,6 +1,8 @@
 """Motion capture onto the walking person: joints of the file, where they are captured and as fast as they are captured."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -105,6 +107,25 @@ def test_parts_sit_at_the_captured_joints_and_move_as_fast(walk):
         speed = (origin(parts[part], middle + step) - origin(parts[part], middle - step)) / (2 * step)
         captured = (wanted[16] - wanted[14]) / (capture.times[16] - capture.times[14])
         assert np.allclose(speed, captured, atol=0.02), part  # m/s, of a central difference over 1/15 s
+
+
+BIPED = {"UpLeg": "Thigh", "Leg": "Calf", "Foot": "Foot", "ToeBase": "Toe0",
+         "Arm": "UpperArm", "ForeArm": "Forearm", "Hand": "Hand"}
+
+
+def test_names_with_spaces_and_numbers_behind_a_colon_are_read(walk, tmp_path):
+    """As 3ds Max calls the joints of its biped, and as some programs write the head of the motion."""
+    text = walk.read_text()
+    for theirs, of_biped in BIPED.items():
+        for side in ("Left", "Right"):
+            text = re.sub(rf"\b(JOINT|ROOT) {side}{theirs}\b", rf"\1 Bip01 {side[0]} {of_biped}", text)
+    text = text.replace("JOINT Head", "JOINT Bip01 Head").replace("Frames: ", "Frames:").replace("Frame Time: ", "Frame Time:")
+    assert text.count("Bip01") > 12 and "Frames:31\n" in text
+    (tmp_path / "biped.bvh").write_text(text)
+    own, other = read_capture(walk), read_capture(tmp_path / "biped.bvh")
+    assert "Bip01 L Thigh" in [joint.name for joint in other.joints]
+    assert np.array_equal(other.positions, own.positions) and np.array_equal(other.times, own.times)
+    assert ep.load_model(tmp_path / "biped.bvh").num_triangles == ep.load_model(walk).num_triangles
 
 
 def test_segments_have_the_captured_lengths_and_the_feet_stand_on_the_floor(walk):

@@ -11,6 +11,7 @@ from ...base.rotations import about_x, about_y, about_z
 
 MOST_JOINTS = 10_000
 MOST_VALUES = 200_000_000  # joints times frames
+MOST_NAME_WORDS = 20       # of a joint
 MAX_BYTES = 2**30
 CHANNELS = ("Xposition", "Yposition", "Zposition", "Xrotation", "Yrotation", "Zrotation")
 _TURNS = {"X": about_x, "Y": about_y, "Z": about_z}
@@ -44,10 +45,10 @@ def read_capture(path: Path) -> Capture:
     words.expect("ROOT")
     joints = _read_joints(words)
     words.expect("MOTION")
-    words.expect("Frames:")
+    words.expect_title("Frames:")
     num_frames = words.whole(2, MOST_VALUES // len(joints))
     words.expect("Frame")
-    words.expect("Time:")
+    words.expect_title("Time:")
     frame_time = words.number()
     if not 1e-6 <= frame_time <= 100.0:
         words.refuse(f"the frame time must be from 1e-6 to 100 s, got {frame_time:g}")
@@ -79,6 +80,22 @@ class _Words:
         found = self.next()
         if found.lower() != word.lower():
             self.refuse(f"must have '{word}' where it has '{found[:40]}'")
+
+    def expect_title(self, word: str) -> None:
+        """Expects a word behind which a number may stand without a space."""
+        if self._at < len(self._words) and self._words[self._at].lower().startswith(word.lower()):
+            number = self._words[self._at][len(word):]
+            self._words[self._at:self._at + 1] = [word, number] if number else [word]
+        self.expect(word)
+
+    def name(self) -> str:
+        """The words up to the next brace, since names of joints may have spaces."""
+        words = [self.next()]
+        while self._at < len(self._words) and self._words[self._at] != "{":
+            words.append(self.next())
+            if len(words) > MOST_NAME_WORDS:
+                self.refuse(f"must have '{{' behind the name of a joint, got '{' '.join(words)[:40]}'")
+        return " ".join(words)
 
     def number(self) -> float:
         word = self.next()
@@ -117,7 +134,7 @@ def _read_joints(words: _Words) -> list[CapturedJoint]:
     """The tree behind ROOT, parents first."""
     joints: list[CapturedJoint] = []
     open_joints: list[int] = []
-    name = words.next()
+    name = words.name()
     while True:
         if len(joints) >= MOST_JOINTS:
             words.refuse(f"has more than {MOST_JOINTS} joints")
@@ -137,7 +154,7 @@ def _read_joints(words: _Words) -> list[CapturedJoint]:
             word = words.next()
         if word.upper() not in ("JOINT", "END"):
             words.refuse(f"must have JOINT, End Site or '}}' where it has '{word[:40]}'")
-        name = words.next()
+        name = words.name()
         if word.upper() == "END":
             name = f"{joints[open_joints[-1]].name}_end"
 

@@ -57,6 +57,14 @@ def _is_file(path: Path) -> bool:
 
 def _materials_of(path: Path) -> set[str]:
     """The names of the materials in an MTL file. Raises OSError, or ValueError for a name that cannot be one."""
-    with path.open(encoding="utf-8", errors="replace") as lines:
-        statements = (line.split(maxsplit=1) for line in lines)
+    with path.open("rb") as lines:
+        statements = (_text(line).split(maxsplit=1) for line in lines)
         return {words[1].strip() for words in statements if len(words) == 2 and words[0] == "newmtl"}
+
+
+def _text(line: bytes) -> str:
+    """As the OBJ file is read, whose names these are: UTF-8, or else Latin-1."""
+    try:
+        return line.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return line.decode("latin-1")

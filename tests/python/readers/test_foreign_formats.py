@@ -75,6 +75,17 @@ def test_groups_of_an_obj_are_taken_apart_by_material(tmp_path):
     assert [name for name, _ in ep.load_meshes(tmp_path / "house.obj")] == ["wall", "door"]
 
 
+def test_names_in_latin_1_are_those_of_the_mtl_file(tmp_path):
+    (tmp_path / "house.mtl").write_bytes("newmtl grün\nKd 0 1 0\n".encode("latin-1"))
+    text = "mtllib house.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\no Straße\nusemtl grün\nf 1 2 3\n"
+    (tmp_path / "house.obj").write_bytes(text.encode("latin-1"))
+    model = ep.load_model(tmp_path / "house.obj", materials={"grün": "wood"})
+    assert [node.name for node in model.nodes] == ["Straße"] and model.notes == ()
+    scene = ep.Scene()
+    scene.add(model, name="a")
+    assert scene.meshes[0].material_name == "wood"
+
+
 @pytest.mark.parametrize("name, content", [("a.obj", b"v 0 0 \xca\n"), ("a.stl", b"solid a\nouter loop\nvertex 0 0 \xca\n"),
                                            ("a.off", b"OFF\n3 1 0\n0 0 \xca\n")])
 def test_words_that_are_no_text_are_written_out_in_messages(tmp_path, name, content):

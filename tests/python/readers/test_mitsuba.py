@@ -38,6 +38,17 @@ def test_a_matrix_and_looking_at_a_point(tmp_path):
     assert np.allclose(corners(mitsuba(tmp_path, look)), [[2, 2, 2], [0, 2, 2], [0, 2, 4], [2, 2, 4]])
 
 
+def test_names_as_mitsuba_before_2_wrote_them_are_known(tmp_path):
+    """Its own documentation: `toWorld` became `to_world`, and so all names in camel case; `lookAt` became `lookat`."""
+    steps = '<scale x="2"/><lookAt origin="1, 2, 3" target="1, 5, 3" up="0, 0, 1"/>'
+    old = rectangle(steps).replace("to_world", "toWorld")
+    new = rectangle(steps.replace("lookAt", "lookat"))
+    assert np.array_equal(corners(mitsuba(tmp_path, old)), corners(mitsuba(tmp_path, new)))
+    assert np.allclose(corners(mitsuba(tmp_path, old))[0], [3, 2, 2])
+    named = mitsuba(tmp_path, '<default name="theScale" value="3"/>' + rectangle('<scale value="$theScale"/>'))
+    assert np.abs(corners(named)).max() == 3.0
+
+
 def test_groups_are_placed_by_their_instances_and_share_meshes(tmp_path):
     model = mitsuba(tmp_path, '<shape type="shapegroup" id="car"><shape type="cube" id="body"/></shape>' + "".join(
         f'<shape type="instance" id="i{x}"><ref id="car"/><transform name="to_world"><translate x="{x}"/></transform></shape>'

@@ -70,4 +70,14 @@ bool is_name(std::string_view text) {
   return true;
 }
 
+std::string utf8_of_latin1(std::string_view text) {
+  std::string utf8;
+  for (const char letter : text) {
+    const auto code = static_cast<uint8_t>(letter);
+    if (code >= 0x80) utf8 += static_cast<char>(0xC0 | (code >> 6));
+    utf8 += static_cast<char>(code >= 0x80 ? 0x80 | (code & 0x3F) : code);
+  }
+  return utf8;
+}
+
 }  // namespace echopath

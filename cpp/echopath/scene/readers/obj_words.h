@@ -2,6 +2,7 @@
 // Says which words of an OBJ file its parser reads rightly: it makes a zero of what it does not understand. Internal to the
 // module.
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace echopath {
@@ -17,5 +18,8 @@ bool is_corner(std::string_view word);
 
 // Returns whether a text is UTF-8 (RFC 3629) without NUL, as names must be.
 bool is_name(std::string_view text);
+
+// Returns the UTF-8 of a text in Latin-1, as older programs write names.
+std::string utf8_of_latin1(std::string_view text);
 
 }  // namespace echopath

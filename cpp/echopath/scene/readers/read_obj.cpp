@@ -82,7 +82,13 @@ class ObjLines : public std::streambuf {
     const size_t begin = std::min(text_.find_first_not_of(" \t"), text_.size());
     const std::string_view statement = std::string_view(text_).substr(begin);
     const std::string_view keyword = statement.substr(0, statement.find_first_of(" \t"));
-    if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "mtllib") check_name(statement);
+    const bool has_name = keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "mtllib";
+    if (has_name && !is_name(statement)) {
+      if (text_.find('\0') != std::string::npos) fail(path_, line_, "a name must not hold NUL");
+      text_ = utf8_of_latin1(text_);
+      check_and_mend();
+      return;
+    }
     if (keyword == "s") smoothing_ = smoothing_of(statement.substr(1));
     if (keyword == "mtllib") material_files_.emplace_back(trimmed(statement.substr(keyword.size())));
     if (statement == "g") {
@@ -103,10 +109,6 @@ class ObjLines : public std::streambuf {
     if (word == "on") return 1;
     const std::optional<double> number = number_of(word);
     return number && *number >= 1.0 && *number < 4e9 ? static_cast<uint32_t>(*number) : 0;
-  }
-
-  void check_name(std::string_view statement) const {
-    if (!is_name(statement)) fail(path_, line_, "a name must be UTF-8 text without NUL");
   }
 
   void check_vertex(std::string_view values) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <iterator>
 #include <string_view>
@@ -28,7 +29,9 @@ bool is_stl_text(const std::string& bytes) {
   if (bytes.size() >= kStlFirst && bytes.size() == kStlFirst + kStlRecord * little_endian(bytes.data() + kStlHeader)) {
     return false;
   }
-  std::string_view first = std::string_view(bytes).substr(0, bytes.find_first_of("\r\n"));
+  std::string_view first = bytes;
+  first.remove_prefix(std::min(first.find_first_not_of(" \t\r\n"), first.size()));
+  first = first.substr(0, first.find_first_of("\r\n"));
   return is_word(take_word(first), "solid") && bytes.find('\0') == std::string::npos;
 }
 

@@ -132,7 +132,7 @@ class _Reader:
 
         def begin(tag, attributes):
             self._count += 1
-            element = Element(tag, attributes, path, parser.CurrentLineNumber)
+            element = _of_today(Element(tag, attributes, path, parser.CurrentLineNumber))
             if len(stack) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
                 element.refuse(f"more than {MAX_DEPTH} elements within each other, or {MAX_ELEMENTS} in all")
             (stack[-1].children if stack else roots).append(element)
@@ -152,6 +152,15 @@ class _Reader:
         except (LookupError, ValueError) as error:  # an encoding that is not known
             raise _core.FileError(f"{path}: is no XML ({error})") from None
         return roots[0]
+
+
+def _of_today(element: Element) -> Element:
+    """The element as Mitsuba writes it from version 2 on: names that were "toWorld" are "to_world", and lookAt is lookat."""
+    if element.tag == "lookAt":
+        element.tag = "lookat"
+    if element.tag != "default" and "name" in element.attributes:  # else of a parameter, which may have any
+        element.attributes["name"] = re.sub(r"(?<=[a-z0-9])[A-Z]", lambda letter: f"_{letter[0].lower()}", element.get("name"))
+    return element
 
 
 def _bytes(path: Path) -> bytes:

@@ -199,10 +199,27 @@ TEST(Obj, RefusesWordsThatItsParserMisreads) {
 
 TEST(Obj, RefusesNamesThatAreNoText) {
   const std::string face = kSquare + "f 1 2 3\n";
-  expect_refused("g a" + std::string(1, '\0') + "b\n" + face, {"line 1", "without NUL"});
-  expect_refused("o Stra\xDF\n" + face, {"line 1", "UTF-8"});
+  expect_refused("g a" + std::string(1, '\0') + "b\n" + face, {"line 1", "must not hold NUL"});
+  expect_refused("g \xDF" + std::string(1, '\0') + "\n" + face, {"line 1", "must not hold NUL"});
+}
+
+// The bytes of Latin-1 are the first 256 code points of Unicode, of which UTF-8 makes two bytes from 128 on.
+TEST(Obj, TakesNamesThatAreNoUtf8ForLatin1) {
+  const std::string face = kSquare + "f 1 2 3\n";
+  EXPECT_EQ(read("o Stra\xDF"
+                 "e\n" +
+                 face)[0]
+                .name,
+            "Stra\xC3\x9F"
+            "e");
+  EXPECT_EQ(read("o \xE4\xFF\x80"
+                 "A\n" +
+                 face)[0]
+                .name,
+            "\xC3\xA4\xC3\xBF\xC2\x80"
+            "A");
   for (const char* name : {"\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82", "\x80"}) {
-    expect_refused(std::string("g ") + name + "\n" + face, {"UTF-8"});
+    EXPECT_EQ(read(std::string("g ") + name + "\n" + face)[0].name.size(), 2 * std::string_view(name).size());
   }
   const std::string euro_and_car = "\xE2\x82\xAC\xF0\x9F\x9A\x97";
   EXPECT_EQ(read("# Stra\xDF\ng " + euro_and_car + "\n" + face)[0].name, euro_and_car);
@@ -238,7 +255,9 @@ TEST(Obj, SurfacesAreGroupsByMaterialAndMeshesAreGroups) {
   EXPECT_EQ(load_meshes(file.path())[1].mesh->triangles().size(), 3u);
 }
 
-TEST(Obj, NamesOfMaterialsAreText) { expect_refused(kSquare + "usemtl \xFF\nf 1 2 3\n", {"line 5", "UTF-8"}); }
+TEST(Obj, NamesOfMaterialsAreText) {
+  expect_refused(kSquare + "usemtl a" + std::string(1, '\0') + "\nf 1 2 3\n", {"line 5", "must not hold NUL"});
+}
 
 }  // namespace
 }  // namespace echopath::test_obj

@@ -79,6 +79,10 @@ TEST(Stl, EachSolidOfATextIsAMeshAndCaseDoesNotCount) {
   expect_square(*read(upper)[0].mesh);
 }
 
+TEST(Stl, BlankLinesMayComeBeforeTheFirstSolid) {
+  for (const char* before : {"\n", "\r\n \t\n", "  "}) EXPECT_EQ(read(before + text(kSquare, "a"))[0].name, "a");
+}
+
 TEST(Stl, ZerosOfBothSignsAreOneVertex) {
   const std::string content =
       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"

@@ -119,6 +119,21 @@ def test_yaw_and_speed_of_a_table_are_kept(tmp_path):
     np.testing.assert_allclose(one.speed([0, 1, 2]), [3, 5, 3])
 
 
+@pytest.mark.parametrize("between", [";", "\t"])
+def test_decimal_commas_are_read_where_no_comma_stands_between_values(tmp_path, between):
+    rows = [["time", "id", "x", "y", "speed"], ["0,0", "car 1,5", "-1,25", "2", "4,5e0"], ["0,5", "car 1,5", "1", ",25", "4,5"]]
+    text = "\n".join(between.join(row) for row in rows) + "\n"
+    own = ep.read_trajectories(write(tmp_path, "comma.csv", text))
+    point = text.replace("1,5", "one").replace(",", ".").replace("one", "1,5")
+    other = ep.read_trajectories(write(tmp_path, "point.csv", point))
+    assert list(own) == list(other) == ["car 1,5"]
+    for time in (0.0, 0.2, 0.5):
+        assert np.array_equal(own["car 1,5"].position(time), other["car 1,5"].position(time))
+    assert own["car 1,5"].position(0.0)[:2] == pytest.approx([-1.25, 2.0])
+    with pytest.raises(ep.FileError, match="line 2: x: must be a number"):
+        ep.read_trajectories(write(tmp_path, "thousand.csv", text.replace("-1,25", "1.234,5")))
+
+
 def test_units_in_brackets_are_taken(tmp_path):
     """10 m/s straight on along y, 36 km/h, in the units of others; the other file has the same in those of ours."""
     names = "t [ms],x (cm),y [mm],z (ft),yaw (\u00b0),speed [km/h]\n"

@@ -41,6 +41,7 @@ UNITS = {
     "speed": {"m/s": 1.0, "mps": 1.0, "km/h": 1.0 / 3.6, "kmh": 1.0 / 3.6, "kph": 1.0 / 3.6, "mph": 0.44704,
               "knots": 1852.0 / 3600.0},
 }
+_OF_TEXT = ("id", "kind")
 UNCLEAR = ("heading", "headingdeg", "headingrad", "angle", "course", "orientation", "bearing")
 
 
@@ -82,8 +83,16 @@ def _read(path: Path, file) -> tuple[dict[str, Samples], bool]:
         values = next(csv.reader([text], delimiter=delimiter))
         if len(values) < least:
             refuse(path, line, f"must have at least {least} values, has {len(values)}")
-        _add(path, line, {name: values[column.index] for name, column in columns.items()}, units, tracks, is_geographic)
+        row = {name: values[column.index] for name, column in columns.items()}
+        if delimiter != ",":
+            row |= {name: _with_point(row[name]) for name in row if name not in _OF_TEXT}
+        _add(path, line, row, units, tracks, is_geographic)
     return tracks, is_geographic
+
+
+def _with_point(text: str) -> str:
+    """A number with a decimal comma, as tables between semicolons have it in half of Europe, with a point."""
+    return re.sub(r"^(\s*[+-]?\d*),(?=\d)", r"\1.", text)
 
 
 def _columns(path: Path, line: int, header: list[str]) -> dict[str, Column]:

@@ -128,6 +128,19 @@ def test_names_with_spaces_and_numbers_behind_a_colon_are_read(walk, tmp_path):
     assert ep.load_model(tmp_path / "biped.bvh").num_triangles == ep.load_model(walk).num_triangles
 
 
+def test_a_file_of_one_frame_is_a_person_who_stands_still(walk, tmp_path):
+    head, motion, rest = walk.read_text().partition("MOTION")
+    frame = rest.strip().splitlines()[2] + "\n"
+    scenes = []
+    for count in (1, 2):  # the same pose once, and again after 10 ms
+        (tmp_path / "pose.bvh").write_text(f"{head}{motion}\nFrames: {count}\nFrame Time: 0.01\n{count * frame}")
+        scenes.append(ep.Scene())
+        scenes[-1].add(ep.load_model(tmp_path / "pose.bvh"), name="person")
+    for mesh in scenes[0].meshes:
+        for time in (0.0, 1.0, 3600.0):
+            assert np.allclose(scenes[0].world_vertices(mesh.id, time), scenes[1].world_vertices(mesh.id, 0.0), atol=KEY_ROUNDING)
+
+
 def test_segments_have_the_captured_lengths_and_the_feet_stand_on_the_floor(walk):
     scene = ep.Scene()
     scene.add(ep.load_model(walk), name="person")
@@ -171,7 +184,7 @@ def test_a_first_pose_of_its_own_is_left_out(tmp_path):
 @pytest.mark.parametrize("change, message", [
     (("HIERARCHY", "HIERARCHIE"), "must have 'HIERARCHY' where it has 'HIERARCHIE'"),
     (("OFFSET 0 -42 0", "OFFSET 0 nan 0"), "must have a number where it has 'nan'"),
-    (("Frames: 31", "Frames: 4000000000"), "must have a whole number from 2 to"),
+    (("Frames: 31", "Frames: 4000000000"), "must have a whole number from 1 to"),
     (("Frames: 31", "Frames: 32"), "the file ends too early"),
     (("Frame Time: 0.0333333333", "Frame Time: 0"), "the frame time must be from 1e-6 to 100 s"),
     (("OFFSET 0 45 0", "OFFSET 0 4500 0"), "its neck is .* times as long as that of a body of such legs"),

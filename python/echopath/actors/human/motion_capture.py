@@ -12,6 +12,7 @@ from ...base.rotations import about_x, about_y, about_z
 MOST_JOINTS = 10_000
 MOST_VALUES = 200_000_000  # joints times frames
 MOST_NAME_WORDS = 20       # of a joint
+POSE_HELD = 86_400.0       # s, that a file of a single frame, a pose, stays as it is
 MAX_BYTES = 2**30
 CHANNELS = ("Xposition", "Yposition", "Zposition", "Xrotation", "Yrotation", "Zrotation")
 _TURNS = {"X": about_x, "Y": about_y, "Z": about_z}
@@ -46,7 +47,7 @@ def read_capture(path: Path) -> Capture:
     joints = _read_joints(words)
     words.expect("MOTION")
     words.expect_title("Frames:")
-    num_frames = words.whole(2, MOST_VALUES // len(joints))
+    num_frames = words.whole(1, MOST_VALUES // len(joints))
     words.expect("Frame")
     words.expect_title("Time:")
     frame_time = words.number()
@@ -54,7 +55,9 @@ def read_capture(path: Path) -> Capture:
         words.refuse(f"the frame time must be from 1e-6 to 100 s, got {frame_time:g}")
     num_channels = sum(len(joint.channels) for joint in joints)
     values = words.numbers(num_frames * num_channels).reshape(num_frames, num_channels)
-    return Capture(joints, frame_time * np.arange(num_frames), *_posed(joints, values))
+    if num_frames == 1:
+        values, frame_time = np.repeat(values, 2, axis=0), POSE_HELD
+    return Capture(joints, frame_time * np.arange(len(values)), *_posed(joints, values))
 
 
 class _Words:

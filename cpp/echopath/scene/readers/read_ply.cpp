@@ -17,8 +17,13 @@ namespace {
 // Reads the values behind the header one after the other. A double holds each type of the format exactly.
 class PlyValues {
  public:
-  PlyValues(std::string body, PlyFormat format, std::string path, int64_t first_line)
-      : body_(std::move(body)), format_(format), path_(std::move(path)), line_(first_line) {}
+  PlyValues(std::string body, const PlyHeader& header, std::string path)
+      : body_(std::move(body)), format_(header.format), path_(std::move(path)), line_(header.num_lines + 1) {
+    if (format_ != PlyFormat::kAscii) return;
+    double num_rows = 0.0;  // which overflows no whole number, whatever a header says
+    for (const PlyElement& element : header.elements) num_rows += static_cast<double>(element.count);
+    has_rows_ = static_cast<double>(std::count(body_.begin(), body_.end(), '\n')) >= num_rows - 1.0;
+  }
 
   double next(PlyType type) {
     if (format_ == PlyFormat::kAscii) return next_word();
@@ -33,6 +38,12 @@ class PlyValues {
       case PlyType::kFloat64: break;
     }
     return next_binary<double>();
+  }
+
+  // Passes over what a line of text has beyond the properties of its element, as MeshLab writes beside wedges; where there are
+  // fewer lines than elements, several elements share a line.
+  void end_row() {
+    if (has_rows_) at_ = std::min(body_.find_first_of("\r\n", at_), body_.size());
   }
 
   size_t bytes_left() const { return body_.size() - at_; }
@@ -78,6 +89,7 @@ class PlyValues {
   std::string path_;
   int64_t line_;
   size_t at_ = 0;
+  bool has_rows_ = false;
 };
 
 // Reads one list or value; `out` receives its items.
@@ -95,6 +107,7 @@ void skip(PlyValues& values, const PlyElement& element) {
   std::vector<double> items;
   for (int64_t i = 0; i < element.count; ++i) {
     for (const PlyProperty& property : element.properties) read_property(values, property, items);
+    values.end_row();
   }
 }
 
@@ -113,6 +126,7 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
       read_property(values, element.properties[p], items);
       row[p] = items.empty() ? 0.0 : items[0];
     }
+    values.end_row();
     const auto vector_of = [&](const int (&columns)[3]) { return Vec3(row[columns[0]], row[columns[1]], row[columns[2]]); };
     const Vec3 point = vector_of(axes);
     if (!point.allFinite()) values.refuse("vertex " + std::to_string(i) + ": a coordinate is out of range or not a number");
@@ -145,6 +159,7 @@ void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
     for (size_t p = 0; p < element.properties.size(); ++p) {
       read_property(values, element.properties[p], p == static_cast<size_t>(list) ? corners : items);
     }
+    values.end_row();
     const std::vector<uint32_t> polygon = polygon_corners(values, corners, soup);
     soup.add_polygon(polygon, 0, soup.normals.empty() ? std::vector<uint32_t>{} : polygon);  // each vertex has its normal
   }
@@ -155,7 +170,7 @@ void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
 Soup read_ply(std::istream& file, const std::string& name) {
   const PlyHeader header = read_ply_header(file, name);
   std::string body((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  PlyValues values(std::move(body), header.format, name, header.num_lines + 1);
+  PlyValues values(std::move(body), header, name);
   Soup soup;
   soup.group_names.emplace_back();
   for (const PlyElement& element : header.elements) {

@@ -31,6 +31,7 @@ class Document:
         self.json = Item(self._parsed(content), self.file)
         if not isinstance(self.json.value, dict):
             self.json.must_be("a JSON object")
+        _check_version(self.json["asset"])
         self.buffers = self.json["buffers"].objects()
         self._size = len(content)
         self._spent = 0
@@ -151,3 +152,10 @@ def _decoded(uri: str, item: Item) -> bytes:
         return urllib.parse.unquote_to_bytes(text)
     except (binascii.Error, ValueError) as error:
         item.fail(f"holds no base64 ({error})")
+
+
+def _check_version(asset: Item) -> None:
+    for key in ("version", "minVersion"):
+        version = asset[key].text("2.0" if key == "minVersion" else None)
+        if version is None or version.partition(".")[0] != "2" or (key == "minVersion" and version != "2.0"):
+            asset[key].fail(f"must be 2.0, is {version!r}"[:100] + "; only glTF 2.0 is read")

@@ -31,7 +31,6 @@ def read(path: Path, options: ReadOptions) -> Model:
     animation that is not there."""
     tree, axes = Tree(options), Axes(options, up=UP)
     document = Document(path, tree.note)
-    _check_version(document)
     check_extensions(document)
     accessors = Accessors(document)
     names = animation_names(document)
@@ -44,14 +43,6 @@ def read(path: Path, options: ReadOptions) -> Model:
         document.json.fail("shows no triangles" + "".join(f"; {note}" for note in tree.notes[:3]))
     return tree.model(format="glTF 2.0", unit=axes.unit, up=axes.up, animations=names, animation=animation.name,
                       duration=animation.duration)
-
-
-def _check_version(document: Document) -> None:
-    asset = document.json["asset"]
-    for key in ("version", "minVersion"):
-        version = asset[key].text("2.0" if key == "minVersion" else None)
-        if version is None or version.partition(".")[0] != "2" or (key == "minVersion" and version != "2.0"):
-            asset[key].fail(f"must be 2.0, is {version!r}"[:100] + "; only glTF 2.0 is read")
 
 
 class _Content:

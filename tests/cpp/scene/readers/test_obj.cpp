@@ -197,6 +197,11 @@ TEST(Obj, RefusesWordsThatItsParserMisreads) {
   expect_refused("v 1e71 0 0\n" + kSquare + "f 1 2 3\n", {"beyond 1e70 m"});
 }
 
+TEST(Obj, TakesColoursThatAreNoNumbers) {
+  const std::string coloured = "v 0 0 0 nan nan nan\nv 1 0 0 0.5 1 nan\nv 0 1 0 inf 0 0\nf 1 2 3\n";
+  EXPECT_EQ(read(coloured)[0].mesh->vertices(), read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")[0].mesh->vertices());
+}
+
 TEST(Obj, RefusesNamesThatAreNoText) {
   const std::string face = kSquare + "f 1 2 3\n";
   expect_refused("g a" + std::string(1, '\0') + "b\n" + face, {"line 1", "must not hold NUL"});

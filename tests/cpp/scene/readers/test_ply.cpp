@@ -38,6 +38,10 @@ class Body {
     content_.append(bytes, sizeof(Value));
     return *this;
   }
+  Body& row() {
+    if (format_ == Format::kAscii) content_ += "\n";
+    return *this;
+  }
   const std::string& content() const { return content_; }
 
  private:
@@ -55,8 +59,8 @@ MeshPtr read(const std::string& content) { return test::read_meshes("mesh.ply", 
 std::string two_triangles(Format format) {
   Body body(format);
   for (const Vec3& p : kVertices) body.put(p.x()).put(p.y()).put(p.z());
-  body.put(uint8_t{3}).put(int32_t{0}).put(int32_t{1}).put(int32_t{2});
-  body.put(uint8_t{3}).put(int32_t{0}).put(int32_t{2}).put(int32_t{3});
+  body.put(uint8_t{3}).put(int32_t{0}).put(int32_t{1}).put(int32_t{2}).row();
+  body.put(uint8_t{3}).put(int32_t{0}).put(int32_t{2}).put(int32_t{3}).row();
   return first_lines(format) +
          "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
          "element face 2\nproperty list uchar int vertex_indices\nend_header\n" +
@@ -95,6 +99,20 @@ TEST(Ply, SkipsWhatItDoesNotNeedInEachFormat) {
     EXPECT_EQ(mesh->original_triangle(), (std::vector<uint32_t>{0, 0}));
     EXPECT_EQ(mesh->area(), 1.0);
   }
+}
+
+// Rows of text may hold more than the header says, and several elements may share a line.
+TEST(Ply, ElementsOfTextAreReadByLinesWhereThereAreEnough) {
+  const std::string head = first_lines(Format::kAscii) +
+                           "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                           "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string faces[] = {"3 0 1 2 9 1 1\n3 2 1 0 7\n", "3 0 1 2\n3 2 1 0", "3 0\n1 2 5 5\n3 2 1 0\n"};
+  for (const std::string& rows : faces) {
+    const MeshPtr mesh = read(head + "0 0 0 8\n1 0 0 8 8\n1 1 0 3 0 1 2\n" + rows);
+    EXPECT_EQ(mesh->triangles().size(), 2u) << rows;
+    EXPECT_EQ(mesh->vertices()[2], Vec3(1, 1, 0)) << rows;
+  }
+  EXPECT_EQ(read(head + "0 0 0 1 0 0 1 1 0 3 0 1 2 3 2 1 0\n")->triangles().size(), 2u);
 }
 
 TEST(Ply, NormalsOfItsVerticesAreThoseOfTheCorners) {
@@ -176,7 +194,7 @@ TEST(Ply, RefusesContentThatDoesNotFitItsHeader) {
   expect_refused(replaced(good, "3 0 1 2", "-3 0 1 2"), {"length"});
   expect_refused(replaced(good, "3 0 1 2", "3 0 1x 2"), {"line 23", "1x"});
   expect_refused(replaced(good, "element face 2", "element face 3"), {"ends too early"});
-  expect_refused(replaced(good, "element vertex 4", "element vertex 9000000000000000000"), {"line 23", "ends too early"});
+  expect_refused(replaced(good, "element vertex 4", "element vertex 9000000000000000000"), {"line 25", "ends too early"});
   expect_refused(replaced(two_triangles(Format::kLittle), "element vertex 4", "element vertex 9000000000000000000"),
                  {"ends too early"});
   expect_refused(replaced(good, "element face 2", "element none 2"), {"no faces"});

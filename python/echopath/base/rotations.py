@@ -35,7 +35,7 @@ def quaternions(rotations) -> np.ndarray:
     longest = np.argmax(np.einsum("tii->ti", columns), axis=1)
     q = columns[np.arange(len(r)), :, longest]
     q = q / np.linalg.norm(q, axis=1)[:, None]
-    flips = np.concatenate([[1.0 if q[0, 0] >= 0 else -1.0], np.sign(np.sum(q[1:] * q[:-1], axis=1))])
+    flips = np.where(np.concatenate([q[:1, 0], np.sum(q[1:] * q[:-1], axis=1)]) < 0.0, -1.0, 1.0)
     return q * np.cumprod(flips)[:, None]
 
 

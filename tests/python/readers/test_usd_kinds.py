@@ -106,3 +106,16 @@ def test_of_a_subdivision_surface_the_cage_is_taken_and_that_is_told(tmp_path, s
     model, _ = loaded(tmp_path, f'def Mesh "box"\n{{\n    uniform token subdivisionScheme = "{scheme}"\n{TRIANGLE}}}\n')
     assert model.nodes[0].smooth is cage
     assert any("control cage" in note for note in model.notes) is cage
+
+
+def test_what_turns_by_half_a_turn_from_sample_to_sample_goes_on(tmp_path):
+    """Quaternions of such turns have a product of 0, to which neither sign is nearer."""
+    _, scene = loaded(tmp_path, 'def Xform "door"\n{\n    matrix4d xformOp:transform.timeSamples = {\n'
+                      "        0: ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)),\n"
+                      "        5: ((-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)),\n"
+                      "        10: ((-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, 1, 0), (5, 0, 0, 1)),\n    }\n"
+                      '    uniform token[] xformOpOrder = ["xformOp:transform"]\n    def Mesh "box"\n    {\n'
+                      f"{TRIANGLE}    }}\n}}\n")
+    for time, wanted in ((0.0, [[0, 0, 0], [1, 0, 0], [0, 1, 0]]), (0.5, [[0, 0, 0], [-1, 0, 0], [0, -1, 0]]),
+                         (1.0, [[5, 0, 0], [4, 0, 0], [5, -1, 0]])):
+        assert np.allclose(scene.world_vertices(0, time), wanted, atol=SINGLE), time

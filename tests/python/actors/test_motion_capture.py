@@ -87,6 +87,41 @@ def test_skeletons_of_usual_programs_have_all_joints(names):
         found["left_elbow"]] or names[found["left_elbow"]] == "LeftElbow"
 
 
+def test_feet_behind_ankles_and_hands_behind_wrists_are_balls_and_palms():
+    """As the skeleton of SMPL has them, whose left_foot is the joint of the toes."""
+    names = ["Pelvis", "Left_hip", "Right_hip", "Left_knee", "Right_knee", "Left_ankle", "Right_ankle", "Left_foot", "Right_foot",
+             "Head", "Left_collar", "Left_shoulder", "Right_shoulder", "Left_elbow", "Right_elbow", "Left_wrist", "Right_wrist",
+             "Left_hand", "Right_hand"]
+    found = {ours: names[index] for ours, index in find_joints(names).items()}
+    assert (found["left_ankle"], found["left_toe"], found["right_wrist"]) == ("Left_ankle", "Left_foot", "Right_wrist")
+    assert "left_toe" not in find_joints([name for name in names if "ankle" not in name])  # the foot is the ankle, then
+
+
+def test_names_may_have_several_words(walk, tmp_path):
+    spaced = walk.read_text().replace("JOINT LeftUpLeg", "JOINT Bip01 L Thigh").replace("JOINT RightUpLeg", "JOINT Bip01 R Thigh")
+    (tmp_path / "spaced.bvh").write_text(spaced)
+    capture, plainly = read_capture(tmp_path / "spaced.bvh"), read_capture(walk)
+    assert {"Bip01 L Thigh", "Bip01 R Thigh", "LeftLeg"} <= {joint.name for joint in capture.joints}
+    assert np.array_equal(capture.positions, plainly.positions)
+    assert len(ep.load_model(tmp_path / "spaced.bvh").nodes) == len(ep.load_model(walk).nodes)
+
+
+def test_hands_bend_at_the_wrist_as_captured(tmp_path):
+    """About the axis across the forearm by 60 degrees: not at all in one frame, in which hand and forearm are one line."""
+    frames, straight = walk_frames(21), 13
+    channel = 6 + 3 * 5 + 1  # turn about y of the left hand, whose forearm lies along x of the file
+    frames[:, channel] = 60.0 * np.sin(np.arange(21) - straight)
+    (tmp_path / "wave.bvh").write_text(bvh_text(frames))
+    capture, scene = read_capture(tmp_path / "wave.bvh"), ep.Scene()
+    assert capture.joints[[joint.name for joint in capture.joints].index("LeftHand")].offset.tolist() == [25, 0, 0]
+    scene.add(ep.load_model(tmp_path / "wave.bvh"), name="person")
+    parts = parts_of(scene)
+    for frame in (0, 5, straight, 20):
+        forearm, hand = (parts[f"arm_left/{name}"].motion.at(capture.times[frame])[:3, 2] for name in ("forearm", "hand"))
+        bend = np.degrees(np.arccos(np.clip(forearm @ hand, -1.0, 1.0)))
+        assert bend == pytest.approx(abs(frames[frame, channel]), abs=1e-3), frame
+
+
 def test_parts_sit_at_the_captured_joints_and_move_as_fast(walk):
     capture = read_capture(walk)
     index = {joint.name: number for number, joint in enumerate(capture.joints)}

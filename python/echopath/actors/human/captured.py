@@ -197,7 +197,9 @@ class CapturedBody:
         return self._turning("head", upright, _axes(np.broadcast_to([0.0, 0.0, 1.0], torso.origin.shape), torso.rotation[..., 1]))
 
     def _hand(self, side: str, forearm: Frames) -> Frames:
-        aligned = int(np.einsum("tij,tij->t", forearm.rotation, forearm.rotation).argmax())
+        """Straight on from the forearm where the wrist turns least from the file's pose at rest."""
+        turn_of = self._rotations
+        aligned = int(np.einsum("tij,tij->t", turn_of[f"{side}_elbow"], turn_of[f"{side}_wrist"]).argmax())
         return self._turning(f"{side}_wrist", aligned, forearm.rotation)
 
     def _foot(self, side: str, shank: Frames) -> Frames:

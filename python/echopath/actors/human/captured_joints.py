@@ -3,15 +3,16 @@ from __future__ import annotations
 
 import re
 
-# our name -> words of theirs behind "left" or "right", the more telling first (CMU, Mixamo, Poser, Rokoko, 3ds Max)
+# our name -> words of theirs behind "left" or "right", the more telling first (CMU, Mixamo, Poser, Rokoko, 3ds Max, SMPL):
+# a skeleton with ankles and feet has its feet at the balls, and hands behind wrists are at the palms
 _OF_SIDES = {
     "hip": ("upleg", "upperleg", "thigh", "hip", "hipjoint", "femur"),
     "knee": ("leg", "lowerleg", "lowleg", "knee", "shin", "calf", "tibia"),
-    "ankle": ("foot", "ankle"),
-    "toe": ("toebase", "toe", "toes", "ball", "footend", "toeend"),
+    "ankle": ("ankle", "foot"),
+    "toe": ("toebase", "toe", "toes", "ball", "footend", "toeend", "foot"),
     "shoulder": ("arm", "upperarm", "uparm", "shldr", "humerus", "shoulder"),
     "elbow": ("forearm", "lowerarm", "lowarm", "elbow", "radius"),
-    "wrist": ("hand", "wrist"),
+    "wrist": ("wrist", "hand"),
 }
 _OF_THE_MIDDLE = {"head": ("head",)}
 OPTIONAL = ("left_toe", "right_toe")
@@ -38,7 +39,7 @@ def find_joints(names: list[str]) -> dict[str, int]:
               for side in ("left", "right") for ours, theirs in _OF_SIDES.items()}
     for ours, theirs in {**wanted, **_OF_THE_MIDDLE}.items():
         match = next((index[word] for word in theirs if word in index), None)
-        if match is not None:
+        if match is not None and match not in found.values():
             found[ours] = match
     return found
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Any, Literal, NamedTuple
 
 from .. import _core
+from ..arguments.objects import NamedGlobs
 
 ClassName = Literal["car", "van", "truck", "bus", "train", "cyclist", "motorcycle", "pedestrian", "pedestrian_group", "animal",
                     "other", "static"]
@@ -37,6 +38,19 @@ def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName]) -> d
     before which the types of traffic tell buses and trams."""
     return {one["name"]: next((kind for glob, kind in chosen.items() if _core.glob_takes(glob, one["name"])),
                               _usual_class(one)) for one in objects}
+
+
+def with_named(classes: dict[str, ClassName], named: NamedGlobs, chosen: dict[str, ClassName]) -> dict[str, ClassName]:
+    """Classes of the objects of a scene, and behind them of those that labels name otherwise: by the globs that were chosen, of
+    which one takes their name or what they consist of, else of the object of the scene that they are, or are part of."""
+    found = dict(classes)
+    for name, globs in named:
+        if name not in found:
+            of_glob = (kind for one in (name, *globs) for glob, kind in chosen.items() if _core.glob_takes(glob, one))
+            of_scene = (kind for one in globs for own, kind in classes.items()
+                        if _core.glob_takes(own, one) or _core.glob_takes(one, own))
+            found[name] = next(of_glob, None) or next(of_scene, "static")
+    return found
 
 
 def _usual_class(one: dict[str, Any]) -> ClassName:

@@ -19,10 +19,11 @@ from ..base.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
+from ..sequence.folder import NAME as CONTENTS
 from ..sequence.keep import Keep
 from .address import is_address
 from .arrays import lazy_arrays
-from .classes import ClassName
+from .classes import ClassName, with_named
 from .folder import DRAWN, open_template, read_record, scene_folder
 from .sources import Files, Remade, Source
 from .template import Template
@@ -152,10 +153,16 @@ class Dataset:
     def classes(self, scene: int) -> dict[str, ClassName]:
         """{name of an object: class} of a scene, as the template's `classes` say, else by actors, "static" for all else.
 
-        The names are those of truth, labels and detections. Raises IndexError for a scene that the template has not.
+        The names are those of the scene's objects and, behind them, those that truth, labels and detections have besides, as of
+        `objects` of the template's [labels], once a frame is made. Raises IndexError for a scene that the template has not.
         """
         self._check_scene(scene)
-        return self.template.classes(scene)
+        classes = self.template.classes(scene)
+        if not (scene_folder(self.folder, scene) / CONTENTS).is_file():
+            return classes
+        settings = self.sequence(scene).settings
+        named = [pair for table in ("labels", "detections", "truth") for pair in (settings[table] or {}).get("objects") or ()]
+        return with_named(classes, named, self.template.settings.classes)
 
     def _check_scene(self, scene: int) -> None:
         if not 0 <= scene < self.template.settings.scenes:

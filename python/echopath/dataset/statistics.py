@@ -61,7 +61,7 @@ def statistics_of(dataset: Dataset) -> Statistics:
     kinds: dict[int, dict[str, ClassName]] = {}
     for one in dataset[::step]:
         if one.scene not in kinds:
-            kinds = {one.scene: dataset.template.classes(one.scene)}
+            kinds = {one.scene: dataset.classes(one.scene)}
         _count(one, kinds[one.scene], found)
     return found
 

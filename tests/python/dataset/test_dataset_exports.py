@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -123,3 +124,26 @@ def test_files_that_a_template_names_are_found_from_where_it_was(tmp_path):
     with pytest.raises(ep.FileError, match=r"made.dataset.toml: line \d+: scene 0: objects.wall.model: /[^:]*models.wall.obj: "):
         dataset.open(made.folder).remade()[1]
     assert "wall" in made.remade(tmp_path / "away")[1].frame.paths.scene
+
+
+def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
+    """By a glob of [dataset.classes] that takes their name or what they consist of, else by the object that they are part of."""
+    text = TEMPLATE.format(keep="labels").replace("frames = 2\ninterval = 0.05\n", "").replace(
+        "[radar.waveform]", '[dataset.classes]\n"street/pole" = "other"\nlorry = "truck"\n[radar.waveform]')
+    (tmp_path / "street.obj").write_text("v 9 2 0\nv 9 3 0\nv 9 2 4\nv 9 -2 0\nv 9 -3 0\nv 9 -2 4\n"
+                                         "o pole\nf 1 2 3\no van\nf 4 5 6\n")
+    (tmp_path / "named.toml").write_text(text.replace("[trace]", '[[objects]]\nname = "street"\nmodel = "street.obj"\n[trace]') +
+                                         'objects = {person = "walker/*", post = "street/pole", lorry = "street/van"}\n'
+                                         "[detections]\n")
+    list(dataset.make(tmp_path / "named.toml", tmp_path / "made"))
+    made = dataset.open(tmp_path / "made")
+    assert list(made.classes(0).items()) == [("walker", "pedestrian"), ("street", "static"), ("person", "pedestrian"),
+                                             ("post", "other"), ("lorry", "truck")]
+    codes = {"person": 7, "post": 10, "lorry": 2, "": 11}  # of RadarScenes
+    dataset.write_radar_scenes(made, tmp_path)
+    with h5py.File(tmp_path / "data" / "sequence_1" / "radar_data.h5") as file:
+        points = file["radar_data"][:]
+    found = made[0].frame.detections
+    assert "person" in found.object.tolist()
+    assert points["label_id"].tolist() == [codes[name] for name in found.object.tolist()]
+    assert [bool(track) for track in points["track_id"]] == [bool(name) for name in found.object.tolist()]

@@ -37,7 +37,7 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     the frame, mounting_position in the world at that time: between transmitters and receivers, from where detections count
     (`Detections.centre`), with the radar's axes) and detections: position (distance m, azimuth and elevation rad, in
     the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
-    of the first antennas), snr (dB), object_id (place in the scene's objects; 2^64 - 1: the surroundings or noise),
+    of the first antennas), snr (dB), object_id (place in `Dataset.classes`; 2^64 - 1: the surroundings or noise),
     existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage, residue), 1 of echoes;
     classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
@@ -97,7 +97,7 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
 
 def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
     """{name: place} of the road users among the objects of a scene."""
-    classes = dataset.template.classes(scene)
+    classes = dataset.classes(scene)
     return {name: place for place, (name, kind) in enumerate(classes.items()) if kind != "static"}
 
 

@@ -100,7 +100,7 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, senso
     """Writes one scene of the sensor of a number; returns what sequences.json says of it."""
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
-    classes = template.classes(scene)
+    classes = dataset.classes(scene)
     frames = dataset.of_scene(scene)
     points, odometry = [], np.zeros(len(frames), ODOMETRY)
     for row, one in enumerate(frames):

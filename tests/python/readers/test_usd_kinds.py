@@ -119,3 +119,17 @@ def test_what_turns_by_half_a_turn_from_sample_to_sample_goes_on(tmp_path):
     for time, wanted in ((0.0, [[0, 0, 0], [1, 0, 0], [0, 1, 0]]), (0.5, [[0, 0, 0], [-1, 0, 0], [0, -1, 0]]),
                          (1.0, [[5, 0, 0], [4, 0, 0], [5, -1, 0]])):
         assert np.allclose(scene.world_vertices(0, time), wanted, atol=SINGLE), time
+
+
+def test_what_quaternions_turn_about_a_pivot_goes_round_it(tmp_path):
+    """A door that opens by 90 degrees in one step about hinges 5 m away, against the library of USD."""
+    _, scene = loaded(tmp_path, 'def Xform "door"\n{\n    double3 xformOp:translate:hinge = (-5, 0, 0)\n'
+                      "    quatf xformOp:orient.timeSamples = { 0: (1, 0, 0, 0), 5: (0.70710678, 0, 0, -0.70710678) }\n"
+                      '    uniform token[] xformOpOrder = ["xformOp:translate:hinge", "xformOp:orient",\n'
+                      '        "!invert!xformOp:translate:hinge"]\n    def Mesh "box"\n    {\n' + f"{TRIANGLE}    }}\n}}\n")
+    stage = Usd.Stage.Open(str(tmp_path / "stage.usda"))  # which its prims need alive
+    door = UsdGeom.Xformable(stage.GetPrimAtPath("/door"))
+    for code in (0.0, 1.3, 2.5, 4.9, 5.0, 8.0):
+        matrix = np.array(door.GetLocalTransformation(code)).T
+        wanted = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) @ matrix[:3, :3].T + matrix[:3, 3]
+        assert np.allclose(scene.world_vertices(0, code / 10), wanted, atol=6e-3), code  # 6 m (1 - cos 2.5 degrees)

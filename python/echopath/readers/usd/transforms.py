@@ -20,17 +20,38 @@ def sampled_transforms(xformable, time, timeline: Timeline) -> tuple[list[float]
 
 
 def _refined(xformable, codes: list[float]) -> list[float]:
-    """Codes with others in between, where angles of rotations change by more than STEP_DEG."""
-    turning = [op for op in xformable.GetOrderedXformOps() if "rotate" in op.GetOpName() and op.MightBeTimeVarying()]
-    if not turning:
+    """Codes with others in between, where rotations turn by more than STEP_DEG."""
+    turning = [op for op in xformable.GetOrderedXformOps() if op.MightBeTimeVarying()]
+    change = sum((_turns(op, codes) for op in turning), np.zeros(len(codes) - 1))
+    if not change.any():
         return codes
-    angles = np.array([[_angles(op, code) for op in turning] for code in codes]).reshape(len(codes), -1)
-    change = np.abs(np.diff(angles, axis=0)).sum(axis=1)
     refined = [codes[0]]
     for before, after, turned in zip(codes, codes[1:], change):
         steps = int(np.clip(np.ceil(turned / STEP_DEG), 1, max(1, MOST_SAMPLES // len(codes))))
         refined += [before + (after - before) * step / steps for step in range(1, steps + 1)]
     return refined
+
+
+def _turns(op, codes: list[float]) -> np.ndarray:
+    """[T - 1] degrees by which an operation turns between codes, of rotations about three axes by all of them together."""
+    if "orient" in op.GetOpName():
+        quaternions = np.array([_quaternion(op, code) for code in codes])
+        cosines = np.abs(np.sum(quaternions[1:] * quaternions[:-1], axis=1))
+        return 2.0 * np.degrees(np.arccos(np.minimum(cosines, 1.0)))
+    if "rotate" in op.GetOpName():
+        return np.abs(np.diff([_angles(op, code) for code in codes], axis=0)).sum(axis=1)
+    return np.zeros(len(codes) - 1)
+
+
+def _quaternion(op, code) -> np.ndarray:
+    """[4] of length 1; that of no turn for values that are no quaternions, of which USD makes no transform."""
+    value = op.Get(code)
+    if hasattr(value, "GetNormalized"):
+        unit = value.GetNormalized()
+        found = np.array([unit.GetReal(), *unit.GetImaginary()], float)
+        if np.isfinite(found).all():
+            return found
+    return np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def _angles(op, code) -> np.ndarray:

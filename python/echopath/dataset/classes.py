@@ -1,6 +1,7 @@
 """What kinds of road users the objects of a dataset are."""
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Literal, NamedTuple
 
 from .. import _core
@@ -33,24 +34,33 @@ _OF_ACTORS: dict[str, ClassName] = {
 _OF_TRAFFIC: dict[str, ClassName] = {"bus": "bus", "coach": "bus", "tram": "train"}  # by words of types, before the actor
 
 
-def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName]) -> dict[str, ClassName]:
+def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], named: NamedGlobs = ()) -> dict[str, ClassName]:
     """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors,
-    before which the types of traffic tell buses and trams."""
-    return {one["name"]: next((kind for glob, kind in chosen.items() if _core.glob_takes(glob, one["name"])),
-                              _usual_class(one)) for one in objects}
+    before which the types of traffic tell buses and trams; and behind them of those that labels name otherwise.
 
-
-def with_named(classes: dict[str, ClassName], named: NamedGlobs, chosen: dict[str, ClassName]) -> dict[str, ClassName]:
-    """Classes of the objects of a scene, and behind them of those that labels name otherwise: by the globs that were chosen, of
-    which one takes their name or what they consist of, else of the object of the scene that they are, or are part of."""
-    found = dict(classes)
+    named: of the labels: a glob that was chosen takes their name or what they consist of, else they have the class of the
+        object of the table that they are, or are part of
+    """
+    found = {one["name"]: _chosen_class(chosen, one["name"]) or _usual_class(one) for one in objects}
+    paths = {"/".join(filter(None, (one.get("parent"), one["name"]))): found[one["name"]] for one in objects}
     for name, globs in named:
         if name not in found:
-            of_glob = (kind for one in (name, *globs) for glob, kind in chosen.items() if _core.glob_takes(glob, one))
-            of_scene = (kind for one in globs for own, kind in classes.items()
-                        if _core.glob_takes(own, one) or _core.glob_takes(one, own))
-            found[name] = next(of_glob, None) or next(of_scene, "static")
+            found[name] = _chosen_class(chosen, name, *globs) or _class_below(paths, globs)
     return found
+
+
+def _chosen_class(chosen: dict[str, ClassName], *names: str) -> ClassName | None:
+    """Of the first glob that takes the first of the names that any takes."""
+    return next((kind for name in names for glob, kind in chosen.items() if _core.glob_takes(glob, name)), None)
+
+
+def _class_below(paths: dict[str, ClassName], globs: Iterable[str]) -> ClassName:
+    """Of the object, by its full name, that globs take or are within: of several that carry each other the one carried."""
+    for glob in globs:
+        owners = [path for path in paths if _core.glob_takes(path, glob) or _core.glob_takes(glob, path)]
+        if owners:
+            return paths[max(owners, key=lambda path: path.count("/"))]
+    return "static"
 
 
 def _usual_class(one: dict[str, Any]) -> ClassName:

@@ -23,7 +23,7 @@ from ..sequence.folder import NAME as CONTENTS
 from ..sequence.keep import Keep
 from .address import is_address
 from .arrays import lazy_arrays
-from .classes import ClassName, with_named
+from .classes import ClassName
 from .folder import DRAWN, open_template, read_record, scene_folder
 from .sources import Files, Remade, Source
 from .template import Template
@@ -157,12 +157,10 @@ class Dataset:
         `objects` of the template's [labels], once a frame is made. Raises IndexError for a scene that the template has not.
         """
         self._check_scene(scene)
-        classes = self.template.classes(scene)
-        if not (scene_folder(self.folder, scene) / CONTENTS).is_file():
-            return classes
-        settings = self.sequence(scene).settings
-        named = [pair for table in ("labels", "detections", "truth") for pair in (settings[table] or {}).get("objects") or ()]
-        return with_named(classes, named, self.template.settings.classes)
+        is_made = (scene_folder(self.folder, scene) / CONTENTS).is_file()
+        settings = self.sequence(scene).settings if is_made else {}
+        asked = [settings.get(table) or {} for table in ("labels", "detections", "truth")]
+        return self.template.classes(scene, tuple(pair for one in asked for pair in one.get("objects") or ()))
 
     def _check_scene(self, scene: int) -> None:
         if not 0 <= scene < self.template.settings.scenes:

@@ -132,14 +132,16 @@ def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
         "[radar.waveform]", '[dataset.classes]\n"street/pole" = "other"\nlorry = "truck"\n[radar.waveform]')
     (tmp_path / "street.obj").write_text("v 9 2 0\nv 9 3 0\nv 9 2 4\nv 9 -2 0\nv 9 -3 0\nv 9 -2 4\n"
                                          "o pole\nf 1 2 3\no van\nf 4 5 6\n")
-    (tmp_path / "named.toml").write_text(text.replace("[trace]", '[[objects]]\nname = "street"\nmodel = "street.obj"\n[trace]') +
-                                         'objects = {person = "walker/*", post = "street/pole", lorry = "street/van"}\n'
-                                         "[detections]\n")
+    (tmp_path / "named.toml").write_text(text.replace("[trace]", '[[objects]]\nname = "street"\nmodel = "street.obj"\n'
+                                                      '[[objects]]\nname = "cat"\nactor = "dog"\nparent = "street"\n'
+                                                      "position = [8.0, 5.0, 0.0]\n[trace]") +
+                                         'objects = {person = "walker/*", post = "street/pole", lorry = "street/van", '
+                                         'pet = "street/cat"}\n[detections]\n')
     list(dataset.make(tmp_path / "named.toml", tmp_path / "made"))
     made = dataset.open(tmp_path / "made")
-    assert list(made.classes(0).items()) == [("walker", "pedestrian"), ("street", "static"), ("person", "pedestrian"),
-                                             ("post", "other"), ("lorry", "truck")]
-    codes = {"person": 7, "post": 10, "lorry": 2, "": 11}  # of RadarScenes
+    assert list(made.classes(0).items()) == [("walker", "pedestrian"), ("street", "static"), ("cat", "animal"),
+                                             ("person", "pedestrian"), ("post", "other"), ("lorry", "truck"), ("pet", "animal")]
+    codes = {"person": 7, "post": 10, "lorry": 2, "pet": 9, "": 11}  # of RadarScenes
     dataset.write_radar_scenes(made, tmp_path)
     with h5py.File(tmp_path / "data" / "sequence_1" / "radar_data.h5") as file:
         points = file["radar_data"][:]

@@ -9,6 +9,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from ...arguments.objects import NamedGlobs
 from ...base.counts import counted
 from ...base.golden import golden_place
 from ...scene_file import SceneFile
@@ -123,9 +124,12 @@ class Template:
         objects = scene.table["objects"]
         return objects + self._traffic[told].objects(one["name"] for one in objects)
 
-    def classes(self, number: int) -> dict[str, ClassName]:
-        """{name: class} of the objects of scene `number`, by the template's `classes`, else by actors. Raises as `draw`."""
-        return classes_of(self.objects(number), self.settings.classes)
+    def classes(self, number: int, named: NamedGlobs = ()) -> dict[str, ClassName]:
+        """{name: class} of the objects of scene `number`, by the template's `classes`, else by actors. Raises as `draw`.
+
+        named: objects as labels name them, which follow those of the scene
+        """
+        return classes_of(self.objects(number), self.settings.classes, named)
 
     def split_of(self, number: int) -> str:
         """The name of the split that scene `number` (from 0) belongs to. Raises nothing.

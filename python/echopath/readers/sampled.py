@@ -111,7 +111,7 @@ def deformed(times, vertices, clock: Clock) -> _core.VertexSequence:
         keys = keys - clock.offset
         ends = (min(keys[0], 0.0) - HOLD, max(keys[-1], 0.0) + HOLD)
     else:
-        ends = (-1.0, clock.period + 1.0)
+        ends = (min(keys[0], 0.0) - 1.0, max(keys[-1], clock.period) + 1.0)
     held = np.concatenate([vertices[:1], vertices, vertices[-1:]])
     return _core.VertexSequence(np.concatenate([ends[:1], keys, ends[1:]]), held, "linear", **_loop_of(clock))
 

@@ -60,6 +60,23 @@ def test_transforms_and_points_of_usd_go_on_for_ever(tmp_path, offset):
         assert np.abs(scene.world_vertices(0, time) - wanted).max() < ROUNDING, time
 
 
+@pytest.mark.parametrize("offset", [0.0, 0.35])
+def test_loops_of_usd_are_the_range_of_the_stage(tmp_path, offset):
+    """Samples before its first frame and after its last one, as of a lead-in, are played once at most."""
+    text = STAGE.replace("startTimeCode = 5", "startTimeCode = 8").replace("endTimeCode = 15", "endTimeCode = 12")
+    (tmp_path / "stage.usda").write_text(text)
+    model = ep.load_model(tmp_path / "stage.usda", loop=True, offset=offset)
+    assert model.duration == 0.4
+    scene = scene_of(model)
+    for time in (0.0, 0.25, 0.39, 0.85, 7.3, LATE, -3.25):
+        code = 8.0 + 10.0 * ((time + offset) % 0.4)
+        x, z = 4.0 * (code - 5.0) / 10.0, 1.0 + 2.0 * min(1.0, (code - 7.0) / 2.0)
+        wanted = [[x, 0, 0], [x + 1, 0, 0], [x, 0, z]]
+        assert np.abs(scene.world_vertices(0, time) - wanted).max() < ROUNDING, time
+    once = scene_of(ep.load_model(tmp_path / "stage.usda", offset=offset))
+    assert once.world_vertices(0, -0.2 - offset)[0, 0] == pytest.approx(0.4, abs=ROUNDING)
+
+
 def test_loops_keep_one_run_alone(tmp_path):
     (tmp_path / "stage.usda").write_text(STAGE)
     once, looped = (ep.load_model(tmp_path / "stage.usda", loop=loop) for loop in (False, True))

@@ -19,8 +19,8 @@ MOST_SAID = 5          # sentences of USD itself that become notes
 def read(path: Path, options: ReadOptions) -> Model:
     """A Model of a stage: meshes and solids, instances, transforms and points over time, skeletons, names of materials.
 
-    Time 0 of the animation, which is called "timeline", is the first frame of the stage. Invisible prims and those of the
-    purposes guide and proxy are left out.
+    Time 0 of the animation, which is called "timeline", is the first frame of the stage; a loop goes to its last frame. Invisible
+    prims and those of the purposes guide and proxy are left out.
     """
     pxr = SimpleNamespace(**{name: pxr_module(name) for name in ("Usd", "UsdGeom", "UsdShade", "UsdSkel")})
     with opened(path) as (stage, said):
@@ -29,12 +29,20 @@ def read(path: Path, options: ReadOptions) -> Model:
         content = Content(path, stage, tree, axes, timeline, pxr)
         codes = content.time_codes()
         animation = chosen_animation(options, (TIMELINE,) if len(codes) > 1 else ())
-        begin, end = timeline.seconds([min([timeline.start, *codes[:1]]), max([timeline.end, *codes[-1:]])])
+        begin, end = timeline.seconds(_ends(timeline, codes, options.loop))
         content.add_all(Clock(options, float(begin), float(end), timeline.steps) if animation else None)
     for sentence in said[:MOST_SAID]:
         tree.note(f"USD says: {sentence}")
     return tree.model(format="USD", unit=axes.unit, up=axes.up, animations=(TIMELINE,) if len(codes) > 1 else (),
                       animation=animation, duration=float(end - begin) if animation else 0.0)
+
+
+def _ends(timeline: Timeline, codes: list[float], loop: bool) -> tuple[float, float]:
+    """Time codes at which the animation begins and ends. Samples outside the stage's own range, as of a lead-in, are played
+    where the scene's time comes to them, but are no part of a loop."""
+    if loop and timeline.end > timeline.start:
+        return timeline.start, timeline.end
+    return min([timeline.start, *codes[:1]]), max([timeline.end, *codes[-1:]])
 
 
 def _unit(stage, pxr) -> float:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.truth import boxes_at
 from fuzz.foreign_seeds import archive
 from support.files.mesh_texts import obj
 
@@ -75,6 +76,15 @@ def test_loops_of_usd_are_the_range_of_the_stage(tmp_path, offset):
         assert np.abs(scene.world_vertices(0, time) - wanted).max() < ROUNDING, time
     once = scene_of(ep.load_model(tmp_path / "stage.usda", offset=offset))
     assert once.world_vertices(0, -0.2 - offset)[0, 0] == pytest.approx(0.4, abs=ROUNDING)
+
+
+@pytest.mark.parametrize("beside", [-8e-5, -2e-5, 0.0, 2e-5, 8e-5])
+def test_bodies_whose_loop_begins_anew_are_as_fast_as_before_and_after(tmp_path, beside):
+    """The sheet goes 4 m/s ahead, back to its begin every second, 0.67 m down: no difference across that is a velocity."""
+    (tmp_path / "stage.usda").write_text(STAGE)
+    scene = scene_of(ep.load_model(tmp_path / "stage.usda", loop=True))
+    boxes = boxes_at(scene, [["m"]], 3.0 + beside, 0.01)
+    assert boxes.velocity[0] == pytest.approx([4.0, 0.0, 0.0], abs=1e-6)
 
 
 def test_loops_keep_one_run_alone(tmp_path):

@@ -64,7 +64,8 @@ Frame Time: 0.5
     ("mixamorig:LeftUpLeg", "leftupleg"), ("Character1|RightHand", "righthand"), ("Bip01 L Thigh", "leftthigh"),
     ("upper_arm.L", "leftupperarm"), ("lShldr", "leftshldr"), ("R_Foot", "rightfoot"), ("Head", "head"),
     ("LowerBack", "lowerback"), ("LHipJoint", "lefthipjoint"), ("l_knee", "leftknee"),
-    ("LeftForeArm", "leftforearm"), ("lowerback", "lowerback"), ("Root", "root"),
+    ("LeftForeArm", "leftforearm"), ("AnkleLeft", "leftankle"), ("hip_right", "righthip"),
+    ("lowerback", "lowerback"), ("Root", "root"),
 ])
 def test_names_are_read_past_what_programs_put_around_them(name, wanted):
     assert plain(name) == wanted

@@ -3,13 +3,13 @@ from __future__ import annotations
 
 import re
 
-# our name -> words of theirs behind "left" or "right", the more telling first (CMU, Mixamo, Poser, Rokoko, 3ds Max, SMPL):
-# a skeleton with ankles and feet has its feet at the balls, and hands behind wrists are at the palms
+# our name -> words of theirs behind "left" or "right", the more telling first (CMU, Mixamo, Poser, Rokoko, 3ds Max, SMPL,
+# Kinect): a skeleton with ankles and feet has its feet at the balls, and hands behind wrists are at the palms
 _OF_SIDES = {
     "hip": ("upleg", "upperleg", "thigh", "hip", "hipjoint", "femur"),
     "knee": ("leg", "lowerleg", "lowleg", "knee", "shin", "calf", "tibia"),
     "ankle": ("ankle", "foot"),
-    "toe": ("toebase", "toe", "toes", "ball", "footend", "toeend", "foot"),
+    "toe": ("toebase", "toe", "toes", "ball", "toe0", "footend", "toeend", "foot"),
     "shoulder": ("arm", "upperarm", "uparm", "shldr", "humerus", "shoulder"),
     "elbow": ("forearm", "lowerarm", "lowarm", "elbow", "radius"),
     "wrist": ("wrist", "hand"),
@@ -26,7 +26,7 @@ def plain(name: str) -> str:
     if side:
         letter = next(filter(None, side.groups())).lower()
         name = {"l": "left", "r": "right"}[letter] + name[:side.start()] + name[side.end():]
-    return re.sub(r"[^a-z0-9]", "", name.lower())
+    return re.sub("^(.+)(left|right)$", r"\2\1", re.sub(r"[^a-z0-9]", "", name.lower()))
 
 
 def find_joints(names: list[str]) -> dict[str, int]:

@@ -31,12 +31,14 @@ _OF_ACTORS: dict[str, ClassName] = {
     "car": "car", "van": "van", "truck": "truck", "cyclist": "cyclist", "bicycle": "cyclist", "motorcycle": "motorcycle",
     "pedestrian": "pedestrian", "captured_pedestrian": "pedestrian", "runner": "pedestrian", "standing_person": "pedestrian",
     "child": "pedestrian", "dog": "animal", "drone": "other"}
+_OF_PERSON = ".bvh"  # files of motion captures, which the walking person moves by
 _OF_TRAFFIC: dict[str, ClassName] = {"bus": "bus", "coach": "bus", "tram": "train"}  # by words of types, before the actor
 
 
 def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], named: NamedGlobs = ()) -> dict[str, ClassName]:
     """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors,
-    before which the types of traffic tell buses and trams; and behind them of those that labels name otherwise.
+    before which the types of traffic tell buses and trams, or as motion captures of people; and behind them of those that
+    labels name otherwise.
 
     named: of the labels: a glob that was chosen takes their name or what they consist of, else they have the class of the
         object of the table that they are, or are part of
@@ -65,4 +67,5 @@ def _class_below(paths: dict[str, ClassName], globs: Iterable[str]) -> ClassName
 
 def _usual_class(one: dict[str, Any]) -> ClassName:
     of_word = next((kind for word, kind in _OF_TRAFFIC.items() if word in str(one.get("kind", "")).lower()), None)
-    return of_word or _OF_ACTORS.get(str(one.get("actor")), "static")
+    of_model: ClassName = "pedestrian" if str(one.get("model", "")).lower().endswith(_OF_PERSON) else "static"
+    return of_word or _OF_ACTORS.get(str(one.get("actor")), of_model)

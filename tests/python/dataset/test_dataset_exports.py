@@ -11,6 +11,7 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
+from echopath.dataset.classes import classes_of
 from support.files.small_dataset import bytes_of
 
 TEMPLATE = """
@@ -124,6 +125,12 @@ def test_files_that_a_template_names_are_found_from_where_it_was(tmp_path):
     with pytest.raises(ep.FileError, match=r"made.dataset.toml: line \d+: scene 0: objects.wall.model: /[^:]*models.wall.obj: "):
         dataset.open(made.folder).remade()[1]
     assert "wall" in made.remade(tmp_path / "away")[1].frame.paths.scene
+
+
+def test_motion_captures_are_people():
+    found = classes_of([{"name": "a", "model": "walks/Fast.BVH"}, {"name": "b", "model": "bvh.obj"},
+                        {"name": "c", "actor": "van"}, {"name": "d", "model": "ride.bvh"}], {"d": "cyclist"})
+    assert found == {"a": "pedestrian", "b": "static", "c": "van", "d": "cyclist"}
 
 
 def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):

@@ -133,3 +133,14 @@ def test_what_quaternions_turn_about_a_pivot_goes_round_it(tmp_path):
         matrix = np.array(door.GetLocalTransformation(code)).T
         wanted = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) @ matrix[:3, :3].T + matrix[:3, 3]
         assert np.allclose(scene.world_vertices(0, code / 10), wanted, atol=6e-3), code  # 6 m (1 - cos 2.5 degrees)
+
+
+def test_at_rest_a_stage_is_as_in_its_first_frame(tmp_path):
+    """Transforms as the points are, whatever samples lie before it."""
+    (tmp_path / "stage.usda").write_text(HEAD.replace("startTimeCode = 0", "startTimeCode = 4") + MOVING)
+    scene = ep.Scene()
+    scene.add(ep.load_model(tmp_path / "stage.usda", animation=""), name="m")
+    stage = Usd.Stage.Open(str(tmp_path / "stage.usda"))
+    matrix = np.array(UsdGeom.Xformable(stage.GetPrimAtPath("/cart")).GetLocalTransformation(4.0)).T
+    wanted = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) @ matrix[:3, :3].T + matrix[:3, 3]
+    assert np.allclose(scene.world_vertices(0, 0.0), wanted, atol=SINGLE)

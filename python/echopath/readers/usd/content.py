@@ -80,7 +80,8 @@ class Content:
 
     def _placed(self, prim):
         """(placement, motion or None) of a prim; None, counted, where it flattens space."""
-        codes, matrices = sampled_transforms(self._pxr.UsdGeom.Xformable(prim), self._time, self._timeline)
+        xformable, animated = self._pxr.UsdGeom.Xformable(prim), self._clock is not None
+        codes, matrices = sampled_transforms(xformable, self._time, self._timeline, animated)
         matrices = self._axes.matrices(matrices)
         if not np.isfinite(matrices).all() or np.abs(matrices).max() > 1e60 or (np.linalg.det(matrices[:, :3, :3]) == 0.0).any():
             self._tree.count("a prim whose transform flattens it, or is not finite, is left out")

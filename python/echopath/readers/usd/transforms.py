@@ -9,11 +9,12 @@ STEP_DEG = 5.0       # that a prim may turn between two samples
 MOST_SAMPLES = 5000  # of one prim
 
 
-def sampled_transforms(xformable, time, timeline: Timeline) -> tuple[list[float], np.ndarray]:
-    """(time codes [T], transforms [T, 4, 4] relative to the parent) of a prim; one at `time` for a prim at rest."""
+def sampled_transforms(xformable, time, timeline: Timeline, animated: bool) -> tuple[list[float], np.ndarray]:
+    """(time codes [T], transforms [T, 4, 4] relative to the parent) of a prim; one at `time` for a prim at rest, and for any
+    where nothing is animated."""
     codes = timeline.usable(xformable.GetTimeSamples())
-    if len(codes) < 2:
-        at = codes[0] if codes else time
+    if len(codes) < 2 or not animated:
+        at = codes[0] if len(codes) == 1 else time
         return [0.0], matrix(xformable.GetLocalTransformation(at))[None]
     codes = _refined(xformable, codes[:MOST_SAMPLES])
     return codes, np.stack([matrix(xformable.GetLocalTransformation(code)) for code in codes])

@@ -17,7 +17,7 @@ from ..labels.request import Labelling, as_label_settings, labelling_of, make_re
 from ..paths.families import check_objects
 from ..paths.subset import part_of_path
 from ..receiver.chain import transmitted_code
-from ..receiver.channels import require_channels
+from ..receiver.channels import require_channels, require_drift
 from ..scene.lifetimes import scene_in_frame
 from ..signals.beside import cubes_beside
 from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
@@ -54,7 +54,7 @@ class FrameRun:
     def __init__(self, scene, radar, trace: TraceSettings, signal: SignalSettings, parts, angles, labels, detections,
                  truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
-        _check_radar(radar)
+        check_receiver(radar, trace.start_time, trace.start_time + radar.frame_duration)
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
         require_names(self.partitions)
@@ -181,10 +181,11 @@ class FrameRun:
                 for partition, group in self.partitions.items()}
 
 
-def _check_radar(radar) -> None:
-    """Raises ValueError, before the long work, for what no frame of a radar can have."""
+def check_receiver(radar, begin: float, end: float) -> None:
+    """Raises ValueError, before the long work, for what no frame of a radar can have. begin, end: s, of all frames"""
     if radar.receiver is not None:
         require_channels(radar.receiver, radar)
+        require_drift(radar.receiver, begin, end)
 
 
 def _checks(cube, probe, signals: SignalSettings, paths) -> list:

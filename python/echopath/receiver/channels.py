@@ -5,7 +5,7 @@ import numpy as np
 
 from ..arguments.checks import refused
 from ..base.analytic import turned
-from .settings import Receiver
+from .settings import LARGEST_DB, Receiver
 
 
 def require_channels(receiver: Receiver, radar) -> None:
@@ -18,6 +18,18 @@ def require_channels(receiver: Receiver, radar) -> None:
         value = getattr(receiver, name)
         if value and np.shape(value) != size:
             raise refused(ValueError, f"receiver.{name}", f"of the shape {size} for this radar", np.array(value))
+
+
+def require_drift(receiver: Receiver, begin: float, end: float) -> None:
+    """Raises ValueError for gains that drift, from time 0 on, to where nothing is left of a signal, or no number tells it.
+
+    begin, end: s, of what is received
+    """
+    time = max(abs(begin), abs(end))
+    if max(map(abs, receiver.gain_drift_db), default=0.0) * time > LARGEST_DB:
+        rate = LARGEST_DB / time
+        raise refused(ValueError, "receiver.gain_drift_db", f"from {-rate:.4g} to {rate:.4g} dB/s, by which gains "
+                      f"drift by {LARGEST_DB:g} dB from time 0 to {time:.6g} s", receiver.gain_drift_db)
 
 
 def transmitter_factors(receiver: Receiver, radar) -> np.ndarray | None:
@@ -34,6 +46,7 @@ def receiver_factors(receiver: Receiver, radar, slots) -> np.ndarray | None:
     if not receiver.gain_drift_db and not receiver.phase_drift:
         return None if fixed is None else fixed[None, :, None, None]
     time = (slots.start_time + slots.begin)[:, None, :]
+    require_drift(receiver, time.min(), time.max())
     rate = _log_factors(receiver.gain_drift_db, receiver.phase_drift, num_rx)[:, None]
     return np.exp(time * rate)[..., None] * (1.0 if fixed is None else fixed[:, None, None])
 

@@ -12,24 +12,27 @@ from ..arguments.settings import Settings, settings_class
 from .fields import NumberPair, Numbers, NumberTable, Row, Table, kept
 
 LARGEST_DB = 1000.0  # of gains, of which several and their squares are finite numbers
+LARGEST_OFFSET = 10.0 ** (LARGEST_DB / 20.0)  # sqrt(W), likewise
+LONGEST_DELAY = 1.0  # s, of leakage, coupling and jitter: phases of radars are still told to a thousandth of a turn after it
+FASTEST_TURN = 1e9  # rad/s, of a drift: a tone beyond the band of any converter
 HIGHEST_LEVEL = 20.0  # dBc/Hz, of a phase that turns about at random: masks of radars are far below it
 
 
-def _row(unit: str = "") -> Rule:
-    """Finite numbers [N] as a tuple, such of the unit "dB" of which powers are finite."""
+def _row(unit: str = "", largest: float = math.inf) -> Rule:
+    """Finite numbers [N] of a unit as a tuple, none beyond +-largest."""
     rule = array("[N]", finite=True)
 
     def check(argument: str, value) -> Row:
         row = tuple(float(one) for one in rule(argument, value))
-        _check_decibels(argument, row, unit)
+        _check_size(argument, row, unit, largest)
         return row
 
     return check
 
 
-def _check_decibels(argument: str, numbers: Row, unit: str) -> None:
-    if unit.startswith("dB") and max(map(abs, numbers), default=0.0) > LARGEST_DB:
-        raise refused(ValueError, argument, f"from {-LARGEST_DB:g} to {LARGEST_DB:g} {unit}", numbers)
+def _check_size(argument: str, numbers: Row, unit: str, largest: float) -> None:
+    if max(map(abs, numbers), default=0.0) > largest:
+        raise refused(ValueError, argument, f"from {-largest:g} to {largest:g} {unit}", numbers)
 
 
 def _decibels(unit: str, low: float = -LARGEST_DB) -> Rule:
@@ -46,7 +49,7 @@ def _table(shape: str) -> Rule:
             return ()
         table = tuple(tuple(float(one) for one in row) for row in rule(argument, value))
         for row in table:
-            _check_decibels(argument, row, "dB")
+            _check_size(argument, row, "dB", LARGEST_DB)
         return table
 
     return check
@@ -64,6 +67,7 @@ def _lanes(argument: str, value) -> int:
 
 def _pair(argument: str, value) -> tuple[float, float]:
     first, second = array("[2]", finite=True)(argument, value)
+    _check_size(argument, (first, second), "sqrt(W)", LARGEST_OFFSET)
     return float(first), float(second)
 
 
@@ -145,8 +149,8 @@ class Adc(Settings):
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "bits": count(2, 16), "full_scale_dbm": _decibels("dBm"), "gain_db": _decibels("dB"), "automatic_gain": flag,
-        "headroom_db": _decibels("dB", 0.0), "gain_step_db": _decibels("dB", 0.0), "clock_jitter": real(0.0, unit="s"),
-        "lanes": _lanes, "q_first": flag}
+        "headroom_db": _decibels("dB", 0.0), "gain_step_db": _decibels("dB", 0.0),
+        "clock_jitter": real(0.0, LONGEST_DELAY, "s"), "lanes": _lanes, "q_first": flag}
 
 
 class GivenPhaseNoise:
@@ -174,7 +178,8 @@ class Receiver(Settings):
     leakage_db: [tx, rx] dB of the transmit power that leaks into each receiver, after leakage_delay (s)
     coupling_db: [rx, rx] dB from receiver (row) to receiver (column) after coupling_delay (s); the diagonal counts for nothing
     transmitter_gain_db, transmitter_phase: [tx] dB and rad, errors of the chains; receiver_gain_db, receiver_phase: [rx],
-        likewise; gain_drift_db, phase_drift: [rx] dB/s and rad/s that the receivers' errors change by, from time 0 on
+        likewise; gain_drift_db, phase_drift: [rx] dB/s and rad/s that the receivers' errors change by, from time 0 on: gains by
+        at most 1000 dB until a frame ends
     compression_dbm: dBm at the antenna where the gain is 1 dB lower, of a gain that falls as 1 / sqrt(1 + power / saturation)
     high_pass: [N] Hz, corners of that many first-order filters; low_pass: Hz, corner (-3 dB) of a Butterworth filter of
         low_pass_poles poles, 1 to 10
@@ -206,11 +211,12 @@ class Receiver(Settings):
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": _table("[tx, rx]"),
-        "leakage_delay": real(0.0, unit="s"), "coupling_db": _table("[rx, rx]"),
-        "coupling_delay": real(0.0, unit="s"), "transmitter_gain_db": _row("dB"), "transmitter_phase": _row(),
-        "receiver_gain_db": _row("dB"), "receiver_phase": _row(), "gain_drift_db": _row(), "phase_drift": _row(),
-        "compression_dbm": optional(_decibels("dBm")), "high_pass": _row(), "low_pass": optional(real(above=0.0, unit="Hz")),
-        "low_pass_poles": count(1, 10), "iq_gain_db": _decibels("dB"), "iq_phase": real(-math.pi / 2, math.pi / 2, "rad"),
+        "leakage_delay": real(0.0, LONGEST_DELAY, "s"), "coupling_db": _table("[rx, rx]"),
+        "coupling_delay": real(0.0, LONGEST_DELAY, "s"), "transmitter_gain_db": _row("dB", LARGEST_DB),
+        "transmitter_phase": _row(), "receiver_gain_db": _row("dB", LARGEST_DB), "receiver_phase": _row(),
+        "gain_drift_db": _row(), "phase_drift": _row("rad/s", FASTEST_TURN), "compression_dbm": optional(_decibels("dBm")),
+        "high_pass": _row(), "low_pass": optional(real(above=0.0, unit="Hz")), "low_pass_poles": count(1, 10),
+        "iq_gain_db": _decibels("dB"), "iq_phase": real(-math.pi / 2, math.pi / 2, "rad"),
         "dc_offset": _pair, "adc": optional(_value(Adc))}
 
     def __post_init__(self) -> None:

@@ -13,6 +13,7 @@ from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
+from ..receiver.channels import require_channels
 from ..scene.interferers import Interferer
 from ..scene.found_objects import find_objects
 from ..scene.large_planes import mark_mirrors
@@ -58,6 +59,9 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
         trajectories.traffic.add_to(scene)
         scene.interferers = _build_interferers(settings, folder, trajectories)
         radar = _build_radar(settings.radar, folder, trajectories)
+        if radar.receiver is not None:
+            with blamed("radar"):
+                require_channels(radar.receiver, radar)
         if settings.mark_mirrors:
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),

@@ -25,7 +25,7 @@ from ..base.counts import counted
 from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
-from ..frame.run import FrameRun, Recorded
+from ..frame.run import FrameRun, Recorded, check_receiver
 from ..scene.lifetimes import warn_of_absence, warn_of_the_unseen
 from ..scene.scene import Scene
 from ..signals.interference_of_frame import require_interferers
@@ -95,6 +95,7 @@ class Sequence(Row[Frame]):
                  guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):
         tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
         end = _checked_end(scene, radar, start_time, frames, interval)
+        check_receiver(radar, start_time, end)
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         warn_of_ends(scene, radar, start_time, end)

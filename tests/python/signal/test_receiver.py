@@ -343,6 +343,31 @@ def test_decibels_whose_powers_are_no_numbers_are_refused(make, name):
         make()
 
 
+@pytest.mark.parametrize("make, name", [
+    (lambda: ep.Receiver(leakage_delay=1e300), "leakage_delay"), (lambda: ep.Receiver(coupling_delay=2.0), "coupling_delay"),
+    (lambda: ep.Receiver(phase_drift=[0.0, -1e300]), "phase_drift"), (lambda: ep.Receiver(dc_offset=(0.0, 1e300)), "dc_offset"),
+    (lambda: ep.Adc(clock_jitter=1e300), "clock_jitter")])
+def test_delays_and_turns_whose_phases_are_no_numbers_are_refused(make, name):
+    with pytest.raises(ValueError, match=rf"^{name}: must be .*from .* to .* (s|rad/s|sqrt\(W\)), got"):
+        make()
+
+
+@pytest.mark.parametrize("rate", [1.0, -1.0])
+def test_gains_that_drift_away_until_a_late_start_are_refused_before_the_trace(rate, monkeypatch):
+    """1 dB/s until 8 o'clock are 28 800 dB, whose amplitude 10^1440 no number tells: maps had been without numbers."""
+    monkeypatch.setattr("echopath.frame.simulate.trace_scene", None)
+    radar, late = one_channel(receiver=ep.Receiver(gain_drift_db=[rate])), 28800.0
+    told = "^receiver.gain_drift_db: must be from -0.03472 to 0.03472 dB/s, by which gains drift by 1000 dB from time 0 to 28800"
+    with pytest.raises(ValueError, match=told):
+        ep.receive(tone(40), radar, seed=1, start_time=late)
+    with pytest.raises(ValueError, match=told):
+        ep.simulate(ep.Scene(), radar, start_time=late)
+    with pytest.raises(ValueError, match=told):
+        ep.Sequence(ep.Scene(), radar, frames=28801, interval=1.0)
+    drifted = ep.receive(tone(40), radar, seed=None, start_time=100.0).cube / tone(40)
+    assert 20.0 * np.log10(np.abs(drifted)) == pytest.approx(100.0 * rate, abs=0.001)
+
+
 @pytest.mark.parametrize("filters, name", [({"high_pass": [350e3, 1.0]}, "high_pass"), ({"low_pass": 1e-300}, "low_pass")])
 def test_corners_that_would_take_hours_are_refused(filters, name):
     """A filter of 1 Hz settles over seconds, 45 million samples of 10 MHz, of which a chirp has some hundred."""

@@ -41,6 +41,8 @@ FAULTS = [
     (RADAR + "[angle]\nmethod = 'capon'\nwindow = 'hann'", "angle.window: must be \"rect\" for capon"),
     (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),
     (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
+    (RADAR + "[radar.receiver]\nreceiver_phase = [0.1, 0.2, 0.3]",
+     "radar: receiver.receiver_phase: must be of the shape (1,) for this radar, got an array [3] of float64"),
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}",
      "parts: must be all selections (one partition) or all tables of selections (several), got ['a', 'b']"),
     (RADAR + "[parts]\na = 'T & R'",

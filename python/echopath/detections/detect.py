@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import Progress, an, checked, keywords, optional, refused, text
+from ..arguments.checks import Progress, an, checked, keywords, optional, real, refused, text
 from ..arguments.keywords import parameters_of
 from ..arguments.objects import Objects, objects_rule
 from ..arguments.part_names import BESIDE, require_names
@@ -65,13 +65,13 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
 
 @checked(**CFAR_RULES, angles=optional(_ANGLES), paths=optional(an(_core.Paths)), parts=optional(_parts),
          labels=optional(an(Labels, called="Labels")), beside=optional(_parts), objects=objects_rule,
-         noise_margin_db=optional(LabelSettings.RULES["noise_margin_db"]))
+         noise_margin_db=optional(LabelSettings.RULES["noise_margin_db"]), start_time=optional(real(unit="s")))
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
            training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
            angles: Mapping[str, object] | None = None, paths: _core.Paths | None = None, parts: Mapping[Any, Any] | None = None,
            labels: Labels | None = None, beside: Mapping[Any, Any] | None = None, objects: Objects = None,
-           noise_margin_db: float | None = None, progress: Progress = None) -> Detections:
+           noise_margin_db: float | None = None, start_time: float | None = None, progress: Progress = None) -> Detections:
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
@@ -95,6 +95,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     objects: of `families`, with paths
     noise_margin_db: dB from -300 to 300, with paths: as of `annotate`, above which the rule of labels tells an object from what
         hides it; None: that of labels where they are given, else 10
+    start_time: s, first sample of the frame, to which the gains of `radar.receiver` have drifted; None: that of paths, else 0
     progress: callable (stage, fraction), True for bars, or None
     Returns Detections: range in m, from 0 on, velocity in m/s and the rest. Raises ValueError naming the argument,
     KeyboardInterrupt on Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
@@ -111,7 +112,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)
-    gains = EchoGains(radar, spectrum.range, 0.0 if paths is None else paths.frame.start_time)
+    gains = EchoGains(radar, spectrum.range, _start_of(paths) if start_time is None else start_time)
     warn_of_missing_noise(radar, found.power, gains.of_filters)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
@@ -133,6 +134,10 @@ class _Makers(NamedTuple):
     objects: object
     noise_floor: float  # W
     gains: EchoGains
+
+
+def _start_of(paths) -> float:
+    return 0.0 if paths is None else paths.frame.start_time
 
 
 def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:

@@ -56,6 +56,18 @@ def test_labels_tell_noise_behind_the_receiver_too(spheres):
     assert not found.is_noise.any() and set(found.object) == set(TARGETS)
 
 
+def test_parts_and_labels_without_paths_are_told_when_the_frame_begins(spheres):
+    """By then gains have drifted by 30 dB: echoes as they were at time 0 hold a thousandth of their power."""
+    radar, paths, _ = spheres
+    radar, late = radar.replace(receiver=ep.Receiver(gain_drift_db=[3.0] * 8)), 10.0
+    parts = ep.decompose(paths, radar, {name: f"T '{name}' R" for name in TARGETS})
+    spectrum = ep.range_doppler(ep.receive(sum(parts.values()), radar, seed=1, start_time=late).cube, radar)
+    for source in ({"parts": parts}, {"labels": ep.annotate(paths, parts, radar)}):
+        found = ep.detect(spectrum, radar, start_time=late, **source)
+        assert not found.is_noise.any() and {*found.part} == {*TARGETS}
+        assert ep.detect(spectrum, radar, **source).is_noise.all()
+
+
 @pytest.mark.parametrize("fault", FAULTS)
 def test_paths_serve_every_receiver_of_the_radar(spheres, fault):
     """They are those of a new trace with that receiver, and so are the detections; parts and labels, too."""

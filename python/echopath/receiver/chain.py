@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
-from ..base.analytic import turned
+from ..base.analytic import as_samples, turned
 from ..base.past import models_of
 from ..transmit import code_of, is_coded, radar_of_noise
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
@@ -83,9 +83,9 @@ def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time
 def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: float, interference) -> Reception:
     chain = Chain(radar, receiver, seed, start_time)
     cube = chain.mixed(chain.sent(cube))
-    for other in (None if interference is None else chain.mixed_alone(interference), chain.leaked()):
-        cube = cube if other is None else cube + other
-    cube = chain.amplified(chain.coupled(cube))
+    cube = cube if interference is None else cube + chain.mixed_alone(interference)
+    cube, leaked = chain.amplified(chain.coupled(cube)), chain.leaked()
+    cube = cube if leaked is None else cube + leaked
     if seed is not None:
         cube = _noise(cube, radar_of_noise(radar), seed, start_time)
     gain = compression(cube, radar, receiver)
@@ -126,16 +126,22 @@ class Chain:
         return cube if self._oscillator.is_ideal else self._oscillator.alone(cube)
 
     def leaked(self):
-        """The leakage after the mixers, in a shape that a cube takes; None: none."""
-        return leakage(self._radar, self._receiver, self._slots, self._oscillator)
+        """The leakage with what couples from receiver to receiver and with their errors, in a shape that a cube takes; None:
+        none."""
+        leaked = leakage(self._radar, self._receiver, self._slots, self._oscillator)
+        if leaked is None:
+            return None
+        leaked = coupled(leaked, self._radar, self._receiver, self._slots, real=False)
+        factors = self._receiver_factors()
+        return as_samples(leaked if factors is None else leaked * factors, self._radar.waveform.real)
 
     def coupled(self, cube, whole=None):
         """With what couples from receiver to receiver; whole: as in `turned`."""
-        return coupled(cube, self._radar, self._receiver, self._slots, whole)
+        return coupled(cube, self._radar, self._receiver, self._slots, self._radar.waveform.real, whole)
 
     def amplified(self, cube, whole=None):
         """With the errors of the receivers; whole: as in `turned`."""
-        factors = receiver_factors(self._receiver, self._radar, self._slots)
+        factors = self._receiver_factors()
         return cube if factors is None else self._turned(cube, factors, whole)
 
     def models_of(self, cube):
@@ -154,6 +160,9 @@ class Chain:
         """At the instants of the converter's clock."""
         adc = self._receiver.adc
         return cube if adc is None else jittered(cube, self._radar.waveform, adc, self._slots.generator(self._seed, "jitter"))
+
+    def _receiver_factors(self):
+        return receiver_factors(self._receiver, self._radar, self._slots)
 
     def _turned(self, cube, factors, whole):
         return turned(cube, factors, self._radar.waveform.real, whole)

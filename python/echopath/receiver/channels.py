@@ -61,9 +61,9 @@ def _factors(gain_db, phase, count: int) -> np.ndarray | None:
     return np.exp(_log_factors(gain_db, phase, count)) if gain_db or phase else None
 
 
-def coupled(cube: np.ndarray, radar, receiver: Receiver, slots, whole: np.ndarray | None = None) -> np.ndarray:
+def coupled(cube: np.ndarray, radar, receiver: Receiver, slots, real: bool, whole: np.ndarray | None = None) -> np.ndarray:
     """What each receiver has with what couples in from the others: later by the delay, so that every echo turns by
-    2 pi (f0 + slope t) delay. slots: SlotTimes; whole: as in `turned`"""
+    2 pi (f0 + slope t) delay. slots: SlotTimes; real, whole: as in `turned`"""
     if not receiver.coupling_db:
         return cube
     share = 10.0 ** (np.array(receiver.coupling_db) / 20.0)
@@ -73,4 +73,4 @@ def coupled(cube: np.ndarray, radar, receiver: Receiver, slots, whole: np.ndarra
     frequency = slots.start_frequency[..., None] + slots.slope[..., None] * time
     turn = np.exp(2j * np.pi * frequency * receiver.coupling_delay)[:, None]
     others, of_whole = (None if one is None else np.einsum("ab,tacs->tbcs", share, one, optimize=True) for one in (cube, whole))
-    return cube + turned(others, turn, waveform.real, of_whole)
+    return cube + turned(others, turn, real, of_whole)

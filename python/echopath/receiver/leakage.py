@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.analytic import as_samples
 from ..transmit import code_of, is_coded
 from .channels import transmitter_factors
 from .settings import Receiver
 
 
 def leakage(radar, receiver: Receiver, slots, oscillator=None) -> np.ndarray | None:
-    """The leakage after the mixers, in a shape that a cube before `demultiplex` takes, in sqrt(W); None: none.
+    """The leakage after the mixers, in a shape that a cube before `demultiplex` takes, in sqrt(W); None: none. It is complex,
+    for real samples (`as_samples`) of less than a period do not tell what a phase makes of them.
 
     slots: SlotTimes; oscillator: Oscillator with what it does in the meantime, None: an ideal one
     """
@@ -21,7 +21,7 @@ def leakage(radar, receiver: Receiver, slots, oscillator=None) -> np.ndarray | N
         tone = leaked_tone(radar.waveform, slots, receiver.leakage_delay, time)[:, None]
     else:
         tone = oscillator.leaked(receiver.leakage_delay)
-    return as_samples(_amplitudes(radar, receiver) * tone, radar.waveform.real)
+    return _amplitudes(radar, receiver) * tone
 
 
 def _amplitudes(radar, receiver: Receiver) -> np.ndarray:

@@ -48,9 +48,9 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     found = {name: chain.mixed(cube) for name, cube in _through(chain.sent, cubes, radar).items()}
     if interference is not None:
         found[INTERFERENCE] = chain.mixed_alone(interference)
+    found = _through(chain.amplified, _through(chain.coupled, found, radar), radar)
     if (leaked := chain.leaked()) is not None:
         found[LEAKAGE] = np.broadcast_to(leaked, shape)
-    found = _through(chain.amplified, _through(chain.coupled, found, radar), radar)
     if seed is not None:
         found[NOISE] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver)

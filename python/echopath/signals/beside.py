@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN, RESIDUE
+from ..base.analytic import as_samples
 from ..receiver.channels import transmitter_factors
 from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes
@@ -61,4 +62,6 @@ def _own(frame):
 
 def _leaked(radar):
     leaked = None if radar.receiver is None else leakage(radar, radar.receiver, SlotTimes(radar, 0.0))
-    return None if leaked is None else np.array(np.broadcast_to(leaked, signal_shape(radar)))
+    if leaked is None:
+        return None
+    return np.array(np.broadcast_to(as_samples(leaked, radar.waveform.real), signal_shape(radar)))

@@ -200,6 +200,30 @@ def test_coupling_turns_real_samples_by_its_delay():
     np.testing.assert_allclose(out, np.repeat(np.sqrt(2.0) * (echo + others).real, 4, axis=2), atol=1e-4)
 
 
+@pytest.mark.parametrize("multiplexing", ["tdm", "bpm"])
+def test_phases_and_coupling_turn_leakage_of_less_than_a_period(multiplexing):
+    """Of 0.3 ns and 1 GHz a chirp of real samples has 0.3 periods, which by themselves tell no phase."""
+    sent, had, rate = np.array([0.4, np.pi / 2]), np.array([np.pi / 2, -2.1]), np.array([9.0, 0.0])
+    radar, _ = pairs_of_real_samples(multiplexing, leakage_db=np.full((2, 2), -20.0), leakage_delay=0.3e-9, coupling_delay=0.1e-9,
+                                     coupling_db=[[0, -20.0], [-30.0, 0]], transmitter_phase=sent, receiver_phase=had,
+                                     phase_drift=rate)
+    shape = (2, 2, 4, COUNT) if multiplexing == "tdm" else (1, 2, 8, COUNT)
+    time, begin = np.arange(COUNT) / RATE, 60e-6 * np.arange(8)
+    leaked = 0.1 * np.sqrt(radar.transmit_power) * np.exp(2j * np.pi * 0.3e-9 * (77e9 + SLOPE * (time - 0.15e-9)))
+    leaked = leaked * (1.0 + np.array([[10 ** -1.5], [0.1]]) * np.exp(2j * np.pi * (77e9 + SLOPE * time) * 0.1e-9))
+    signs = np.stack([np.ones(8), np.tile([1.0, -1.0], 4)]) * np.exp(1j * sent)[:, None]
+    drift = np.exp(1j * (had[:, None] + rate[:, None] * begin))
+    if multiplexing == "tdm":
+        wanted = leaked[None, :, None] * np.einsum("t,rct->trc", np.exp(1j * sent), drift.reshape(2, 4, 2))[..., None]
+    else:
+        wanted = leaked[None, :, None] * (signs.sum(axis=0) * drift)[None, ..., None]
+    wanted = np.sqrt(2.0) * wanted.real
+    out = ep.receive(np.zeros(shape), radar, seed=None).cube
+    np.testing.assert_allclose(out, wanted, atol=1e-9 * np.abs(wanted).max())
+    parts = ep.receive_parts({"echo": np.zeros(shape)}, radar, seed=None)
+    np.testing.assert_array_equal(parts["leakage"], out)
+
+
 def test_thermal_noise_goes_through_the_errors_of_the_converter_and_not_of_the_transmitters():
     radar = one_channel(64, receiver=ep.Receiver(transmitter_gain_db=[20.0]))
     out = ep.receive(np.zeros((1, 1, 64, COUNT)), radar, seed=2).cube

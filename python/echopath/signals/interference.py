@@ -13,9 +13,10 @@ from ..arguments.checks import an, checked, optional, real
 from ..arguments.motions import require_motion
 from ..arguments.settings import Replay, SignalSettings
 from ..base.chirps import chirps_duration
-from ..transmit import code_of, radar_of_noise
+from ..receiver.chain import transmitted_code
+from ..transmit import radar_of_noise
 from .interference_crossing import FINE, Chirps, add_crossing
-from .interference_ways import Ways
+from .interference_ways import Ways, require_own_channels
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"),
@@ -29,7 +30,8 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     sampling_rate / |m - n|, of real samples on both sides of its middle. It sends while it samples. Both radars and the scene
     move through the frame: each chirp has the delays and the Doppler of its own time. The direct way has the spreading of one
     way and both antennas' gains toward each other, without anything in between; polarisation counts for nothing.
-    radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own
+    radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own and the
+        errors of its transmitters, such as their back-off (`Receiver`)
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
         transmitters of the other and the receivers of this one, both as they stand in the middle of the frame
         (`interference_radar`), replayed to where both are at each chirp: the strongest that hold 99.9 % of the power, or about
@@ -46,6 +48,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     begins = start_time + np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
     for argument, one in (("radar", radar), ("other", other)):
         require_motion(argument, one, (start_time, start_time + radar.frame_duration))
+    require_own_channels("other", other)
     ways = Ways(radar, other, paths, begins, replay)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     for place, begin in enumerate(begins):
@@ -73,7 +76,7 @@ class _Slot(NamedTuple):
 
 def _slots_under_way(other, begin: float, duration: float, delay: float) -> Iterator[_Slot]:
     """The chirps that may be heard from `begin` on (s, of its own time) for a duration, over ways of a delay (s) or less."""
-    code, longest = code_of(other), delay + other.waveform.chirp_duration
+    code, longest = transmitted_code(other), delay + other.waveform.chirp_duration
     starts = np.array([other.waveform.slot_start(slot) for slot in range(code.shape[1])])
     period = chirps_duration(other)
     for frame in range(int(np.floor((begin - longest) / period)), int(np.floor((begin + duration) / period)) + 1):

@@ -14,7 +14,7 @@ from ..tracing.traces import trace
 from ..transmit import signal_shape
 from ..weather.weather import attenuation_of
 from .interference import interference
-from .interference_ways import interference_radar, require_apart
+from .interference_ways import interference_radar, require_apart, require_own_channels
 
 
 def has_interference(scene, effects: Choices) -> bool:
@@ -29,6 +29,7 @@ def require_interferers(scene, radar: _core.Radar, effects: Choices, times) -> N
     for index, one in enumerate(interferers_of(scene)):
         argument = f"interferers[{index}].radar"
         require_motion(argument, one.radar, times)
+        require_own_channels(argument, one.radar)
         if one.over != "paths":
             require_apart(radar, one.radar, times, argument)
 

@@ -7,6 +7,7 @@ from .. import _core
 from ..arguments.checks import an, checked, real, refused
 from ..arguments.motions import require_motion
 from ..base.rotations import matrices, product, quaternions
+from ..receiver.channels import require_channels
 from .interference_paths import few_paths
 
 _CHIRPS_AT_ONCE = 16  # whose ways are kept, so that memory does not grow with the frame
@@ -25,6 +26,16 @@ def interference_radar(radar: _core.Radar, other: _core.Radar, *, time: float = 
     return other.replace(transmitters=_placed(other.transmitters, other, time),
                          receivers=_placed(radar.receivers, radar, time), position=(0, 0, 0), yaw=0.0, pitch=0.0,
                          motion=None, receiver=None)
+
+
+def require_own_channels(argument: str, other) -> None:
+    """Raises ValueError naming the argument for another radar whose faults are of other antennas than its own."""
+    if other.receiver is None:
+        return
+    try:
+        require_channels(other.receiver, other)
+    except ValueError as error:
+        raise ValueError(f"{argument}: {error}") from None
 
 
 def require_apart(radar, other, times, argument: str) -> None:

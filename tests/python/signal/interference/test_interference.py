@@ -34,6 +34,24 @@ def test_a_faster_slope_crosses_from_the_other_side():
     assert last == pytest.approx(12.8e-6, abs=2.0 / RATE)
 
 
+def test_another_radar_sends_with_the_errors_of_its_transmitters():
+    """A back-off of 20 dB is a tenth of the field, and a phase that of a code of this one phase."""
+    places = {"transmitters": ((0, 0, 0), (0, 0.01, 0)), "num_chirps": 4}
+    coded = other(**places, multiplexing="cdm", code_phases=[[0.4], [-1.3]])
+    plain = other(**places, multiplexing="cdm", code_phases=[[0.0], [0.0]])
+    faulty = plain.replace(receiver=ep.Receiver(transmitter_gain_db=[-20.0] * 2, transmitter_phase=[0.4, -1.3],
+                                                receiver_gain_db=[40.0]))
+    wanted = 0.1 * ep.interference(victim(), coded)
+    np.testing.assert_allclose(ep.interference(victim(), faulty), wanted, atol=1e-12 * np.abs(wanted).max())
+    assert not np.allclose(wanted, 0.1 * ep.interference(victim(), plain), atol=0.1 * np.abs(wanted).max())
+    wrong = faulty.replace(receiver=ep.Receiver(transmitter_gain_db=[-20.0]))
+    told = r"receiver\.transmitter_gain_db: must be of the shape \(2,\) for this radar"
+    with pytest.raises(ValueError, match=f"^other: {told}"):
+        ep.interference(victim(), wrong)
+    with pytest.raises(ValueError, match=rf"^interferers\[0\]\.radar: {told}"):
+        ep.simulate(ep.Scene(interferers=[ep.Interferer(radar=wrong)]), victim(), num_rays=100)
+
+
 def test_one_branch_hears_both_sides_of_a_crossing():
     """Real samples do not tell a difference of frequency from its negative: half the sampling rate on either side. How much
     power the turn in the middle has depends on its phase."""

@@ -24,6 +24,8 @@ def cubes_beside(frame) -> dict:
         return {}
     apart = _as_the_whole(frame)
     cubes = {name: apart(cube) for name, cube in received.items()}
+    if RAIN in cubes and frame.coded_cube is not None:  # which was added up behind the transmitters, as echoes are
+        cubes[RAIN] = cubes[RAIN] / np.abs(_transmitter_factors(frame.radar))
     return cubes | ({RESIDUE: apart(frame.coded_cube) - _own(frame)} if leaves_residue else {})
 
 
@@ -56,8 +58,13 @@ def _as_the_whole(frame):
 
 def _own(frame):
     """The echoes of each transmitter behind its errors, [tx, rx, chirp, sample]."""
-    factors = None if frame.radar.receiver is None else transmitter_factors(frame.radar.receiver, frame.radar)
-    return frame.cube if factors is None else factors[:, None, None, None] * frame.cube
+    return _transmitter_factors(frame.radar) * frame.cube
+
+
+def _transmitter_factors(radar):
+    """Of the errors of the transmitters, as a cube [tx, rx, chirp, sample] takes them; 1: none."""
+    factors = None if radar.receiver is None else transmitter_factors(radar.receiver, radar)
+    return 1.0 if factors is None else factors[:, None, None, None]
 
 
 def _leaked(radar):

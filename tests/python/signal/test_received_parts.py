@@ -75,6 +75,19 @@ def test_frames_have_them_for_their_parts(code):
     assert list(ep.simulate(scene, radar, num_rays=100, noise_seed=None).received_parts["parts"])[:2] == ["other", "rain"]
 
 
+@pytest.mark.filterwarnings("ignore:scene. has no mesh")
+@pytest.mark.parametrize("code", [{}, dict(multiplexing="bpm"), dict(multiplexing="ddm", empty_slots=2)],
+                         ids=["tdm", "bpm", "ddm"])
+def test_rain_beside_the_echoes_has_no_errors_of_the_transmitters_as_these_have_none(code):
+    """Labels hold it against ideal echoes, and detections count the errors of both: a back-off had counted twice."""
+    scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=20.0))
+    ideal, backed_off = (build_radar(**ARRAY, **code, receiver=ep.Receiver(transmitter_gain_db=[level, level]))
+                         for level in (0.0, -20.0))
+    wanted, found = (ep.simulate(scene, radar, num_rays=100, noise_seed=None).beside_spectra["rain"].values
+                     for radar in (ideal, backed_off))
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
+
+
 @pytest.mark.parametrize("code", [dict(multiplexing="bpm"), dict(multiplexing="ddm", empty_slots=2)], ids=["bpm", "ddm"])
 def test_frames_whose_paths_are_traced_anew_have_them_too(code):
     scene = ep.Scene()

@@ -185,7 +185,8 @@ class Receiver(Settings):
         low_pass_poles poles, 1 to 10
     iq_gain_db, iq_phase: dB and rad by which the Q branch differs from the I branch; dc_offset: (I, Q) in sqrt(W)
     adc: Adc or a dict of its keywords
-    Empty or None is none. Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
+    An empty row or table is none, and so is None of the others. Raises TypeError or ValueError naming the keyword. Values are
+    frozen; two with equal values are equal.
     """
 
     phase_noise: GivenPhaseNoise = kept(None)

@@ -40,8 +40,8 @@ class PlyValues {
     return next_binary<double>();
   }
 
-  // Passes over what a line of text has beyond the properties of its element, as MeshLab writes beside wedges; where there are
-  // fewer lines than elements, several elements share a line.
+  // Passes over what a line of text has beyond the properties of its element, as MeshLab writes beside wedges. Where there
+  // are fewer lines than elements, several elements share a line.
   void end_row() {
     if (has_rows_) at_ = std::min(body_.find_first_of("\r\n", at_), body_.size());
   }

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 
 STEP = 5e-5  # s, of the differences; their error for a point 0.3 m from an axis of 50 turns/s is below 1e-5 m/s
-JUMP = 1e-5  # m, or of entries of rotations, by which differences over one step and two disagree where the value jumps or bends
-ALONE = 4.0  # times as far off the others is the difference across a jump
+JUMP = 1e-5  # m, or 1 for entries of rotations: twice the difference over one step is off that over two by more at a jump
+ALONE = 4.0  # a difference is taken for a jump where it is so many times farther from the median than any other
 
 
 def step_within(duration: float) -> float:

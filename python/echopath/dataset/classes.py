@@ -57,12 +57,15 @@ def _chosen_class(chosen: dict[str, ClassName], *names: str) -> ClassName | None
 
 
 def _class_below(paths: dict[str, ClassName], globs: Iterable[str]) -> ClassName:
-    """Of the object, by its full name, that globs take or are within: of several that carry each other the one carried."""
+    """Of the objects, by their full names, that globs take or are within: of those that carry each other the ones carried.
+    Road users of several classes are "other"."""
+    found = set()
     for glob in globs:
         owners = [path for path in paths if _core.glob_takes(path, glob) or _core.glob_takes(glob, path)]
-        if owners:
-            return paths[max(owners, key=lambda path: path.count("/"))]
-    return "static"
+        deepest = max((path.count("/") for path in owners), default=0)
+        found |= {paths[path] for path in owners if path.count("/") == deepest}
+    users = found - {"static"}
+    return users.pop() if len(users) == 1 else "other" if users else "static"
 
 
 def _usual_class(one: dict[str, Any]) -> ClassName:

@@ -15,9 +15,10 @@ EDGE = 0.018       # m, of the triangles
 
 
 def read(path: Path, options: ReadOptions) -> Model:
-    """A Model of the person of `actors.captured_pedestrian`; the capture is not repeated."""
+    """A Model of the person of `actors.captured_pedestrian`; the capture is not repeated, and one frame is no animation."""
     body = captured_body(path, unit=options.unit, up=options.up, height=None)
-    animation = chosen_animation(options, (NAME,))
+    names = () if body.is_pose else (NAME,)
+    animation = chosen_animation(options, names)
     tree = Tree(options)
     for note in body.notes:
         tree.note(note)
@@ -30,7 +31,7 @@ def read(path: Path, options: ReadOptions) -> Model:
             groups[group] = tree.add(group)
         tree.add(name, groups.get(group, -1), mesh=_core.Mesh(arrays.vertices, arrays.triangles), smooth=True,
                  foreign_material=arrays.material, **_moved(path, arrays, animation))
-    return tree.model(format="BVH", unit=body.unit, up=body.up, animations=(NAME,), animation=animation,
+    return tree.model(format="BVH", unit=body.unit, up=body.up, animations=names, animation=animation,
                       duration=float(body.times[-1] - body.times[0]) if animation else 0.0)
 
 

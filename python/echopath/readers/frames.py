@@ -84,7 +84,7 @@ def _of_folder(path: Path, axes: Axes, tree: Tree):
 
 def _by_number(file: Path) -> list:
     """A name by its words and numbers: "walk2" comes before "walk10"."""
-    return [(0, int(word), "") if word.isdigit() and len(word) < 20 else (1, 0, word)
+    return [(0, int(word), "") if word.isdecimal() and len(word) < 20 else (1, 0, word)
             for word in re.split(r"([0-9]+)", file.name)]
 
 

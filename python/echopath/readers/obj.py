@@ -57,9 +57,8 @@ def _is_file(path: Path) -> bool:
 
 def _materials_of(path: Path) -> set[str]:
     """The names of the materials in an MTL file. Raises OSError, or ValueError for a name that cannot be one."""
-    with path.open("rb") as lines:
-        statements = (_text(line).split(maxsplit=1) for line in lines)
-        return {words[1].strip() for words in statements if len(words) == 2 and words[0] == "newmtl"}
+    statements = (_text(line).split(maxsplit=1) for line in path.read_bytes().splitlines())  # as any system ends them
+    return {words[1].strip() for words in statements if len(words) == 2 and words[0] == "newmtl"}
 
 
 def _text(line: bytes) -> str:

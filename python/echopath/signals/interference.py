@@ -49,12 +49,12 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     for argument, one in (("radar", radar), ("other", other)):
         require_motion(argument, one, (start_time, start_time + radar.frame_duration))
     require_own_channels("other", other)
-    ways = Ways(radar, other, paths, begins, replay)
+    ways, codes = Ways(radar, other, paths, begins, replay), transmitted_code(other)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     for place, begin in enumerate(begins):
         delay, amplitude = ways.of(place)
         fine = np.zeros((num_rx, FINE * waveform.num_samples), complex)
-        for slot in _slots_under_way(other, begin - offset, waveform.chirp_duration, np.max(delay, initial=0.0)):
+        for slot in _slots_under_way(other, codes, begin - offset, waveform.chirp_duration, np.max(delay, initial=0.0)):
             pair = Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
                            begin - slot.begin - offset)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
@@ -74,15 +74,18 @@ class _Slot(NamedTuple):
     transmitters: list
 
 
-def _slots_under_way(other, begin: float, duration: float, delay: float) -> Iterator[_Slot]:
-    """The chirps that may be heard from `begin` on (s, of its own time) for a duration, over ways of a delay (s) or less."""
-    code, longest = transmitted_code(other), delay + other.waveform.chirp_duration
-    starts = np.array([other.waveform.slot_start(slot) for slot in range(code.shape[1])])
+def _slots_under_way(other, codes, begin: float, duration: float, delay: float) -> Iterator[_Slot]:
+    """The chirps that may be heard from `begin` on (s, of its own time) for a duration, over ways of a delay (s) or less.
+
+    codes: `transmitted_code` of the other radar
+    """
+    longest = delay + other.waveform.chirp_duration
+    starts = np.array([other.waveform.slot_start(slot) for slot in range(codes.shape[1])])
     period = chirps_duration(other)
     for frame in range(int(np.floor((begin - longest) / period)), int(np.floor((begin + duration) / period)) + 1):
         for slot in np.flatnonzero((frame * period + starts > begin - longest) & (frame * period + starts < begin + duration)):
-            senders = np.flatnonzero(code[:, slot])
-            yield _Slot(int(slot), frame * period + starts[slot], [(int(tx), code[tx, slot]) for tx in senders])
+            senders = np.flatnonzero(codes[:, slot])
+            yield _Slot(int(slot), frame * period + starts[slot], [(int(tx), codes[tx, slot]) for tx in senders])
 
 
 def _chirp(waveform, slot: int) -> tuple:

@@ -130,8 +130,9 @@ def test_decimal_commas_are_read_where_no_comma_stands_between_values(tmp_path, 
     for time in (0.0, 0.2, 0.5):
         assert np.array_equal(own["car 1,5"].position(time), other["car 1,5"].position(time))
     assert own["car 1,5"].position(0.0)[:2] == pytest.approx([-1.25, 2.0])
-    with pytest.raises(ep.FileError, match="line 2: x: must be a number"):
-        ep.read_trajectories(write(tmp_path, "thousand.csv", text.replace("-1,25", "1.234,5")))
+    for line, bad in ((2, text.replace("-1,25", "1.234,5")), (3, text.replace("0,5", "0.5"))):
+        with pytest.raises(ep.FileError, match=f"line {line}: numbers must have decimal points or decimal commas"):
+            ep.read_trajectories(write(tmp_path, "both.csv", bad))
 
 
 def test_units_in_brackets_are_taken(tmp_path):

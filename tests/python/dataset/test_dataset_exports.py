@@ -156,3 +156,10 @@ def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
     assert "person" in found.object.tolist()
     assert points["label_id"].tolist() == [codes[name] for name in found.object.tolist()]
     assert [bool(track) for track in points["track_id"]] == [bool(name) for name in found.object.tolist()]
+
+
+def test_labels_of_several_kinds_of_road_users_are_other():
+    objects = [{"name": "car", "actor": "car"}, {"name": "person", "actor": "pedestrian"}, {"name": "house", "actor": "wall"}]
+    named = (("all", ("*",)), ("who", ("person/**", "house")), ("what", ("car", "person")), ("walls", ("house",)))
+    found = classes_of(objects, {}, named)
+    assert {name: found[name] for name, _ in named} == {"all": "other", "who": "pedestrian", "what": "other", "walls": "static"}

@@ -75,8 +75,9 @@ def test_groups_of_an_obj_are_taken_apart_by_material(tmp_path):
     assert [name for name, _ in ep.load_meshes(tmp_path / "house.obj")] == ["wall", "door"]
 
 
-def test_names_in_latin_1_are_those_of_the_mtl_file(tmp_path):
-    (tmp_path / "house.mtl").write_bytes("newmtl grün\nKd 0 1 0\n".encode("latin-1"))
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_names_in_latin_1_are_those_of_the_mtl_file(tmp_path, end):
+    (tmp_path / "house.mtl").write_bytes(f"# made{end}newmtl grün{end}Kd 0 1 0{end}".encode("latin-1"))
     text = "mtllib house.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\no Straße\nusemtl grün\nf 1 2 3\n"
     (tmp_path / "house.obj").write_bytes(text.encode("latin-1"))
     model = ep.load_model(tmp_path / "house.obj", materials={"grün": "wood"})

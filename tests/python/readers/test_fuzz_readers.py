@@ -9,6 +9,7 @@ import echopath as ep
 from fuzz import targets, worker
 from fuzz.seeds import frames
 
+# Of USD few: a process of its own opens each file that is binary or names others.
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
          "gltf_bytes": 300, "gltf_json": 300, "gltf_bin": 200, "frames_folder": 200, "mtl": 200, "xml": 300, "usda": 100,
          "usdc": 25, "usdz": 25, "npz": 200, "bvh": 40, "obj": 200, "stl": 200, "off": 200,

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -49,17 +48,23 @@ def test_the_crash_of_what_opens_a_stage_is_told(tmp_path, monkeypatch, binary):
     monkeypatch.setattr(trial, "_OPEN", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
     with pytest.raises(ep.FileError) as told:
         ep.load_model(path)
-    assert str(told.value) == f"{path}: is no USD stage that can be read (USD crashes on it by SIGSEGV)"
+    crash = "is no USD stage that can be read (USD crashes on it by SIGSEGV, or needs more than"
+    assert str(told.value).startswith(f"{path}: {crash}")
 
 
-def test_a_stage_that_takes_too_long_is_refused_and_its_process_ends(tmp_path, monkeypatch):
-    path, mark = binary_stage(tmp_path), tmp_path / "came to its end"
-    monkeypatch.setattr(trial, "_OPEN", f"import time\ntime.sleep(2)\nopen({str(mark)!r}, 'w')")
+def test_a_stage_that_takes_too_long_is_refused(tmp_path, monkeypatch):
+    path = binary_stage(tmp_path)
+    monkeypatch.setattr(trial, "_OPEN", "import time\ntime.sleep(600)")
     monkeypatch.setattr(trial, "MOST_SECONDS", 0.2)
     with pytest.raises(ep.FileError, match=r"ball.usdc: .*\(USD takes more than 0 s to open it\)"):
         ep.load_model(path)
-    time.sleep(2.5)
-    assert not mark.exists()
+
+
+def test_a_stage_that_asks_for_more_memory_than_there_is_is_refused(tmp_path, monkeypatch):
+    path = binary_stage(tmp_path)
+    monkeypatch.setattr(trial, "_OPEN", trial._OPEN.replace("Usd.Stage.Open(sys.argv[1])", "bytes(2**60)"))
+    with pytest.raises(ep.FileError, match=r"ball.usdc: .*\(it needs more memory than there is\)"):
+        ep.load_model(path)
 
 
 def test_what_usd_refuses_it_says_in_its_own_words(tmp_path):

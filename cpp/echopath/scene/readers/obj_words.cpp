@@ -49,6 +49,13 @@ std::optional<double> number_of(std::string_view word) {
   return reads_whole(word, value) ? std::optional(value) : std::nullopt;
 }
 
+bool is_not_finite(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  std::string letters(word);
+  for (char& letter : letters) letter = static_cast<char>(letter | 0x20);
+  return letters == "nan" || letters == "inf" || letters == "infinity";
+}
+
 bool is_corner(std::string_view word) {
   for (int part = 0; part < 3; ++part) {
     const size_t slash = word.find('/');

@@ -13,6 +13,9 @@ std::string_view take_word(std::string_view& text);
 // Returns the double nearest to a decimal number, none for any other word and for a number that no double comes near.
 std::optional<double> number_of(std::string_view word);
 
+// Returns whether a word is NaN or infinite, in letters of either case and with a sign or without.
+bool is_not_finite(std::string_view word);
+
 // Returns whether a word is a corner of a face: v, v/vt, v//vn or v/vt/vn, each a whole number of 32 bits.
 bool is_corner(std::string_view word);
 

@@ -115,7 +115,8 @@ class ObjLines : public std::streambuf {
     Eigen::Index count = 0;
     for (std::string_view word = take_word(values); !word.empty(); word = take_word(values)) {
       const std::optional<double> number = number_of(word);
-      if (!number && count < 3) refuse("not a number", word);  // behind them stands a weight or a colour, be it NaN
+      const bool may_be_any = count >= 3 && is_not_finite(word);  // of a colour
+      if (!number && !may_be_any) refuse("not a number", word);
       if (count < 3) vertex_[count] = *number;
       ++count;
     }

@@ -20,7 +20,7 @@ from .body import surface
 from .captured_along import CaptureAlong, cycle_of
 from .captured_joints import find_joints, missing_joints
 from .gait import Frames
-from .motion_capture import read_capture
+from .motion_capture import POSE_HELD, read_capture
 from .pedestrian import HEIGHTS, SKIN_PARTS, material_rule
 
 UNITS = (1.0, 0.01, 0.0254, 0.3048, 0.001, 0.0254 / 0.45)  # m: metre, cm, inch, foot, mm, that of the CMU conversions
@@ -114,6 +114,11 @@ class CapturedBody:
             raise _core.FileError(f"{path}: a person of {scale * tall:.3g} m must be from {HEIGHTS[0]} to {HEIGHTS[1]} m tall: "
                                   f"with unit={TYPICAL_HEIGHT / tall:.3g} it is {TYPICAL_HEIGHT} m")
         self.body = Proportions(scale * tall)
+
+    @property
+    def is_pose(self) -> bool:
+        """Whether the file has a single frame: no two of others are so far apart."""
+        return float(self.times[1] - self.times[0]) == POSE_HELD
 
     def parts(self, offset: float, edge: float, clothing, skin) -> list[PartArrays]:
         """PartArrays of the actor; arguments as of captured_pedestrian."""

@@ -26,7 +26,9 @@ def plain(name: str) -> str:
     if side:
         letter = next(filter(None, side.groups())).lower()
         name = {"l": "left", "r": "right"}[letter] + name[:side.start()] + name[side.end():]
-    return re.sub("^(.+)(left|right)$", r"\2\1", re.sub(r"[^a-z0-9]", "", name.lower()))
+    elif last := re.search(r"(?:[ _.\-]([Ll]eft|[Rr]ight)|(?<=[a-z0-9])(Left|Right))$", name):
+        name = next(filter(None, last.groups())) + name[:last.start()]
+    return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 def find_joints(names: list[str]) -> dict[str, int]:

@@ -46,7 +46,8 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     messages = _module("sensordata")
     with exported(dataset, folder, FOLDER) as traces:
         for scene in dataset.scenes:
-            _write_trace([_frame(messages, dataset, scene, one) for one in dataset.of_scene(scene)], scene, traces)
+            numbers = _numbers(dataset, scene)
+            _write_trace([_frame(messages, dataset, scene, one, numbers) for one in dataset.of_scene(scene)], scene, traces)
 
 
 def _write_trace(written: list[Any], scene: int, folder: Path) -> None:
@@ -74,8 +75,8 @@ def _version_text(version: Any) -> str:
     return f"{version.version_major}{version.version_minor}{version.version_patch}"
 
 
-def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
-    """The SensorData of one frame."""
+def _frame(messages: Any, dataset: Dataset, scene: int, one: Any, numbers: dict[str, int]) -> Any:
+    """The SensorData of one frame. numbers: of the road users of its scene"""
     found, stored = detections_of(dataset, one), dataset.sequence(scene)
     time = stored.radar.middle_of_frame(float(stored.times[one.place]))
     message = messages.SensorData()
@@ -91,7 +92,7 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
     radar.header.cycle_counter, radar.header.number_of_valid_detections = one.place, len(found)
     radar.header.sensor_id.value = SENSOR
     radar.header.data_qualifier = 2  # available
-    _add_detections(radar, found, cross_sections_dbsm(found, stored.radar, time), _numbers(dataset, scene))
+    _add_detections(radar, found, cross_sections_dbsm(found, stored.radar, time), numbers)
     return message
 
 

@@ -12,9 +12,9 @@ from pathlib import Path
 
 from ... import _core
 
-MOST_SECONDS = 60.0  # that opening may take, and one more for each MiB of the file
-MOST_BYTES = 2**33   # of addresses that it may take, and a hundred for each byte of the file
-REFUSED = 3          # what the process returns where USD says what is wrong, which it prints
+MOST_SECONDS = 100.0  # that opening may take, and one more for each MiB of the file
+THREAD_BYTES = 2**28  # of addresses of each of USD's threads, beside as many as the machine has bytes of memory
+REFUSED = 3           # what the process returns where it can say what is wrong, which it prints
 
 _OPEN = f"""
 import resource, sys
@@ -24,6 +24,9 @@ for kind, most in ((resource.RLIMIT_AS, int(sys.argv[2])), (resource.RLIMIT_CORE
 from pxr import Tf, Usd
 try:
     Usd.Stage.Open(sys.argv[1])
+except MemoryError:
+    print("it needs more memory than there is")
+    sys.exit({REFUSED})
 except Tf.ErrorException as error:
     if error.args:
         print(error.args[0].commentary[:1000])
@@ -38,14 +41,15 @@ def refuse_what_ends_usd(path: Path) -> None:
     """
     if not _has_python() or not path.is_file() or _is_text_alone(path):
         return
-    size = path.stat().st_size
-    longest = MOST_SECONDS + size / 2**20
+    longest = MOST_SECONDS + path.stat().st_size / 2**20
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") + THREAD_BYTES * (os.cpu_count() or 1)
     try:
-        done = _opened_apart(path, longest, MOST_BYTES + 100 * size)
+        done = _opened_apart(path, longest, memory)
     except subprocess.TimeoutExpired:
         raise unreadable(path, f"USD takes more than {longest:.0f} s to open it") from None
     if done.returncode < 0:
-        raise unreadable(path, f"USD crashes on it by {signal.Signals(-done.returncode).name}")
+        name = signal.Signals(-done.returncode).name
+        raise unreadable(path, f"USD crashes on it by {name}, or needs more than {memory / 2**30:.0f} GiB")
     if done.returncode == REFUSED:
         raise unreadable(path, first_line(done.stdout))
 

@@ -77,6 +77,7 @@ def _read(path: Path, file) -> tuple[dict[str, Samples], bool]:
     units, least = {name: column.unit for name, column in columns.items()}, 1 + max(column.index for column in columns.values())
     is_geographic = "x" not in columns
     tracks: dict[str, Samples] = {}
+    marks: set[str] = set()  # of decimals that the rows have had
     for count, (line, text) in enumerate(lines):
         if count >= MOST_SAMPLES:
             refuse(path, line, f"more than {MOST_SAMPLES} rows")
@@ -85,7 +86,11 @@ def _read(path: Path, file) -> tuple[dict[str, Samples], bool]:
             refuse(path, line, f"must have at least {least} values, has {len(values)}")
         row = {name: values[column.index] for name, column in columns.items()}
         if delimiter != ",":
-            row |= {name: _with_point(row[name]) for name in row if name not in _OF_TEXT}
+            numbers = {name: text for name, text in row.items() if name not in _OF_TEXT}
+            marks |= {mark for mark in ",." if any(mark in text for text in numbers.values())}
+            if len(marks) > 1:
+                refuse(path, line, "numbers must have decimal points or decimal commas, the file has both")
+            row |= {name: _with_point(text) for name, text in numbers.items()}
         _add(path, line, row, units, tracks, is_geographic)
     return tracks, is_geographic
 

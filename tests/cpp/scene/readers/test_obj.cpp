@@ -198,8 +198,10 @@ TEST(Obj, RefusesWordsThatItsParserMisreads) {
 }
 
 TEST(Obj, TakesColoursThatAreNoNumbers) {
-  const std::string coloured = "v 0 0 0 nan nan nan\nv 1 0 0 0.5 1 nan\nv 0 1 0 inf 0 0\nf 1 2 3\n";
+  const std::string coloured = "v 0 0 0 nan NaN -nan\nv 1 0 0 0.5 1 nan\nv 0 1 0 -inf 0 Infinity\nf 1 2 3\n";
   EXPECT_EQ(read(coloured)[0].mesh->vertices(), read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")[0].mesh->vertices());
+  expect_refused("v 0 0 0 1 1 x4\n", {"line 1", "not a number: 'x4'"});
+  expect_refused("v 0 nan 0\n", {"line 1", "not a number: 'nan'"});
 }
 
 TEST(Obj, RefusesNamesThatAreNoText) {

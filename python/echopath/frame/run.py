@@ -183,9 +183,8 @@ class FrameRun:
 
 def check_receiver(radar, begin: float, end: float) -> None:
     """Raises ValueError, before the long work, for what no frame of a radar can have. begin, end: s, of all frames"""
-    if radar.receiver is not None:
-        require_channels(radar.receiver, radar)
-        require_drift(radar.receiver, begin, end)
+    require_channels(radar.receiver, radar)
+    require_drift(radar.receiver, begin, end)
 
 
 def _checks(cube, probe, signals: SignalSettings, paths) -> list:

@@ -175,5 +175,5 @@ def _noise(cube, radar, seed: int, start_time: float):
 def transmitted_code(radar) -> np.ndarray:
     """The code of the frame with the errors of the transmitters, complex [tx, slots]."""
     code = code_of(radar)
-    factors = None if radar.receiver is None else transmitter_factors(radar.receiver, radar)
+    factors = transmitter_factors(radar.receiver, radar)
     return code if factors is None else code * factors[:, None]

@@ -8,8 +8,10 @@ from ..base.analytic import turned
 from .settings import LARGEST_DB, Receiver
 
 
-def require_channels(receiver: Receiver, radar) -> None:
-    """Raises ValueError naming the table that is not of the radar's antennas."""
+def require_channels(receiver: Receiver | None, radar) -> None:
+    """Raises ValueError naming the table that is not of the radar's antennas; an ideal receiver, None, has none."""
+    if receiver is None:
+        return
     num_tx, num_rx = len(radar.transmitters), len(radar.receivers)
     sizes = {"transmitter_gain_db": (num_tx,), "transmitter_phase": (num_tx,), "receiver_gain_db": (num_rx,),
              "receiver_phase": (num_rx,), "gain_drift_db": (num_rx,), "phase_drift": (num_rx,),
@@ -20,23 +22,24 @@ def require_channels(receiver: Receiver, radar) -> None:
             raise refused(ValueError, f"receiver.{name}", f"of the shape {size} for this radar", np.array(value))
 
 
-def require_drift(receiver: Receiver, begin: float, end: float) -> None:
+def require_drift(receiver: Receiver | None, begin: float, end: float) -> None:
     """Raises ValueError for gains that drift, from time 0 on, to where nothing is left of a signal, or no number tells it.
 
-    begin, end: s, of what is received
+    receiver: None: ideal; begin, end: s, of what is received
     """
     time = max(abs(begin), abs(end))
-    if max(map(abs, receiver.gain_drift_db), default=0.0) * time > LARGEST_DB:
+    if receiver is not None and max(map(abs, receiver.gain_drift_db), default=0.0) * time > LARGEST_DB:
         rate = LARGEST_DB / time
         raise refused(ValueError, "receiver.gain_drift_db", f"from {-rate:.4g} to {rate:.4g} dB/s, by which gains "
                       f"drift by {LARGEST_DB:g} dB from time 0 to {time:.6g} s", receiver.gain_drift_db)
 
 
-def transmitter_factors(receiver: Receiver, radar) -> np.ndarray | None:
+def transmitter_factors(receiver: Receiver | None, radar) -> np.ndarray | None:
     """What the transmitters' chains multiply their signals by, complex [tx], with the phase that samples have of it; None:
     nothing."""
     require_channels(receiver, radar)
-    return _factors(receiver.transmitter_gain_db, receiver.transmitter_phase, len(radar.transmitters))
+    return None if receiver is None else _factors(receiver.transmitter_gain_db, receiver.transmitter_phase,
+                                                  len(radar.transmitters))
 
 
 def receiver_factors(receiver: Receiver, radar, slots) -> np.ndarray | None:

@@ -59,9 +59,8 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
         trajectories.traffic.add_to(scene)
         scene.interferers = _build_interferers(settings, folder, trajectories)
         radar = _build_radar(settings.radar, folder, trajectories)
-        if radar.receiver is not None:
-            with blamed("radar"):
-                require_channels(radar.receiver, radar)
+        with blamed("radar"):
+            require_channels(radar.receiver, radar)
         if settings.mark_mirrors:
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),

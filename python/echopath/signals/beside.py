@@ -63,7 +63,7 @@ def _own(frame):
 
 def _transmitter_factors(radar):
     """Of the errors of the transmitters, as a cube [tx, rx, chirp, sample] takes them; 1: none."""
-    factors = None if radar.receiver is None else transmitter_factors(radar.receiver, radar)
+    factors = transmitter_factors(radar.receiver, radar)
     return 1.0 if factors is None else factors[:, None, None, None]
 
 

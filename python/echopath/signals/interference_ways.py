@@ -30,8 +30,6 @@ def interference_radar(radar: _core.Radar, other: _core.Radar, *, time: float = 
 
 def require_own_channels(argument: str, other) -> None:
     """Raises ValueError naming the argument for another radar whose faults are of other antennas than its own."""
-    if other.receiver is None:
-        return
     try:
         require_channels(other.receiver, other)
     except ValueError as error:

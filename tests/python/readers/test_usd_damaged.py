@@ -77,6 +77,20 @@ def test_what_usd_refuses_it_says_in_its_own_words(tmp_path):
     assert own.value.args[0].commentary.splitlines()[0].strip()[:100] in str(told.value)
 
 
+def test_a_stage_that_opened_is_tried_again_only_once_it_has_changed(tmp_path, monkeypatch):
+    tried, opened_apart = [], trial._opened_apart
+    monkeypatch.setattr(trial, "_opened_apart", lambda *asked: tried.append(asked) or opened_apart(*asked))
+    path = binary_stage(tmp_path)
+    ep.load_model(path)
+    ep.load_model(path)
+    assert len(tried) == 1
+    path.write_bytes(path.read_bytes()[:-40])
+    for _ in range(2):
+        with pytest.raises(ep.FileError):
+            ep.load_model(path)
+    assert len(tried) == 3
+
+
 def test_text_that_refers_to_no_file_is_not_tried(tmp_path, monkeypatch):
     monkeypatch.setattr(trial, "_opened_apart", None)
     assert "is no USD stage" not in notes_of(tmp_path, 'def Sphere "ball"\n{\n}\n')

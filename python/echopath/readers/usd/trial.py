@@ -2,6 +2,7 @@
 fill its memory, or keep it busy for minutes."""
 from __future__ import annotations
 
+import functools
 import mmap
 import os
 import signal
@@ -39,9 +40,15 @@ def refuse_what_ends_usd(path: Path) -> None:
 
     Returns for others, be they stages or not. Text that refers to no other file is not tried: USD reads or refuses all of it.
     """
-    if not _has_python() or not path.is_file() or _is_text_alone(path):
-        return
-    longest = MOST_SECONDS + path.stat().st_size / 2**20
+    if _has_python() and path.is_file() and not _is_text_alone(path):
+        told = path.stat()
+        _try(path, told.st_size, told.st_mtime_ns)
+
+
+@functools.lru_cache(1000)  # of those that opened, which the scenes of a dataset read again and again
+def _try(path: Path, size: int, changed: int) -> None:
+    """Raises as `refuse_what_ends_usd`. size, changed: bytes and ns, by which a file is known to be another one by then"""
+    longest = MOST_SECONDS + size / 2**20
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") + THREAD_BYTES * (os.cpu_count() or 1)
     try:
         done = _opened_apart(path, longest, memory)

@@ -15,7 +15,7 @@ import echopath as ep
 HANG = 10.0           # s that one case may compute
 STARVED = 12.0        # times as long it may take without computing
 PATIENCE = 300.0      # s to start a worker and make its seeds
-MEMORY = 6 * 2**30    # bytes of address space of a worker: what asks for more is refused, and told
+MEMORY = 3 * 2**30    # bytes of address space of a worker and what it starts: what asks for more is refused, and told
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _cpu_time(pid: int) -> float:
 
 def _work(target: str, make, numbers, seconds: float, at, since, results) -> None:
     begin = time.monotonic()
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.RLIM_INFINITY))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     warnings.simplefilter("ignore")
     ep.set_num_threads(1)  # the cases are small, and results do not depend on it
     case = (make or _target(target))()

@@ -14,7 +14,7 @@ from pathlib import Path
 from ... import _core
 
 MOST_SECONDS = 100.0  # that opening may take, and one more for each MiB of the file
-THREAD_BYTES = 2**28  # of addresses of each of USD's threads, beside as many as the machine has bytes of memory
+THREAD_BYTES = 2**28  # of addresses of each of USD's threads, beside half as many as the machine has bytes of memory
 REFUSED = 3           # what the process returns where it can say what is wrong, which it prints
 
 _OPEN = f"""
@@ -49,7 +49,7 @@ def refuse_what_ends_usd(path: Path) -> None:
 def _try(path: Path, size: int, changed: int) -> None:
     """Raises as `refuse_what_ends_usd`. size, changed: bytes and ns, by which a file is known to be another one by then"""
     longest = MOST_SECONDS + size / 2**20
-    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") + THREAD_BYTES * (os.cpu_count() or 1)
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2 + THREAD_BYTES * (os.cpu_count() or 1)
     try:
         done = _opened_apart(path, longest, memory)
     except subprocess.TimeoutExpired:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +32,7 @@ RADAR_LABEL = "radar"
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
 MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
+LETTER, LINE, POINTS_PER_INCH = 0.6, 1.2, 72.0  # width of a letter and height of a line over the size of the font
 DASHES = (0, (4, 3))
 CUT_LABEL, MIRROR_LABEL = "cut here, it goes on beyond the picture", "surface that mirrors"
 NAME_PLACE = 0.93                       # along x of a mirror, where its name stands
@@ -239,15 +241,42 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     # Matplotlib lays figures out before it projects: it would take the coordinates in m for a place on the page.
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False, in_layout=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
-    for name, (low, high) in drawing.names.items():
-        axes.text(*0.5 * (low + high)[:2], high[2], f"{name}\n", zorder=5, horizontalalignment="center",
-                  verticalalignment="baseline", path_effects=_halo(), **NAME_LOOK)
     for name, (low, high) in _named_mirrors(drawing).items():
         is_floor = high[2] - low[2] < CUT
         place = low[0] + NAME_PLACE * (high[0] - low[0]), low[1] if is_floor else 0.5 * (low + high)[1], high[2]
         axes.text(*place, name if is_floor else f"{name}\n", zorder=5, horizontalalignment="center",
                   verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
     _frame_box(axes, drawing)
+    _draw_names_in_perspective(axes, drawing.names)
+
+
+def _draw_names_in_perspective(axes, names: dict) -> None:
+    """Names right above their objects, a line higher where another stands there. axes: whose box is final"""
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+    axes.apply_aspect()
+    tops = {name: (*0.5 * (low + high)[:2], high[2]) for name, (low, high) in names.items()}
+    seen = {name: proj_transform(*top, axes.get_proj())[:2] for name, top in tops.items()}
+    for name, line in _free_lines(axes, seen).items():
+        axes.text(*tops[name], name + "\n" * (1 + line), zorder=5, horizontalalignment="center", verticalalignment="baseline",
+                  path_effects=_halo(), **NAME_LOOK)
+
+
+def _free_lines(axes, places: dict) -> dict:
+    """{name: by how many lines it is raised, so that it stands on no other}, from the lowest name on.
+
+    places: {name: place [2] of its middle in the coordinates of the axes}
+    """
+    letter, line = LETTER * NAME_LOOK["fontsize"], LINE * NAME_LOOK["fontsize"]
+    points = {name: axes.transData.transform(place) * POINTS_PER_INCH / axes.figure.dpi for name, place in places.items()}
+    taken, raised = [], {}  # taken: (middle, half of the width, height) of the names so far in points of the page
+    for name, (middle, height) in sorted(points.items(), key=lambda one: one[1][1]):
+        half = 0.5 * letter * (len(name) + 1)
+        raised[name] = next(k for k in itertools.count() if all(
+            abs(middle - other) >= half + its_half or abs(height + k * line - its_height) >= line
+            for other, its_half, its_height in taken))
+        taken.append((middle, half, height + raised[name] * line))
+    return raised
 
 
 def _halo() -> list:
@@ -311,10 +340,11 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     axes.add_collection(PolyCollection(_of_equal_length([drawing.bodies[i][:, columns] for i in order]),
                                        facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="none"))
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
-    _draw_flat_names(axes, drawing, plane)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])
     axes.set_aspect("equal")
+    axes.apply_aspect()
+    _draw_flat_names(axes, drawing, plane)
     axes.set_title(title)
     axes.set_xlabel("xyz"[plane[0]] + " in m")
     axes.set_ylabel("xyz"[plane[1]] + " in m")
@@ -328,8 +358,9 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> None:
 
     is_high = drawing.radar[plane[1]] > drawing.high[plane[1]] - 2.0 * MARGIN  # the title is right above
     write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)
-    for name, (low, high) in drawing.names.items() if plane == (0, 1) else ():
-        write(name, (0.5 * (low[0] + high[0]), high[1]), (0, 3), "center", **NAME_LOOK)
+    tops = {name: (0.5 * (low[0] + high[0]), high[1]) for name, (low, high) in drawing.names.items()} if plane == (0, 1) else {}
+    for name, line in _free_lines(axes, tops).items():
+        write(name, tops[name], (0, 3 + line * LINE * NAME_LOOK["fontsize"]), "center", **NAME_LOOK)
     for name, (low, high) in _named_mirrors(drawing).items():
         if high[plane[1]] - low[plane[1]] < CUT:
             write(name, (low[0], high[plane[1]]), (4, 2), "left", **MIRROR_NAME_LOOK)

@@ -1,10 +1,12 @@
 """Pictures: what is cut off, what is cropped, and that the same figure gives the same file."""
 from __future__ import annotations
 
+import itertools
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.transforms import Bbox
 
 import echopath as ep
 from echopath import plots
@@ -249,6 +251,26 @@ def test_a_picture_of_a_scene_names_its_objects():
     for axes in figure.axes[:2]:  # in perspective, from above
         assert {text.get_text().strip() for text in axes.texts} >= {"plate0", "plate1", "plate2"}
     assert "ground" in {text.get_text().strip() for text in figure.axes[0].texts}
+
+
+def test_names_of_objects_behind_each_other_stand_apart():
+    """As measured on the page once it is drawn."""
+    scene = ep.Scene()
+    for k in range(6):
+        scene.add(ep.actors.plate(0.3, 0.3), name=f"motorcycle_{k}", material="metal", position=(5.0 + 0.1 * k, 0.05 * k, 1.0))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    figure.draw_without_rendering()
+    for axes in figure.axes[:2]:  # in perspective, from above
+        names = [text for text in axes.texts if text.get_text().startswith("motorcycle")]
+        boxes = [_box_of_first_line(text) for text in names]
+        assert len(boxes) == 6
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
+def _box_of_first_line(text) -> Bbox:
+    box = text.get_window_extent()
+    return Bbox.from_extents(box.x0, box.y1 - box.height / len(text.get_text().split("\n")), box.x1, box.y1)
 
 
 def test_a_picture_of_a_town_names_the_objects_of_its_labels_and_shows_rays_to_each():

@@ -1571,9 +1571,15 @@ class VirtualArray:
         """
         (azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 
-        Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
-        quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent. Raises TypeError
+        Azimuths up to +-90 degrees about the direction across the array on the side of the antennas' boresights, and elevations up to
+        +-45 degrees, within the unambiguous field of its grid, in steps of a quarter of wavelength / extent, or of largest_step in rad
+        where that is less; one alone where it tells none apart. Azimuths of antennas that look behind go on beyond pi. Raises TypeError
         or ValueError naming the argument, or the angle of which there would be more than 200,000.
+        """
+    @property
+    def boresight(self) -> float:
+        """
+        rad, mean azimuth of the antennas' boresights in the radar's frame; 0 where they look to all sides
         """
     @property
     def centre(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1648,12 +1654,12 @@ class VirtualArray:
     @property
     def tells_azimuths(self) -> bool:
         """
-        whether it has a horizontal extent, so that azimuths differ
+        whether azimuths differ: it has a horizontal extent of 0.1 wavelengths or more, and is no upright line
         """
     @property
     def tells_elevations(self) -> bool:
         """
-        whether it has a vertical extent
+        whether elevations differ: it has a vertical extent of 0.1 wavelengths or more, and is no line that is more level than upright
         """
     @property
     def wavelength(self) -> float:

@@ -91,6 +91,7 @@ void check_and_arrange(VirtualArray& array) {
   require(array.num_receivers >= 1, "num_receivers", "must be at least 1", array.num_receivers);
   require(std::isfinite(array.wavelength) && array.wavelength > 0.0, "wavelength", "must be finite and positive",
           array.wavelength);
+  require(std::isfinite(array.boresight), "boresight", "must be finite", array.boresight);
   require_shape(array.positions, {array.num_transmitters, array.num_receivers}, "positions");
   for (const Vec3& position : array.positions) require_in_range(position, "positions", "the antennas");
   arrange_elements(array);
@@ -116,25 +117,32 @@ as the array's plane allows.)");
           "grid_deviation",
           [](const VirtualArray& self) -> py::object { return self.grid ? py::cast(self.grid->deviation) : py::none(); },
           "m, largest distance of an element from its point of the grid, or None")
-      .def_property_readonly("tells_azimuths", &tells_azimuths,
-                             "whether it has a horizontal extent, so that azimuths differ")
+      .def_property_readonly(
+          "tells_azimuths", &tells_azimuths,
+          "whether azimuths differ: it has a horizontal extent of 0.1 wavelengths or more, and is no upright line")
       .def_property_readonly(
           "has_default_azimuths", [](const VirtualArray& self) { return has_default_azimuths(self); },
           "whether `default_angles` has azimuths: no more than 200,000 differ")
-      .def_property_readonly("tells_elevations", &tells_elevations, "whether it has a vertical extent")
+      .def_property_readonly(
+          "tells_elevations", &tells_elevations,
+          "whether elevations differ: it has a vertical extent of 0.1 wavelengths or more, and is no line "
+          "that is more level than upright")
       .def_property_readonly("gaps", &gaps_of, "[G, 2] rows and columns of the grid without an element")
       .def_property_readonly("centre", array_of(&VirtualArray::centre), "[3] m, mean of the elements")
       .def("__repr__", [](const VirtualArray& self) { return text_of(self); });
-  def_travel_checked(type, &check_and_arrange,
-                     attribute("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar"),
-                     attribute("num_receivers", &VirtualArray::num_receivers, "receivers of the radar"),
-                     attribute("wavelength", &VirtualArray::wavelength, "m, at the centre frequency"),
-                     field("positions", &VirtualArray::positions));
+  def_travel_checked(
+      type, &check_and_arrange, attribute("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar"),
+      attribute("num_receivers", &VirtualArray::num_receivers, "receivers of the radar"),
+      attribute("wavelength", &VirtualArray::wavelength, "m, at the centre frequency"),
+      attribute("boresight", &VirtualArray::boresight,
+                "rad, mean azimuth of the antennas' boresights in the radar's frame; 0 where they look to all sides"),
+      field("positions", &VirtualArray::positions));
   define(type, "default_angles", &default_axes, py::arg("largest_step") = kPictureStep,
          R"((azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 
-Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
-quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent. Raises TypeError
+Azimuths up to +-90 degrees about the direction across the array on the side of the antennas' boresights, and elevations up to
++-45 degrees, within the unambiguous field of its grid, in steps of a quarter of wavelength / extent, or of largest_step in rad
+where that is less; one alone where it tells none apart. Azimuths of antennas that look behind go on beyond pi. Raises TypeError
 or ValueError naming the argument, or the angle of which there would be more than 200,000.)");
   m.def("virtual_array", &virtual_array, py::arg("radar"), "What ep.virtual_array calls.");
 }

@@ -98,10 +98,16 @@ def draw_range_azimuth(map: _core.RangeAzimuth, *, ax: Axes | None = None, vmin:
 def _draw_places(axes, one, places: dict, reach: float, *, is_named: bool) -> list:
     """A ring at each place that the map shows; returns the rings."""
     shown = {name: (distance * math.sin(azimuth), distance * math.cos(azimuth)) for name, (distance, azimuth) in places.items()
-             if distance <= reach and one.azimuth[0] <= azimuth <= one.azimuth[-1]}
+             if distance <= reach and _covers(one, azimuth)}
     if is_named and len(shown) <= MOST_NAMES:
         _name_places(axes, shown, reach)
     return axes.plot(*zip(*shown.values()), label=TRUE_LABEL, zorder=4, **TRUE_LOOK) if shown else []
+
+
+def _covers(one, azimuth: float) -> bool:
+    """Whether the azimuths of a map, which may go on beyond pi, hold one in rad."""
+    middle = 0.5 * (one.azimuth[0] + one.azimuth[-1])
+    return abs(math.remainder(azimuth - middle, 2.0 * math.pi)) <= 0.5 * (one.azimuth[-1] - one.azimuth[0])
 
 
 def _name_places(axes, shown: dict, reach: float) -> None:
@@ -149,7 +155,7 @@ def _aspect(one) -> float:
 
 def _box(one, reach: float) -> tuple[float, float, float, float]:
     """(leftmost, rightmost, hindmost, foremost) coordinate in m of a sector up to `reach`."""
-    azimuth = np.clip(np.linspace(one.azimuth[0], one.azimuth[-1], 181), -np.pi, np.pi)
+    azimuth = np.linspace(one.azimuth[0], one.azimuth[-1], 181)
     across, ahead = np.append(np.sin(azimuth), 0.0), np.append(np.cos(azimuth), 0.0)
     margin = MARGIN * reach
     return (reach * across.max() + margin, reach * across.min() - margin, reach * ahead.min() - margin,

@@ -166,7 +166,7 @@ TEST(Beamform, BadInputIsAnError) {
   const Radar radar = testing::line_radar(3), circle = testing::circle_radar();
   const RangeDoppler map = testing::empty_map(radar), round = testing::empty_map(circle);
   const AngleGrid grid{{0.0}, {0.0}};
-  for (const AngleGrid& bad : {AngleGrid{{}, {0.0}}, AngleGrid{{0.1, 0.1}, {0.0}}, AngleGrid{{4.0}, {0.0}},
+  for (const AngleGrid& bad : {AngleGrid{{}, {0.0}}, AngleGrid{{0.1, 0.1}, {0.0}}, AngleGrid{{7.0}, {0.0}},
                                AngleGrid{{0.0}, {2.0}}, AngleGrid{{0.0}, {std::nan("")}}}) {
     EXPECT_THROW(beamform(map, radar, bad), std::invalid_argument);
   }

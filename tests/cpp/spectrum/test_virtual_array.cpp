@@ -157,6 +157,46 @@ TEST(DefaultAngles, CoverWhatTheArrayTellsApart) {
   EXPECT_NEAR(default_elevations(up).front(), -0.25 * kPi, kTurned);
 }
 
+TEST(DefaultAngles, OfALineThatIsNotLevelAreThoseOfAzimuthAlone) {
+  for (const double roll : {0.001, 0.035, 0.5}) {
+    const VirtualArray array =
+        virtual_array(radar_with({Vec3::Zero()}, line(12, kHalf * Vec3(0, std::cos(roll), std::sin(roll)))));
+    EXPECT_TRUE(tells_azimuths(array)) << roll;
+    EXPECT_FALSE(tells_elevations(array)) << roll;  // all directions of a cone about the line have the same phases
+    EXPECT_EQ(default_elevations(array), std::vector<double>{0.0});
+  }
+  const VirtualArray steep = virtual_array(radar_with({Vec3::Zero()}, line(12, kHalf * Vec3(0, 0.1, 0.9))));
+  EXPECT_FALSE(tells_azimuths(steep));
+  EXPECT_TRUE(tells_elevations(steep));
+  const double step = 0.02 * testing::wavelength();  // as positions of antennas on a board may be off
+  const VirtualArray uneven = virtual_array(
+      radar_with({Vec3::Zero()}, {Vec3(0, 0, 0), Vec3(0, kHalf, step), Vec3(0, 2 * kHalf, 0), Vec3(0, 3 * kHalf, step)}));
+  EXPECT_FALSE(tells_elevations(uneven));
+  const VirtualArray corner =
+      virtual_array(radar_with({Vec3::Zero()}, {Vec3(0, 0, 0), Vec3(0, kHalf, 0), Vec3(0, 0, kHalf)}));
+  EXPECT_TRUE(tells_azimuths(corner) && tells_elevations(corner));
+}
+
+TEST(DefaultAngles, AreOnTheSideToWhichTheAntennasLook) {
+  const auto middle = [](const Vec3& step, double yaw) {
+    Radar radar = radar_with({Vec3::Zero()}, line(8, step));
+    for (auto* antennas : {&radar.transmitters, &radar.receivers}) {
+      for (Antenna& antenna : *antennas) antenna.orientation = Eigen::AngleAxisd(yaw, Vec3::UnitZ());
+    }
+    const std::vector<double> azimuths = default_azimuths(virtual_array(radar));
+    return 0.5 * (azimuths.front() + azimuths.back());
+  };
+  constexpr double kRounding = 1e-12;
+  const Vec3 ahead(kHalf, 0, 0), left(0, kHalf, 0);
+  EXPECT_NEAR(middle(ahead, 0.5 * kPi), 0.5 * kPi, kRounding);
+  EXPECT_NEAR(middle(ahead, -1.2), -0.5 * kPi, kRounding);  // on that side, not aslant: +-90 degrees about the line's normal
+  EXPECT_EQ(middle(left, 0.4), 0.0);
+  EXPECT_NEAR(std::abs(middle(left, 3.0)), kPi, kRounding);
+  EXPECT_EQ(middle(left, 0.0), 0.0);
+  EXPECT_EQ(middle(ahead, 0.0), 0.0);  // along the line neither side is nearer
+  EXPECT_NEAR(middle(kHalf * Vec3(-0.6, 0.8, 0), 0.0), std::atan2(0.6, 0.8), kRounding);
+}
+
 TEST(DefaultAngles, AreRefusedWhereThereWouldBeMillions) {
   const VirtualArray wide = virtual_array(radar_with({Vec3::Zero()}, {Vec3::Zero(), Vec3(0, kHalf, 0), Vec3(0, 1e4, 0)}));
   EXPECT_THROW(default_azimuths(wide), std::invalid_argument);

@@ -244,6 +244,42 @@ def test_virtual_arrays_tell_what_they_are():
     assert none.grid_shape is None and none.grid_axes is None and "no grid" in repr(none)
 
 
+def with_noise_and_points(radar, bearings):
+    """A map of points in the radar's plane at 6 m and further, some 50 dB above the noise of a cell."""
+    points = [((6 + 2 * i) * np.array([np.cos(bearing), np.sin(bearing), 0.0]), (0, 0, 0), 3e-7)
+              for i, bearing in enumerate(bearings)]
+    return ep.range_doppler(ep.add_noise(cube_of_points(radar, points), radar, seed=1), radar)
+
+
+@pytest.mark.parametrize("heights", [np.arange(12) * np.sin(0.035) * HALF, 0.02 * HALF * (np.arange(12) % 2)],
+                         ids=["rolled by two degrees", "uneven by a hundredth of a wavelength"])
+def test_a_line_that_is_not_quite_level_gives_azimuths_alone(heights):
+    """Elevations of such a line are those of its noise, and took azimuths with them."""
+    level, bearings = np.arange(12) * HALF, (0.5, -0.3, 0.8)
+    radar = ep.Radar(waveform(), transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, y, z)) for y, z in zip(level, heights)])
+    spectrum = with_noise_and_points(radar, bearings)
+    cells = [(0, int(abs(spectrum.range - 6 - 2 * i).argmin())) for i in range(3)]
+    found = ep.detect(spectrum, radar, false_alarm_rate=1e-9)
+    nearest = [abs(found.range - spectrum.range[column]).argmin() for _, column in cells]
+    np.testing.assert_allclose(found.azimuth[nearest], bearings, atol=2 * DEGREE)
+    assert np.isnan(found.elevation).all()
+
+
+def test_antennas_turned_to_one_side_look_there():
+    """Antennas in a row ahead cannot tell left from right: the side to which they are turned is theirs."""
+    for yaw, bearing in ((0.5 * np.pi, 1.2), (0.5 * np.pi, 2.3), (-0.5 * np.pi, -1.2), (2.6, 2.9), (2.6, -2.9)):
+        along = (1.0, 0.0) if abs(yaw) < 2 else (0.0, 1.0)
+        row = [ep.Antenna((n * HALF * along[0], n * HALF * along[1], 0), yaw=yaw) for n in range(12)]
+        radar = ep.Radar(waveform(), transmitters=[ep.Antenna(yaw=yaw)], receivers=row)
+        spectrum = with_noise_and_points(radar, [bearing])
+        found = ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)])
+        assert found.azimuth[0] == pytest.approx(bearing, abs=2 * DEGREE)
+        above = ep.range_azimuth(spectrum, radar)
+        shown = above.azimuth[np.unravel_index(above.power.argmax(), above.power.shape)[0]]
+        assert np.remainder(shown, 2 * np.pi) == pytest.approx(np.remainder(bearing, 2 * np.pi), abs=2 * DEGREE)
+        assert ep.virtual_array(radar).boresight == pytest.approx(yaw)
+
+
 def test_axes_may_be_numbers_lists_or_left_to_the_array():
     radar = four_by_eight()
     spectrum = noise_map(radar)

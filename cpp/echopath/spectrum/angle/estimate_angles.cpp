@@ -208,7 +208,7 @@ AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, cons
       result.cell.push_back(static_cast<int64_t>(i));
       result.range.push_back(range);
       result.velocity.push_back(velocity_of(i) + found[i].fold * span);
-      result.azimuth.push_back(peak.azimuth);
+      result.azimuth.push_back(std::remainder(peak.azimuth, kTwoPi));
       result.elevation.push_back(peak.elevation);
       result.power.push_back(peak.power);
       result.points.push_back(middle + range * direction(peak.azimuth, peak.elevation));

@@ -1,5 +1,6 @@
 #include "echopath/spectrum/array/steering.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,6 +13,9 @@ namespace {
 
 constexpr double kStepsPerBeam = 4.0;            // per wavelength / extent
 constexpr double kLargestElevation = kPi / 4.0;  // of the default grid
+constexpr double kTellingExtent = 0.1;           // wavelengths; directions of less differ by less than the noise of an echo
+constexpr double kEndfire = 0.1;                 // sine between an array's line and the boresights along it
+constexpr double kAligned = 0.01;                // rad, off the direction across its line: antennas that look that way
 constexpr double kMostSteps = 1e5;               // of a default axis, to either side
 constexpr double kMostTerms = 134217728.0;       // of steering vectors: 4 GiB with the copy that beams are formed from
 
@@ -23,11 +27,51 @@ void require_axis(const std::vector<double>& axis, const char* name, double limi
   }
 }
 
-bool tells_apart(double extent, double wavelength) { return extent >= kArrayTolerance * wavelength; }
+bool tells_apart(double extent, double wavelength) { return extent >= kTellingExtent * wavelength; }
 
 double width_of(const VirtualArray& array) { return std::hypot(array.extent().x(), array.extent().y()); }
 
-// Holds the equal steps about 0 that a grid of antennas can tell apart along one axis.
+double extent_along(const VirtualArray& array, const Vec3& axis) {
+  double low = array.positions.front().dot(axis), high = low;
+  for (const Vec3& position : array.positions) {
+    low = std::min(low, position.dot(axis));
+    high = std::max(high, position.dot(axis));
+  }
+  return high - low;
+}
+
+// Returns the principal axes of the positions as columns, by ascending extent; `kept` scales the axes of the radar's frame.
+Mat3 principal_axes(const VirtualArray& array, const Vec3& kept) {
+  const Vec3 centre = array.centre();
+  Mat3 scatter = Mat3::Zero();
+  for (const Vec3& position : array.positions) {
+    const Vec3 offset = kept.cwiseProduct(position - centre);
+    scatter += offset * offset.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors();
+}
+
+// Returns whether all positions lie on a line, inclined or not. Such an array tells one angle only, that off its line: all
+// directions of a cone about it have the same phases.
+bool is_line(const VirtualArray& array) {
+  return !tells_apart(extent_along(array, principal_axes(array, Vec3::Ones()).col(1)), array.wavelength);
+}
+
+bool is_upright(const VirtualArray& array) { return array.extent().z() > width_of(array); }
+
+// Returns the azimuth in rad about which directions differ most: that of the boresights, or for an array that is a line from
+// above the one across it on their side, because such an array cannot tell one side from the other.
+double middle_azimuth(const VirtualArray& array) {
+  const Mat3 axes = principal_axes(array, Vec3(1.0, 1.0, 0.0));
+  if (!tells_azimuths(array) || tells_apart(extent_along(array, axes.col(1)), array.wavelength)) return array.boresight;
+  const Vec3 boresight = direction(array.boresight, 0.0), left = Vec3::UnitZ().cross(axes.col(2));
+  const double sine = left.dot(boresight);
+  if (std::abs(sine) < kEndfire || std::abs(sine) > std::cos(kAligned)) return array.boresight;
+  const Vec3 across = std::copysign(1.0, sine) * left;
+  return std::atan2(across.y(), across.x());
+}
+
+// Holds the equal steps about a middle that a grid of antennas can tell apart along one axis.
 struct DefaultAxis {
   double limit;  // rad, angle of the last step
   double steps;  // to either side, maybe more than there may be; 0 where the array has no extent
@@ -35,29 +79,31 @@ struct DefaultAxis {
 
 // Works them out for a grid with `spacing` (0: none) and an aperture `extent` in m.
 DefaultAxis default_axis(double limit, double spacing, double extent, double wavelength, double largest_step) {
-  require(largest_step > 0.0, "largest_step", "must be positive", largest_step);
-  if (!tells_apart(extent, wavelength)) return {0.0, 0.0};
   if (spacing > 0.0) limit = std::min(limit, std::asin(std::min(1.0, 0.5 * wavelength / spacing)));
   return {limit, std::ceil(limit / std::min(largest_step, wavelength / (kStepsPerBeam * extent)))};
 }
 
 DefaultAxis azimuth_axis(const VirtualArray& array, double largest_step) {
+  require(largest_step > 0.0, "largest_step", "must be positive", largest_step);
+  if (!tells_azimuths(array)) return {0.0, 0.0};
   const double spacing = array.grid ? array.grid->column_spacing : 0.0;
   return default_axis(0.5 * kPi, spacing, width_of(array), array.wavelength, largest_step);
 }
 
 DefaultAxis elevation_axis(const VirtualArray& array, double largest_step) {
+  require(largest_step > 0.0, "largest_step", "must be positive", largest_step);
+  if (!tells_elevations(array)) return {0.0, 0.0};
   const double spacing = array.grid ? array.grid->row_spacing : 0.0;
   return default_axis(kLargestElevation, spacing, array.extent().z(), array.wavelength, largest_step);
 }
 
-std::vector<double> angles_of(const DefaultAxis& axis, const char* name, double extent) {
+std::vector<double> angles_of(const DefaultAxis& axis, double middle, const char* name, double extent) {
   require(axis.steps <= kMostSteps, name, "must be given: an array of this length in m tells more than 200,000 angles apart",
           extent);
   const int half = static_cast<int>(axis.steps);
-  if (half == 0) return {0.0};
+  if (half == 0) return {middle};
   std::vector<double> angles;
-  for (int i = -half; i <= half; ++i) angles.push_back(axis.limit * i / half);
+  for (int i = -half; i <= half; ++i) angles.push_back(middle + axis.limit * i / half);
   return angles;
 }
 
@@ -68,7 +114,7 @@ Vec3 direction(double azimuth, double elevation) {
 }
 
 void AngleGrid::validate() const {
-  require_axis(azimuth, "azimuth", kPi, "must be in [-pi, pi]");
+  require_axis(azimuth, "azimuth", kTwoPi, "must be in [-2 pi, 2 pi]");
   require_axis(elevation, "elevation", 0.5 * kPi, "must be in [-pi/2, pi/2]");
 }
 
@@ -81,20 +127,24 @@ std::vector<Vec3> AngleGrid::directions() const {
   return units;
 }
 
-bool tells_azimuths(const VirtualArray& array) { return tells_apart(width_of(array), array.wavelength); }
+bool tells_azimuths(const VirtualArray& array) {
+  return tells_apart(width_of(array), array.wavelength) && !(is_upright(array) && is_line(array));
+}
 
-bool tells_elevations(const VirtualArray& array) { return tells_apart(array.extent().z(), array.wavelength); }
+bool tells_elevations(const VirtualArray& array) {
+  return tells_apart(array.extent().z(), array.wavelength) && (is_upright(array) || !is_line(array));
+}
 
 bool has_default_azimuths(const VirtualArray& array, double largest_step) {
   return azimuth_axis(array, largest_step).steps <= kMostSteps;
 }
 
 std::vector<double> default_azimuths(const VirtualArray& array, double largest_step) {
-  return angles_of(azimuth_axis(array, largest_step), "azimuth", width_of(array));
+  return angles_of(azimuth_axis(array, largest_step), middle_azimuth(array), "azimuth", width_of(array));
 }
 
 std::vector<double> default_elevations(const VirtualArray& array, double largest_step) {
-  return angles_of(elevation_axis(array, largest_step), "elevation", array.extent().z());
+  return angles_of(elevation_axis(array, largest_step), 0.0, "elevation", array.extent().z());
 }
 
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles) {

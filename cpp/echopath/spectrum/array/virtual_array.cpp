@@ -1,6 +1,7 @@
 #include "echopath/spectrum/array/virtual_array.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "echopath/spectrum/array/array_grid.h"
@@ -9,6 +10,7 @@ namespace echopath {
 namespace {
 
 constexpr double kMinSpacing = 0.2;  // wavelengths
+constexpr double kLeastMean = 0.1;   // length of the mean of the antennas' boresights in the xy-plane
 
 std::vector<Vec3> sums_of_positions(const Radar& radar) {
   std::vector<Vec3> positions;
@@ -110,8 +112,18 @@ VirtualArray virtual_array(const Radar& radar) {
   array.num_receivers = static_cast<int>(radar.receivers.size());
   array.wavelength = radar.waveform.wavelength();
   array.positions = sums_of_positions(radar);
+  array.boresight = boresight_azimuth(radar);
   arrange_elements(array);
   return array;
+}
+
+double boresight_azimuth(const Radar& radar) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto* antennas : {&radar.transmitters, &radar.receivers}) {
+    for (const Antenna& antenna : *antennas) sum += antenna.orientation * Vec3::UnitX();
+  }
+  const Vec3 mean = sum / static_cast<double>(radar.transmitters.size() + radar.receivers.size());
+  return std::hypot(mean.x(), mean.y()) < kLeastMean ? 0.0 : std::atan2(mean.y(), mean.x());
 }
 
 void arrange_elements(VirtualArray& array) {

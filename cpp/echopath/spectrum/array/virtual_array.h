@@ -36,6 +36,7 @@ struct VirtualArray {
   std::vector<Vec3> positions;           // [tx, rx] m, x_tx + x_rx in the radar's frame
   std::vector<VirtualElement> elements;  // by row and column; without a grid by their first channels
   std::optional<ArrayGrid> grid;         // none: the elements are on no line or rectangle of equal steps
+  double boresight = 0.0;                // rad, mean azimuth of the antennas' boresights in the radar's frame
 
   Vec3 centre() const;  // m, mean of the elements: where phases are referred to
   // Returns the (row, column) of grid points without an element; empty without a grid.
@@ -50,6 +51,9 @@ struct VirtualArray {
 // of two elements that need the fewest points. Steps must be at least a fifth of a wavelength, and the grid has at most 16
 // times as many points as elements along each axis.
 VirtualArray virtual_array(const Radar& radar);
+
+// Returns the azimuth in rad of the mean boresight of the antennas; 0 where they look up, or to all sides.
+double boresight_azimuth(const Radar& radar);
 
 // Makes the elements and the grid of an array from its positions and its wavelength.
 void arrange_elements(VirtualArray& array);

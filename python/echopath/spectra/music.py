@@ -9,6 +9,7 @@ from ..arguments.checks import ArrayLike, array, checked, count, flag
 
 _CELLS = array("[N, 2]", kind="whole")
 _DIRECTIONS = array("[A]", finite=True)
+MIRROR_TOLERANCE = 0.02  # wavelengths, as beams have it
 
 
 @checked(azimuth=_DIRECTIONS, cells=_CELLS, num_sources=count(1, 64), forward_backward=flag)
@@ -18,7 +19,8 @@ def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, 
 
     The covariance of the channels over a cell and its neighbours has num_sources eigenvectors of signals; the value is
     |a|^2 over the squared length of a in the space of the others, a the steering vector of a direction in the xy-plane. Echoes
-    of one phase law in all of these cells count as one source, where `forward_backward` may part two.
+    of one phase law in all of these cells count as one source, where `forward_backward` may part two. The phase between
+    transmit slots is that of the cell's velocity in all of them.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar; radar: that of the spectrum
     azimuth: [A] rad in the radar's frame, left positive; cells: [N, 2] (velocity, range) indices
     num_sources: 1 to 64, fewer than channels; velocity_neighbours, range_neighbours: cells on each side, 0 to 64
@@ -30,15 +32,20 @@ def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, 
     if num_sources >= len(values):
         raise ValueError(f"num_sources: must be fewer than the {len(values)} channels, got {num_sources}")
     _check_cells(cells, values.shape[1:])
-    places = _core.virtual_array(radar).positions.reshape(-1, 3)
+    virtual = _core.virtual_array(radar)
+    places = virtual.positions.reshape(-1, 3)
+    opposite = _opposite_channels(places - virtual.centre, virtual.wavelength) if forward_backward else None
     wavenumber = 2.0 * np.pi / radar.waveform.wavelength
     toward = np.stack([np.cos(azimuth), np.sin(azimuth), np.zeros(len(azimuth))])
     steering = np.exp(-1j * wavenumber * places @ toward)
+    delays = np.repeat(_slot_delays(radar), len(radar.receivers))
     found = []
     for velocity, distance in cells.tolist():  # numbers of Python: unsigned ones know nothing below 0
         rows = np.arange(velocity - velocity_neighbours, velocity + velocity_neighbours + 1) % values.shape[1]
         columns = np.arange(max(0, distance - range_neighbours), min(values.shape[2], distance + range_neighbours + 1))
-        found.append(_pseudo_spectrum(values[:, rows][:, :, columns], steering, num_sources, forward_backward))
+        faster = spectrum.velocity[rows] - spectrum.velocity[velocity]  # than the echo of the cell, which lies in them, too
+        turn = np.exp(2j * wavenumber * delays[:, None] * faster)
+        found.append(_pseudo_spectrum(values[:, rows][:, :, columns] * turn[..., None], steering, num_sources, opposite))
     return np.array(found).reshape(len(cells), len(azimuth))
 
 
@@ -48,12 +55,32 @@ def _check_cells(cells, shape) -> None:
         raise IndexError(f"cells: must lie within the {shape} cells of the map, got {wrong[0]}")
 
 
-def _pseudo_spectrum(snapshots, steering, num_sources: int, forward_backward: bool) -> np.ndarray:
-    """snapshots: [channel, ...]; steering: [channel, A]"""
+def _slot_delays(radar) -> np.ndarray:
+    """[tx] s by which each sends after the first, the mean over the chirps; 0 where they do not take turns."""
+    count = len(radar.transmitters)
+    if radar.multiplexing != "tdm":
+        return np.zeros(count)
+    starts = np.vectorize(radar.waveform.slot_start)(np.arange(radar.waveform.num_chirps * count)).reshape(-1, count)
+    return np.mean(starts - starts[:, :1], axis=0)
+
+
+def _opposite_channels(places, wavelength: float) -> np.ndarray:
+    """[channel] index of the channel at the opposite point of a symmetric array; raises ValueError for another.
+
+    places: [channel, 3] and wavelength in m, from the array's centre
+    """
+    away = np.linalg.norm(places[:, None] + places, axis=-1)
+    if away.min(axis=1).max() > MIRROR_TOLERANCE * wavelength:
+        raise ValueError("forward_backward: needs an array that is symmetric about its centre, got one that is not")
+    return away.argmin(axis=1)
+
+
+def _pseudo_spectrum(snapshots, steering, num_sources: int, opposite) -> np.ndarray:
+    """snapshots: [channel, ...]; steering: [channel, A]; opposite: [channel] index of a channel, or None"""
     vectors = snapshots.reshape(len(snapshots), -1)
     covariance = vectors @ np.conj(vectors.T)
-    if forward_backward:
-        covariance = covariance + np.conj(covariance[::-1, ::-1])
+    if opposite is not None:
+        covariance = covariance + np.conj(covariance[np.ix_(opposite, opposite)])
     noise = np.linalg.eigh(covariance)[1][:, :-num_sources]
     rest = np.sum(np.abs(np.conj(noise.T) @ steering) ** 2, axis=0)
     return len(steering) / np.maximum(rest, np.finfo(float).tiny)

@@ -64,6 +64,48 @@ def test_music_parts_waves_closer_than_a_beam():
         ep.music(spectrum, radar, azimuth, cells=[(1, 0)], num_sources=8)
 
 
+def turning_waves(velocity, *, order=(0, 1, 2, 3)):
+    """Two waves of one range whose velocities differ by 0.7 cells, at transmitters that take turns; the speed of a cell."""
+    radar = build_radar(transmitters=[(0, 4 * m * HALF, 0) for m in range(3)], receivers=[(0, n * HALF, 0) for n in order],
+                        num_chirps=16, num_samples=32)
+    waveform = radar.waveform
+    slots = np.arange(3)[:, None] + 3 * np.arange(16)
+    cube = 1e-8 * np.random.default_rng(1).standard_normal((3, 4, 16, 32)).astype(complex)
+    for azimuth, faster in ((np.radians(5.0), 0.0), (np.radians(11.0), 0.7 * waveform.velocity_resolution(3))):
+        speed = (velocity + faster) * waveform.chirp_interval
+        phase = 2 * speed * slots[:, None, :] - HALF * np.sin(azimuth) * (4 * np.arange(3)[:, None, None]
+                                                                         + np.array(order)[:, None])
+        beat = np.exp(2j * np.pi * 10 * np.arange(32) / 32)
+        cube += 1e-3 * np.exp(2j * np.pi * phase / waveform.wavelength)[..., None] * beat
+    return radar, ep.range_doppler(cube, radar)
+
+
+def music_of_strongest(radar, spectrum, **keywords):
+    cell = np.unravel_index(np.abs(spectrum.values[0, 0]).argmax(), spectrum.values.shape[2:])
+    return ep.music(spectrum, radar, np.radians(np.arange(-20.0, 20.0, 0.1)), cells=[cell], num_sources=2, **keywords)[0]
+
+
+def test_music_is_alike_wherever_an_echo_lies_on_the_axis_of_velocities():
+    """Cells beside the end of the axis are those of its other end, of an echo with the phases of the cell's velocity."""
+    limit = build_radar(transmitters=[(0, 0, 0)] * 3, num_chirps=16).waveform.max_velocity(3)
+    middle, end = (music_of_strongest(*turning_waves(velocity)) for velocity in (0.0, -limit))
+    strongest = np.argsort(middle)[-1]
+    assert end[strongest] == pytest.approx(middle[strongest], rel=0.5) and abs(end.argmax() - middle.argmax()) <= 1
+    peaks = np.flatnonzero((end[1:-1] > end[:-2]) & (end[1:-1] > end[2:])) + 1
+    found = np.sort(np.arange(-20.0, 20.0, 0.1)[peaks[np.argsort(end[peaks])[-2:]]])
+    assert found == pytest.approx([5.0, 11.0], abs=1.0)  # a beam is 10 degrees wide
+
+
+def test_music_mirrors_an_array_by_its_places():
+    """Whatever the order of its channels."""
+    in_order, mixed = (music_of_strongest(*turning_waves(0.0, order=order), forward_backward=True)
+                       for order in ((0, 1, 2, 3), (1, 0, 2, 3)))
+    assert abs(in_order.argmax() - mixed.argmax()) <= 1
+    uneven = build_radar(receivers=[(0, n * HALF, 0) for n in (0, 1, 3)], num_chirps=4, num_samples=4)
+    with pytest.raises(ValueError, match="^forward_backward: needs an array that is symmetric about its centre"):
+        ep.music(ep.range_doppler(np.ones((1, 3, 4, 4)), uneven), uneven, [0.0], cells=[(0, 0)], forward_backward=True)
+
+
 @pytest.fixture(scope="module")
 def detections():
     radar = build_radar(receivers=[(0, n * HALF, 0) for n in range(8)], num_chirps=32, transmit_power=1.0)

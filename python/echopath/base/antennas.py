@@ -44,6 +44,11 @@ def are_crossed(antennas: Iterable) -> bool:
     return any(abs(polarizations[0] @ other) < CO_POLARISED for other in polarizations[1:])
 
 
+def mixes_polarisations(radar) -> bool:
+    """Whether the channels of a radar are of several pairs of polarisations, such as HH beside VV."""
+    return are_crossed(radar.transmitters) or are_crossed(radar.receivers)
+
+
 def polarization_of(antenna) -> np.ndarray:
     """[3] unit vector in the radar's frame."""
     real, imaginary = antenna.orientation[0], antenna.orientation[1:]

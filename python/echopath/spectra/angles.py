@@ -7,6 +7,7 @@ from .. import _core
 from ..arguments.checks import LARGEST_COUNT, ArrayLike, Progress, Window, array, checked, count, flag, one_of, optional, real
 from ..arguments.checks import window as window_rule
 from ..arguments.gates import gate
+from .one_polarisation import warn_of_mixed_polarisations
 
 BeamMethod = Literal["bartlett", "capon"]
 Overlaps = Literal["average", "first"]
@@ -68,6 +69,7 @@ def angle_fft(spectrum: _core.RangeDoppler, radar: _core.Radar, *, window: Windo
     Raises TypeError or ValueError naming the argument, also where the array is no grid of equal steps (`beamform` takes any)
     or the map is not the radar's.
     """
+    warn_of_mixed_polarisations(radar, "angle_fft")
     return _core.angle_fft(spectrum, radar, window=window, zero_pad=zero_pad, overlaps=overlaps, compensate=compensate,
                            progress=progress)
 
@@ -102,6 +104,7 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
     Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].
     Raises TypeError, ValueError or IndexError naming the argument.
     """
+    warn_of_mixed_polarisations(radar, "beamform")
     return _core.beamform(spectrum, radar, azimuth, elevation, cells=cells, method=method, window=window, overlaps=overlaps,
                           compensate=compensate, diagonal_loading=diagonal_loading, velocity_neighbours=velocity_neighbours,
                           range_neighbours=range_neighbours, forward_backward=forward_backward, progress=progress)
@@ -131,6 +134,7 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
     Returns a RangeAzimuth with power [azimuth, range] in W. Raises TypeError or ValueError naming the argument. Warns
     (RuntimeWarning) where the antennas tell no azimuths apart.
     """
+    warn_of_mixed_polarisations(radar, "range_azimuth")
     return _core.range_azimuth(spectrum, radar, azimuth, elevation, velocity=velocity, combine=combine,
                                velocity_gate=velocity_gate, method=method, window=window, overlaps=overlaps,
                                compensate=compensate, diagonal_loading=diagonal_loading,
@@ -165,6 +169,7 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     Returns AngleEstimates, arrays [M]: none for a cell without power. Raises TypeError, ValueError or IndexError naming the
     argument.
     """
+    warn_of_mixed_polarisations(radar, "estimate_angles")
     return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, max_peaks=max_peaks,
                                  peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
                                  compensate=compensate, diagonal_loading=diagonal_loading,

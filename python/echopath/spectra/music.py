@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, count, flag
+from .one_polarisation import warn_of_mixed_polarisations
 
 _CELLS = array("[N, 2]", kind="whole")
 _DIRECTIONS = array("[A]", finite=True)
@@ -27,6 +28,7 @@ def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, 
     forward_backward: also average the covariance of the mirrored array (symmetric arrays)
     Returns [N, A], linear, at least 1. Raises TypeError, ValueError or IndexError naming the argument.
     """
+    warn_of_mixed_polarisations(radar, "music")
     values = _core.compensate_tdm(spectrum, radar, 0).values if not spectrum.is_tdm_compensated else spectrum.values
     values = values.reshape(-1, *values.shape[2:])
     if num_sources >= len(values):

@@ -27,8 +27,8 @@ NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
 TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories",
                                          "ego_motion", "live_scene")),
          *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr")),
-         *(f"results/{name}" for name in ("angle_map", "spectrogram", "arms_only", "rcs_over_angle", "label_masks", "detections",
-                                          "truth_and_tracks")),
+         *(f"results/{name}" for name in ("angle_map", "spectrogram", "arms_only", "rcs_over_angle", "polarimetry", "label_masks",
+                                          "detections", "truth_and_tracks")),
          *(f"runs/{name}" for name in ("frames_in_time", "several_processes", "dataset")))
 LARGEST_FILE = 200_000  # bytes
 

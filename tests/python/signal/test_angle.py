@@ -1,6 +1,8 @@
 """Angles: against a slow beamformer, and of targets whose place is known, through the whole chain."""
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -278,6 +280,25 @@ def test_antennas_turned_to_one_side_look_there():
         shown = above.azimuth[np.unravel_index(above.power.argmax(), above.power.shape)[0]]
         assert np.remainder(shown, 2 * np.pi) == pytest.approx(np.remainder(bearing, 2 * np.pi), abs=2 * DEGREE)
         assert ep.virtual_array(radar).boresight == pytest.approx(yaw)
+
+
+def test_beams_over_several_polarisations_are_warned_of():
+    """Echoes of HH and VV differ in more than the phases of places: those of a dihedral cancel."""
+    upright, level = ep.Antenna((0, 0, 0)), [ep.Antenna((0, n * HALF, 0), polarization=(0, 1, 0)) for n in range(4)]
+    rolled = ep.Antenna((0, 0, 0), orientation=(np.cos(np.pi / 4), np.sin(np.pi / 4), 0, 0))
+    mixed = ep.Radar(waveform(), transmitters=[upright, rolled], receivers=level)
+    spectrum, beyond = noise_map(mixed), {"cells": [(0, 5)]}
+    for work, name in ((lambda: ep.range_azimuth(spectrum, mixed), "range_azimuth"),
+                       (lambda: ep.estimate_angles(spectrum, mixed, **beyond), "estimate_angles"),
+                       (lambda: ep.beamform(spectrum, mixed, 0.1, **beyond), "beamform"),
+                       (lambda: ep.angle_fft(spectrum, mixed), "angle_fft"),
+                       (lambda: ep.music(spectrum, mixed, [0.1], **beyond), "music")):
+        with pytest.warns(RuntimeWarning, match=f"^{name}: the channels of this radar have several pairs of polarisations"):
+            work()
+    crossed = mixed.replace(transmitters=[upright])  # vertical to horizontal in all channels
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.range_azimuth(noise_map(crossed), crossed)
 
 
 def test_axes_may_be_numbers_lists_or_left_to_the_array():

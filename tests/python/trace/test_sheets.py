@@ -77,6 +77,23 @@ def test_a_person_behind_a_pane_keeps_level_and_name():
     assert {family.object for family in walker if family.order == 1} >= {"walker"}
 
 
+@pytest.mark.parametrize("gap", [0.02, 0.3])
+def test_cross_sections_behind_sheets_are_those_of_two_passages(gap):
+    """The antennas of a cross section are hundreds of kilometres away, where lengths are known to some centimetres only."""
+    turn, foam = 0.5, ep.Material(layers=[ep.Layer(0.005, 1.1 - 0.04j)])
+    once = ep.sheet_coefficients(foam, frequency=FREQUENCY, incidence=turn)
+    free, behind = ep.Scene(), ep.Scene()
+    for scene in (free, behind):
+        scene.add(ep.actors.sphere(0.1, subdivisions=16), name="ball", material="metal", smooth=True)
+        scene.add(ep.actors.dihedral(0.06), name="corner", material="metal", position=(0.2, 0.2, 0))
+    for name, distance in (("near", 0.1 + gap), ("far", 0.1 + 2 * gap)):
+        behind.add(ep.actors.plate(2.0, 2.0), name=name, material=foam, position=(-distance / np.cos(turn), 0, 0), yaw=turn)
+    found, expected = (ep.rcs(scene, frequency=FREQUENCY, incidence=(-1, 0, 0), polarization=["vv", "hh"], num_rays=2**14)
+                       for scene in (behind, free))
+    passed = np.abs([once.te_transmission, once.tm_transmission]) ** 8
+    assert 10 * np.log10(found / expected) == pytest.approx(10 * np.log10(passed.ravel()), abs=LEVEL)
+
+
 def test_every_antenna_of_an_array_passes_at_its_own_angle():
     radar, yaw = make_radar(num=3), 0.9
     free, behind = echo_of_ball(make_scene(None), radar), echo_of_ball(make_scene(yaw=yaw), radar)

@@ -114,7 +114,8 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direct
 
 EmbreeScene::Verdict EmbreeScene::intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out, Sees sees,
                                                          double begin) const {
-  return intersect(from, {from, begin}, direction, sees, out);
+  const double moved = way_up(unpacked(from), unpacked(direction), reach_);
+  return intersect(from, {from + moved * direction, std::max(0.0, begin - moved)}, direction, sees, out);
 }
 
 // Embree's distances are those of single precision, as far off as points that are confirmed.

@@ -66,17 +66,18 @@ class EmbreeScene {
   // Finds the closest hit from `from` along the unit vector `direction`. kFalseHit means that Embree reported a point that
   // double precision does not find on the ray (slivers near grazing); the ray counts as lost.
   Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
-  // Finds the closest hit from a point of the scene itself, on a surface or lifted off it, among the surfaces that the ray
-  // sees and no nearer than `begin` (m).
+  // Finds the closest hit from a point of the scene itself, on a surface or lifted off it, or from anywhere outside, among
+  // the surfaces that the ray sees and no nearer than `begin` (m).
   Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out, Sees sees = Sees::kOpaque,
                                  double begin = 0.0) const;
   // Finds the closest hit from a point on a surface within `reach` (m). Short rays are quicker, because they miss most of
   // the scene. A hit may lie a little farther than `reach`.
   Verdict intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out, Sees sees) const;
   // Returns the distance along a ray, m, at which to continue it behind a hit, so that it does not meet the same surface
-  // again: for Embree that lies at `reported` (m), not at `distance`.
+  // again: for Embree that lies at `reported` (m), not at `distance`. Embree rounds only the way within reach of the scene.
   double behind(double distance, double reported) const {
-    return std::max(distance, reported) * (1.0 + 0x1.0p-20) + 2.0 * lift_;
+    const double farther = std::max(distance, reported);
+    return farther + 0x1.0p-20 * std::min(farther, 2.0 * reach_) + 2.0 * lift_;
   }
   bool has_sheets() const { return has_sheets_; }
   bool is_sheet(uint32_t mesh_id) const { return meshes_.is_sheet(mesh_id); }

@@ -19,7 +19,8 @@ using Matrix2 = Eigen::Matrix2cd;
 // Holds the sheets of a scene alone.
 class SheetScene {
  public:
-  SheetScene(const Scene& scene, double time, const Vec3& origin, Job* job) : scene_(scene) {
+  // `near`: m, world, where most rays come from.
+  SheetScene(const Scene& scene, double time, const Vec3& near, Job* job) : scene_(scene) {
     std::vector<bool> is_sheet;
     for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
       is_sheet.push_back(scene.node_of(id).material->is_sheet());
@@ -27,7 +28,8 @@ class SheetScene {
     }
     if (ids_.empty()) return;
     scene_.keep_meshes(is_sheet);
-    geometry_.update(scene_, PosedScene(scene_, time), origin, job);
+    const PosedScene pose(scene_, time);
+    geometry_.update(scene_, pose, EmbreeScene::origin_near(scene_, pose, near), job);
   }
   bool is_empty() const { return ids_.empty(); }
 
@@ -39,6 +41,8 @@ class SheetScene {
     return true;
   }
   double behind(const RayHit& met) const { return geometry_.behind(met.distance, met.reported); }
+  const Vec3& origin() const { return geometry_.origin(); }  // m, world, to which its points are relative
+  double reach() const { return geometry_.reach(); }         // m, beyond which rays are rounded no more
 
  private:
   Scene scene_;
@@ -56,7 +60,7 @@ struct PassBlock {
 class PassFinder {
  public:
   PassFinder(Paths& paths, const SheetScene& sheets)
-      : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(paths.frame.transmitter),
+      : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(sheets.origin()),
         polarization_(paths.mode_polarization()) {
     for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
       const Material& material = *paths.scene->node_of(id).material;
@@ -76,7 +80,7 @@ class PassFinder {
 
  private:
   struct LegEnd {
-    Vec3 at;      // relative to the transmitter
+    Vec3 at;      // relative to the origin of the sheets
     Vec3 normal;  // of the sheet on which it lies, else zero
   };
 
@@ -88,15 +92,16 @@ class PassFinder {
   }
 
   // Moves the end of a leg off its sheet, toward the other end.
-  static Vec3 lifted(const LegEnd& end, const Vec3& other) {
-    const double lift = kLiftAbsolute + kLiftRelative * std::max(end.at.cwiseAbs().maxCoeff(), other.cwiseAbs().maxCoeff());
+  Vec3 lifted(const LegEnd& end, const Vec3& other) const {
+    const double largest = std::max(end.at.cwiseAbs().maxCoeff(), other.cwiseAbs().maxCoeff());
+    const double lift = kLiftAbsolute + kLiftRelative * std::min(largest, sheets_.reach());
     return end.at + std::copysign(lift, end.normal.dot(other - end.at)) * end.normal;
   }
 
   void find_passes(size_t path, PassBlock& block) const {
     const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
     const int count = paths_.num_bounces[path];
-    LegEnd from{Vec3::Zero(), Vec3::Zero()};
+    LegEnd from{paths_.frame.transmitter - origin_, Vec3::Zero()};
     for (int leg = 0; leg <= count; ++leg) {
       const LegEnd to = leg < count ? end_of(hits[leg]) : LegEnd{paths_.frame.receiver - origin_, Vec3::Zero()};
       add_leg(path, {static_cast<uint32_t>(leg), leg == 0, leg == count}, lifted(from, to.at), lifted(to, from.at), block);

@@ -178,8 +178,8 @@ TEST(DefaultAngles, OfALineThatIsNotLevelAreThoseOfAzimuthAlone) {
 }
 
 TEST(DefaultAngles, AreOnTheSideToWhichTheAntennasLook) {
-  const auto middle = [](const Vec3& step, double yaw) {
-    Radar radar = radar_with({Vec3::Zero()}, line(8, step));
+  const auto middle = [](const Vec3& step, double yaw, int num_rows = 1) {
+    Radar radar = radar_with(line(num_rows, Vec3(0, 0, kHalf)), line(8, step));
     for (auto* antennas : {&radar.transmitters, &radar.receivers}) {
       for (Antenna& antenna : *antennas) antenna.orientation = Eigen::AngleAxisd(yaw, Vec3::UnitZ());
     }
@@ -191,6 +191,7 @@ TEST(DefaultAngles, AreOnTheSideToWhichTheAntennasLook) {
   EXPECT_NEAR(middle(ahead, 0.5 * kPi), 0.5 * kPi, kRounding);
   EXPECT_NEAR(middle(ahead, -1.2), -0.5 * kPi, kRounding);  // on that side, not aslant: +-90 degrees about the line's normal
   EXPECT_EQ(middle(left, 0.4), 0.0);
+  EXPECT_EQ(middle(left, 0.4, 3), 0.0);
   EXPECT_NEAR(std::abs(middle(left, 3.0)), kPi, kRounding);
   EXPECT_EQ(middle(left, 0.0), 0.0);
   EXPECT_EQ(middle(ahead, 0.0), 0.0);  // along the line neither side is nearer

@@ -62,9 +62,9 @@ bool is_upright(const VirtualArray& array) { return array.extent().z() > width_o
 // Returns the azimuth in rad about which directions differ most: that of the boresights, or for an array that is a line from
 // above the one across it on their side, because such an array cannot tell one side from the other.
 double middle_azimuth(const VirtualArray& array) {
-  const Mat3 axes = principal_axes(array, Vec3(1.0, 1.0, 0.0));
-  if (!tells_azimuths(array) || tells_apart(extent_along(array, axes.col(1)), array.wavelength)) return array.boresight;
-  const Vec3 boresight = direction(array.boresight, 0.0), left = Vec3::UnitZ().cross(axes.col(2));
+  const Vec3 boresight = direction(array.boresight, 0.0);
+  const Vec3 left = Vec3::UnitZ().cross(principal_axes(array, Vec3(1.0, 1.0, 0.0)).col(2));
+  if (!tells_azimuths(array) || tells_apart(extent_along(array, left), array.wavelength)) return array.boresight;
   const double sine = left.dot(boresight);
   if (std::abs(sine) < kEndfire || std::abs(sine) > std::cos(kAligned)) return array.boresight;
   const Vec3 across = std::copysign(1.0, sine) * left;

@@ -86,7 +86,8 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
     the steered direction passes unchanged: a far point gives its received power in W, averaged over channels.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
     radar: that of the spectrum
-    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
+    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left, -2 pi to 2 pi; None: those the array
+        tells apart about where its antennas look (`VirtualArray.default_angles`)
     elevation: [E] or one in rad, up from the xy-plane; None likewise, at most 45 degrees up and down
     cells: [N, 2] (velocity, range) indices, or None: all
     method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
@@ -121,7 +122,8 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
 
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
     radar: that of the spectrum
-    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
+    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left, -2 pi to 2 pi; None: those the array
+        tells apart about where its antennas look (`VirtualArray.default_angles`)
     elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
     velocity: m/s, of the cells to take; None: all velocities
     combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
@@ -154,7 +156,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
 
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
     radar: that of the spectrum
-    azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
+    azimuth: [A] or one in rad, ascending, -2 pi to 2 pi, where to search; None: what the array tells apart about where its
+        antennas look (`VirtualArray.default_angles`), a quarter of a beam each
     elevation: [E] or one in rad; None likewise, at most 45 degrees up and down: what is higher is given a direction at that
         end, unless this reaches it; 0 alone for an array without vertical extent
     cells: [N, 2] (velocity, range) indices
@@ -166,8 +169,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
         beams, as in `beamform`
     progress: callable (stage, fraction), True for bars, or None
-    Returns AngleEstimates, arrays [M]: none for a cell without power. Raises TypeError, ValueError or IndexError naming the
-    argument.
+    Returns AngleEstimates, arrays [M], azimuths within +-pi: none for a cell without power. Raises TypeError, ValueError or
+    IndexError naming the argument.
     """
     warn_of_mixed_polarisations(radar, "estimate_angles")
     return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, max_peaks=max_peaks,

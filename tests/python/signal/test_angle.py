@@ -183,6 +183,47 @@ def test_angles_are_those_in_the_frame_of_a_turned_radar():
     assert found.elevation[0] == pytest.approx(0.15, abs=2 * DIRECTION_TOLERANCE)
 
 
+def looking_to(yaw, spacing=HALF, looks=None):
+    """A line of 8 receivers across `yaw` in the radar's frame, as at the corner of a car, whose antennas look to `looks`."""
+    left, look = np.array([-np.sin(yaw), np.cos(yaw), 0.0]), yaw if looks is None else looks
+    return ep.Radar(waveform(), transmitters=[ep.Antenna((0.0, 0.0, 0.0), yaw=look)],
+                    receivers=[ep.Antenna(n * spacing * left, yaw=look) for n in range(8)])
+
+
+@pytest.mark.parametrize("yaw", [60 * DEGREE, 120 * DEGREE, -150 * DEGREE, 180 * DEGREE])
+@pytest.mark.parametrize("aside", [-70, -20, 50])
+def test_antennas_that_look_aside_find_what_is_before_them(yaw, aside):
+    """A line sees the same before and behind it: what it tells apart are the 180 degrees to which its antennas look."""
+    radar = looking_to(yaw)
+    azimuth = yaw + aside * DEGREE
+    spectrum = ep.range_doppler(cube_of_points(radar, [(at(18.0, azimuth, 0.0), [0, 0, 0], 1.0)]), radar)
+    found = ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)])
+    off = np.exp(1j * (found.azimuth[0] - azimuth))
+    assert abs(np.angle(off)) < DIRECTION_TOLERANCE and -np.pi <= found.azimuth[0] <= np.pi
+    np.testing.assert_allclose(found.points[0], found.range[0] * at(1.0, azimuth, 0.0), atol=18.0 * DIRECTION_TOLERANCE)
+    seen = ep.range_azimuth(spectrum, radar)
+    top = seen.azimuth[np.argmax(seen.power.max(axis=1))]
+    assert abs(np.angle(np.exp(1j * (top - azimuth)))) < 1.5 * DEGREE and np.all(np.diff(seen.azimuth) > 0.0)
+    assert seen.azimuth[[0, -1]] == pytest.approx([yaw - 90 * DEGREE, yaw + 90 * DEGREE], abs=1e-6)
+
+
+def test_the_field_of_view_lies_across_the_array_on_the_side_to_which_its_antennas_look():
+    wide = ep.virtual_array(looking_to(60 * DEGREE, spacing=2 * HALF)).default_angles()[0]   # unambiguous to +-30 degrees
+    assert wide[[0, -1]] == pytest.approx([30 * DEGREE, 90 * DEGREE], abs=1e-6)
+    squinting = ep.virtual_array(looking_to(60 * DEGREE, looks=85 * DEGREE)).default_angles()[0]
+    assert squinting[[0, -1]] == pytest.approx([-30 * DEGREE, 150 * DEGREE], abs=1e-6)
+    behind = ep.virtual_array(looking_to(60 * DEGREE, looks=-100 * DEGREE)).default_angles()[0]
+    assert behind[[0, -1]] == pytest.approx([-210 * DEGREE, -30 * DEGREE], abs=1e-6)
+    upright = ep.Radar(waveform(), transmitters=[ep.Antenna((0, 0, 0), yaw=1.0)],
+                       receivers=[ep.Antenna((0, 0, n * HALF), yaw=1.0) for n in range(4)])
+    assert ep.virtual_array(upright).default_angles()[0] == pytest.approx([1.0])
+    ring = [(0.7 * np.cos(k), 0.7 * np.sin(k), 0.0) for k in 0.4 * np.pi * np.arange(5)]  # on no grid
+    around = ep.Radar(waveform(), transmitters=[ep.Antenna((0, 0, 0), yaw=2.0)],
+                      receivers=[ep.Antenna(place, yaw=2.0) for place in ring])
+    ends = ep.virtual_array(around).default_angles()[0][[0, -1]]
+    assert ends == pytest.approx([2.0 - 0.5 * np.pi, 2.0 + 0.5 * np.pi])
+
+
 def test_a_moving_sphere_needs_its_slots_compensated():
     """10 m/s away: 0.974568 rad per slot, 4 elements of half a wavelength per slot."""
     radar = three_by_four(chirps=waveform(num_chirps=64))

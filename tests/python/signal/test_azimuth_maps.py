@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.signals.arrays import DEGREE, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform
+from support.signals.arrays import DEGREE, HALF, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform
 
 DATA = Path(__file__).resolve().parents[3] / "data"
 SAMPLED = 0.02        # relative: 2e4 independent cells of noise (0.7 %), or side lobes of a second target (1.2 %)
@@ -86,3 +86,20 @@ def test_a_map_of_azimuth_by_one_antenna_is_warned_of():
     spectrum = ep.range_doppler(np.zeros((1, 1, radar.waveform.num_chirps, radar.waveform.num_samples)), radar)
     with pytest.warns(RuntimeWarning, match="range_azimuth: the antennas of this radar tell no azimuths apart"):
         ep.range_azimuth(spectrum, radar)
+
+
+def test_the_picture_of_a_radar_that_looks_back_holds_all_that_it_sees():
+    """Of 210 degrees to the left, where detections count -150."""
+    from matplotlib import pyplot
+
+    from echopath import plots
+    look = 180 * DEGREE
+    radar = ep.Radar(waveform(num_chirps=16), transmitters=[ep.Antenna((0, 0, 0), yaw=look)],
+                     receivers=[ep.Antenna((0, n * HALF, 0), yaw=look) for n in range(4)])
+    spectrum = spectrum_of(scene_of_spheres(at(8.0, -150 * DEGREE, 0.0)), radar, num_rays=500)
+    figure = plots.plot_range_azimuth(ep.range_azimuth(spectrum, radar), places={"ball": (8.0, -150 * DEGREE)})
+    assert "ball" in [text.get_text() for text in figure.axes[0].texts]
+    (left, right), (back, front) = figure.axes[0].get_xlim(), figure.axes[0].get_ylim()
+    across, ahead = 8.0 * np.sin(-150 * DEGREE), 8.0 * np.cos(-150 * DEGREE)
+    assert right < across < left and back < ahead < front
+    pyplot.close(figure)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/beam_source.h"

@@ -79,8 +79,8 @@ MOST_AZIMUTH_STEPS = 36_000  # a hundredth of a degree over all around
 
 def _azimuths(value):
     if not (isinstance(value, list) and len(value) == 3 and all(map(is_number, value)) and value[2] > 0
-            and -180 <= value[0] <= value[1] <= 180 and value[1] - value[0] <= MOST_AZIMUTH_STEPS * value[2]):
-        raise ValueError("must be [first, last, step] in degrees, -180 <= first <= last <= 180, step > 0 and at most "
+            and -360 <= value[0] <= value[1] <= 360 and value[1] - value[0] <= MOST_AZIMUTH_STEPS * value[2]):
+        raise ValueError("must be [first, last, step] in degrees, -360 <= first <= last <= 360, step > 0 and at most "
                          f"{MOST_AZIMUTH_STEPS} steps")
     return list(map(float, value))
 

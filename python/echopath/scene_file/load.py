@@ -42,7 +42,11 @@ def read_scene(path: Path, options: ReadOptions) -> SceneFile:
         value = getattr(options, field.name)
         if value != getattr(ReadOptions(), field.name):
             raise refused(ValueError, field.name, "left out for a scene file, whose objects say it", value)
-    return scene_file_of(parse(path), path)
+    table = parse(path)
+    if "dataset" in table:
+        raise ValueError(f"{path}: a template of a dataset, where a scene file is asked for; `echopath dataset {path} --out DIR` "
+                         "makes its frames")
+    return scene_file_of(table, path)
 
 
 def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: KeptRows | None = None) -> SceneFile:

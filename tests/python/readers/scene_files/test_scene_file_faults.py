@@ -33,7 +33,7 @@ FAULTS = [
     (RADAR + "[angle]\nazimuth_deg = [10, -10, 1]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
     (RADAR + "[angle]\nazimuth_deg = [0, 10, 0]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
     (RADAR + "[angle]\nazimuth_deg = [-60, 60, 1e-12]",
-     "angle.azimuth_deg: must be [first, last, step] in degrees, -180 <= first <= last <= 180, "
+     "angle.azimuth_deg: must be [first, last, step] in degrees, -360 <= first <= last <= 360, "
      "step > 0 and at most 36000 steps"),
     (RADAR + "[angle]\nazimuth_deg = [-60, 60, 1e-320]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
     (RADAR + "[angle]\nazimuth_deg = [0, 10, 1" + 400 * "0" + "]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
@@ -120,6 +120,12 @@ def test_texts_that_the_parser_cannot_take_name_the_file(tmp_path, text, message
     (tmp_path / "scene.toml").write_text(text)
     with pytest.raises(ValueError, match=f"^{re.escape(str(tmp_path))}.*{message}"):
         ep.load_scene(tmp_path / "scene.toml")
+
+
+def test_a_template_of_a_dataset_is_told_with_the_command_that_takes_it(write):
+    assert fault_of(write("[dataset]\nscenes = 2\n")).endswith(
+        ": a template of a dataset, where a scene file is asked for; `echopath dataset " + str(write("[dataset]\nscenes = 2\n"))
+        + " --out DIR` makes its frames")
 
 
 def test_a_missing_scene_file_is_a_file_error(tmp_path):

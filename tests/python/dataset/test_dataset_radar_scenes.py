@@ -139,6 +139,20 @@ def test_tracks_last_over_the_frames_of_a_scene_alone(written):
     assert set(data["track_id"][data["label_id"] == Label.STATIC.value]) == {b""}
 
 
+def test_odometry_tells_all_of_the_motion_of_a_radar_that_looks_aside(tmp_path):
+    """Radial velocities of what stands follow from it, as those of a car do from its speed."""
+    yaw = np.radians(20.0)
+    (tmp_path / "aside.toml").write_text(TEMPLATE.replace("scenes = 4", "scenes = 1").replace("frames = 3", "frames = 1").replace(
+        f"speed = {EGO}\n", f"motion = {{kind = 'linear', velocity = [{EGO}, 0.0, 0.0]}}\nyaw_deg = 20.0\n", 1))
+    list(dataset.make(tmp_path / "aside.toml", tmp_path / "made"))
+    dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    scene, = sequences_of(tmp_path)[0].scenes()
+    pose, points = scene.odometry_data, scene.radar_data
+    assert [pose["vx"], pose["vy"], pose["yaw_seq"]] == pytest.approx([EGO * np.cos(yaw), -EGO * np.sin(yaw), yaw], abs=1e-6)
+    own = -pose["vx"] * np.cos(points["azimuth_sc"]) - pose["vy"] * np.sin(points["azimuth_sc"])
+    np.testing.assert_allclose(points["vr"] - own, points["vr_compensated"], atol=1e-4)
+
+
 TURN, AHEAD, LEFT = 0.6, 2.3, 0.4  # rad/s of a radar that turns; m, of its antennas in its frame
 
 

@@ -36,7 +36,7 @@ POINTS = np.dtype([("timestamp", "i8"), ("sensor_id", "u1"), ("range_sc", "f4"),
                    ("vr", "f4"), ("vr_compensated", "f4"), ("x_cc", "f4"), ("y_cc", "f4"), ("x_seq", "f4"), ("y_seq", "f4"),
                    ("uuid", "S32"), ("track_id", "S32"), ("label_id", "u1"), ("ghost_label", "i2")])
 ODOMETRY = np.dtype([("timestamp", "i8"), ("x_seq", "f8"), ("y_seq", "f8"), ("yaw_seq", "f8"), ("vx", "f8"),
-                     ("yaw_rate", "f8")])
+                     ("yaw_rate", "f8"), ("vy", "f8")])
 
 
 class _Pose(NamedTuple):
@@ -77,7 +77,9 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
     (Kraus et al. 2021): 1000 times its class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has
     the track and the label_id of its object.
     Ranges and azimuths count from where sensors.json has the sensor in the car: between transmitters and receivers
-    (`Detections.centre`). odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame.
+    (`Detections.centre`). odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame, and
+    behind them vy (m/s), which is not 0 where the radar's frame does not look to where it drives: x_cc is ahead of the car
+    where antennas at its corners have yaws of their own in a frame that is the car's.
     Raises ValueError naming `dataset` where it has no frames, no detections with azimuths, or antennas at more than 255 places,
     and naming `folder` where that has a folder data; ep.FileError where files cannot be written.
     """
@@ -106,8 +108,8 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, senso
     for row, one in enumerate(frames):
         time = radar.middle_of_frame(float(stored.times[one.place]))
         pose = _pose(radar, time)
-        odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw,
-                         pose.velocity_of(np.zeros(3))[0], pose.yaw_rate)
+        ahead, aside, _ = pose.velocity_of(np.zeros(3))
+        odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw, ahead, pose.yaw_rate, aside)
         found = detections_of(dataset, one)
         rows = _points_of(found, one.number, scene, radar, time, pose, classes)
         rows["sensor_id"] = sensor

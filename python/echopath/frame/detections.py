@@ -8,7 +8,7 @@ from ..arguments.checks import Progress, an, checked
 from ..arguments.objects import Objects
 from ..arguments.settings import LEAST_MARGIN_DB
 from ..detections import Detections, detect
-from ..detections.checks import RULES
+from ..detections.checks import RULES, require_folds
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from .frame import Frame
 
@@ -17,13 +17,16 @@ from .frame import Frame
 def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: float = FALSE_ALARM_RATE,
                  guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None,
                  training_range: int | None = None, rank: float = RANK, objects: Objects = None, max_peaks: int = 1,
-                 progress: Progress = None) -> Detections:
+                 folds: int = 0, progress: Progress = None) -> Detections:
     """Detections in a frame's map with noise, labelled by its first partition, its objects and the paths behind them.
 
     frame: Frame of `simulate` or `load_frame`
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
     objects: as in `families`
     max_peaks: directions of a cell at most, of radars whose antennas tell directions apart
+    folds: velocities beyond those of the map that transmitters in turns ("tdm") tell apart, as in `estimate_angles`: with 3 or 4
+        transmitters 1 tries those a turn of the map faster and slower, too. Without it, what is too fast for the map has a
+        wrong azimuth as well
     progress: callable (stage, fraction), True for bars, or None
     Objects and ghosts are told apart above the noise margin of the frame's labels, 10 dB where it has none.
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
@@ -32,7 +35,8 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to detect echoes in, got a record of paths alone")
     parts = next(iter(frame.part_spectra.values()), None)
-    settings = {"max_peaks": max_peaks} if len(_core.virtual_array(frame.radar).elements) > 1 else None
+    require_folds(frame.radar, folds)
+    settings = {"max_peaks": max_peaks, "folds": folds} if len(_core.virtual_array(frame.radar).elements) > 1 else None
     found = detect(frame.spectrum, frame.radar, method=method, false_alarm_rate=false_alarm_rate,
                    guard_velocity=guard_velocity, guard_range=guard_range, training_velocity=training_velocity,
                    training_range=training_range, rank=rank, paths=frame.paths, parts=parts,

@@ -210,3 +210,20 @@ def test_one_antenna_gives_no_directions(spheres):
     spectrum = ep.range_doppler(ep.add_noise(np.zeros((1, 1, 64, 256), complex), radar, seed=1), radar)
     found = ep.detect(spectrum, radar, false_alarm_rate=1e-3)
     assert len(found) and np.isnan(found.azimuth).all() and np.isnan(found.points).any()
+
+
+def test_a_fast_radar_finds_what_stands_where_it_is_by_the_turns_of_its_transmitters():
+    """-25 m/s cos(azimuth), beyond the +-13 m/s of three transmitters in turns, of which the map shows another."""
+    drive, bearings = 25.0, {"left": 0.7, "ahead": 0.1, "right": -0.5}
+    radar = radar_with(receivers=4, transmitters=3, num_chirps=32, chirp_interval=25e-6).replace(speed=drive)
+    scene = scene_of({name: (8.0 + 3.0 * k, azimuth, 0.0) for k, (name, azimuth) in enumerate(bearings.items())})
+    frame = ep.simulate(scene, radar, num_rays=1_000, detections={"folds": 1}, guard=False)
+    for found in (frame.detections, ep.detect_frame(frame, folds=1)):
+        assert sorted(found.object) == sorted(bearings)
+        for name, azimuth in bearings.items():
+            i = list(found.object).index(name)
+            assert found.velocity[i] == pytest.approx(-drive * np.cos(azimuth), abs=0.2)
+            assert found.azimuth[i] == pytest.approx(azimuth, abs=0.02)  # it comes nearer by 3 cm until the middle of the frame
+    for call in (lambda: ep.detect_frame(frame, folds=2), lambda: ep.simulate(scene, radar, detections={"folds": 2})):
+        with pytest.raises(ValueError, match="^folds: must be less than half of the 3 slots in which .* take turns, got 2"):
+            call()

@@ -151,6 +151,7 @@ class DetectionsTable(Table):
     training_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 8 zero_pad")
     rank: Annotated[float, Field(gt=0, le=1)] = Field(RANK, description="of \"os\", share of the training cells")
     max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
+    folds: int = Field(0, ge=0, description="velocities beyond the map to either side that slots of transmitters tell apart")
 
 
 class TruthTable(Table):

@@ -1,15 +1,21 @@
 """A frame in one picture: its map, and what was detected in it."""
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from .. import _core
 from ..arguments.part_names import LEAKAGE
+from ..base.velocities import ambiguity_of, folded
 from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, hold_points
 from .points import draw_points
 from .style import axes_or_new
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes
+    from ..detections import Detections
     from ..frame.frame import Frame
 
 
@@ -30,7 +36,7 @@ def limits_of_frame(frame) -> tuple[float, float]:
 
 def draw_frame(frame: Frame, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
                title: str | None = None) -> Axes:
-    """The range-Doppler map of a frame with its noise, and all of its detections, where it has some, as points.
+    """The range-Doppler map of a frame with its noise, and all of its detections, where it has some, as points at their cells.
 
     ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm, None: `limits_of_frame`
     title: None: what it shows
@@ -43,6 +49,13 @@ def draw_frame(frame: Frame, *, ax: Axes | None = None, vmin: float | None = Non
     with axes_or_new(ax, *MAP_SIZE) as ax:
         draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title_of(frame) if title is None else title)
         if frame.detections is not None and len(frame.detections):
-            draw_points(ax, frame.detections, has_room=has_room, edgecolors="white")
-            hold_points(ax, frame.detections.range, frame.detections.velocity)
+            found = _on_the_map(frame.detections, frame.spectrum, ambiguity_of(frame.radar))
+            draw_points(ax, found, has_room=has_room, edgecolors="white")
+            hold_points(ax, found.range, found.velocity)
     return ax
+
+
+def _on_the_map(detections: Detections, spectrum: _core.RangeDoppler, ambiguity: float) -> Detections:
+    """Detections with the velocities at which the map has their cells, for whatever turn of it they were resolved."""
+    beside = folded(detections.velocity - np.asarray(spectrum.velocity)[detections.cells[:, 0]], ambiguity)
+    return dataclasses.replace(detections, velocity=np.asarray(spectrum.velocity)[detections.cells[:, 0]] + beside)

@@ -224,6 +224,10 @@ def test_a_fast_radar_finds_what_stands_where_it_is_by_the_turns_of_its_transmit
             i = list(found.object).index(name)
             assert found.velocity[i] == pytest.approx(-drive * np.cos(azimuth), abs=0.2)
             assert found.azimuth[i] == pytest.approx(azimuth, abs=0.02)  # it comes nearer by 3 cm until the middle of the frame
+    axes = frame.plot()  # points are on the map, whose velocities end before theirs
+    shown = np.concatenate([points.get_offsets()[:, 1] for points in axes.collections])
+    echoes = np.sort(frame.spectrum.velocity[frame.detections.cells[:, 0]])
+    np.testing.assert_allclose(np.sort(shown), echoes, atol=0.5 * (frame.spectrum.velocity[1] - frame.spectrum.velocity[0]))
     for call in (lambda: ep.detect_frame(frame, folds=2), lambda: ep.simulate(scene, radar, detections={"folds": 2})):
         with pytest.raises(ValueError, match="^folds: must be less than half of the 3 slots in which .* take turns, got 2"):
             call()

@@ -14,7 +14,7 @@ from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_b
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes
-    from ..in_time.maps import TimeMap
+    from ..in_time.maps import Spectrogram, TimeMap
     from ..in_time.spectrogram_labels import SpectrogramLabels
 
 TIME_LABEL = "Time in s"
@@ -23,11 +23,15 @@ SIZE = 9.0, 4.4         # inches
 LABEL_FILL = 0.6        # opacity of a label over the map
 LEGEND_COLUMNS, LEGEND_LETTERS = 4, 90  # at most, of all columns together
 LEGEND_ROW = 15.0       # points
+NARROWEST_TRAIN = 1.0 / 250.0  # of the time shown: about three pixels of a picture, below which gaps beside it are not drawn
 
 
 def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
                   title: str = "") -> Axes:
-    """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None): gaps between trains of chirps stay blank.
+    """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None).
+
+    Gaps between trains of chirps stay blank, except behind trains that would be too narrow to be seen, as frames of 10 ms are in
+    a film of a minute: these are drawn until the next one begins, as far as trains usually lie apart.
 
     map: as `ep.spectrogram` and its like give it; ax: axes to draw in; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, as parts have no noise, to the
@@ -40,10 +44,13 @@ def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = 
     vmin, vmax = chosen_limits(limits_above(noise, level.max()), vmin, vmax)
     values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
     with axes_or_new(ax, *SIZE) as ax:
-        for columns, ends in _trains(map):
-            image = image_over_time(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
+        look = {"cmap": MAP_COLOURS, "vmin": vmin, "vmax": vmax}
         if map.AXIS == "velocity":
+            edges, columns = _columns_and_gaps(map)
+            image = _image(ax, edges, values, _with_gaps(level, columns), **look)
             _crop(ax, values, level, vmin)
+        else:
+            image = image_over_time(ax, map.times, values, level, **look)
         ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
         colour_bar(ax.figure, image, ax)
     return ax
@@ -63,11 +70,10 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     colours = part_colours(names)
     with axes_or_new(ax, *SIZE) as ax:
         owner = np.ma.masked_less(labels.dominant, 0)
-        for columns, ends in _trains(labels):
-            cells = labels.times[columns], labels.velocity
-            grey = image_over_time(ax, *cells, level[columns], ends, cmap="gray", vmin=vmin, vmax=vmax)
-            image_over_time(ax, *cells, owner[columns], ends, cmap=ListedColormap(colours), vmin=-0.5, vmax=len(names) - 0.5,
-                            alpha=LABEL_FILL)
+        edges, columns = _columns_and_gaps(labels)
+        grey = _image(ax, edges, labels.velocity, _with_gaps(level, columns), cmap="gray", vmin=vmin, vmax=vmax)
+        _image(ax, edges, labels.velocity, _with_gaps(owner, columns), cmap=ListedColormap(colours), vmin=-0.5,
+               vmax=len(names) - 0.5, alpha=LABEL_FILL)
         seen = [number for number in range(len(names)) if np.any(labels.dominant == number)]
         for number in seen:
             ax.fill_between([], [], color=colours[number], label=names[number])
@@ -81,20 +87,49 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     return ax
 
 
-def _trains(map) -> list:
-    """(indices of times, (begin, end) in s) of each stretch whose columns touch each other, its windows' ends included."""
-    if not hasattr(map, "train"):
-        return [(slice(None), None)]
-    return [(map.train == number, map.trains[number]) for number in np.unique(map.train)]
+def _columns_and_gaps(map: Spectrogram | SpectrogramLabels) -> tuple[np.ndarray, np.ndarray]:
+    """(edges [E + 1] in s, indices [E] of the times of the map between them, -1 in a gap between trains)."""
+    begins = map.trains[:, 0]
+    ends = _ends_as_drawn(map.trains)
+    edges, columns = [], []
+    for number in np.unique(map.train):
+        inside = np.flatnonzero(map.train == number)
+        if edges and edges[-1] < begins[number]:
+            columns.append(-1)
+        elif edges:
+            edges.pop()
+        edges += [begins[number], *cell_edges(map.times[inside])[1:-1], ends[number]]
+        columns += list(inside)
+    return np.array(edges), np.array(columns)
 
 
-def image_over_time(ax, times, values, level, ends=None, **look):
-    """The cells [T, X] as an image; ends: (begin, end) in s of the outermost columns, None: as wide as the others."""
-    edges = cell_edges(times)
-    if ends is not None:
-        edges[[0, -1]] = ends
-    elif len(times) == 1:
+def _ends_as_drawn(trains) -> np.ndarray:
+    """Ends of trains [N, 2] in s; of those that are too narrow to be seen, where the next one begins."""
+    begins, ends = trains.T
+    if len(trains) < 2:
+        return ends
+    usual = np.median(np.diff(begins))
+    reach = np.minimum(begins + usual, np.append(begins[1:], np.inf))
+    is_narrow = ends - begins < NARROWEST_TRAIN * (ends[-1] - begins[0])
+    return np.where(is_narrow, np.maximum(ends, reach), ends)
+
+
+def _with_gaps(cells, columns):
+    """The cells [T, X] of each column, without any in gaps."""
+    chosen = np.ma.masked_array(cells[columns])
+    chosen[columns < 0] = np.ma.masked
+    return chosen
+
+
+def image_over_time(ax, times, values, level, **look):
+    """The cells [T, X] as an image."""
+    if len(times) == 1:
         ax.set_xticks(times)  # its width means nothing
+    return _image(ax, cell_edges(times), values, level, **look)
+
+
+def _image(ax, edges, values, level, **look):
+    """The cells [T, X] between the edges [T + 1] in s as an image."""
     return ax.pcolormesh(edges, cell_edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
 
 

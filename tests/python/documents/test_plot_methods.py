@@ -224,6 +224,42 @@ def test_a_spectrogram_shows_wide_cells_whole():
     assert found.plot().get_ylim() == pytest.approx((-7.5, 7.5))  # its cell and one on either side
 
 
+def spectrogram_of_frames(starts, duration: float) -> ep.Spectrogram:
+    """One window in each frame, whose only echo is the stronger the later it is."""
+    power = np.full((len(starts), 8), 1e-15)
+    power[:, 4] = np.geomspace(1e-13, 1e-11, len(starts))
+    return ep.Spectrogram(times=starts + duration / 2.0, power=power, noise_power=1e-15, window="hann", zero_pad=1,
+                          velocity=np.arange(8.0) - 4.0, train=np.arange(len(starts), dtype=np.int32),
+                          trains=np.stack([starts, starts + duration], axis=1), window_length=64, hop=16, range_gate=(0.0, 10.0))
+
+
+def level_at(mesh, time: float) -> float:
+    """Colour value of a picture over time at a time and 0 m/s, NaN where it is blank."""
+    across, up = mesh.get_coordinates()[0, :, 0], mesh.get_coordinates()[:, 0, 1]
+    column, row = np.searchsorted(across, time) - 1, np.searchsorted(up, 0.0) - 1
+    return float(np.ma.filled(mesh.get_array().astype(float), np.nan)[row, column])
+
+
+def test_a_spectrogram_of_short_frames_shows_each_of_them():
+    """Two films of 200 frames of 6.4 ms, 20 a second: a frame is a third of a pixel wide. Between the films nothing was heard."""
+    starts = np.concatenate([0.05 * np.arange(200), 30.0 + 0.05 * np.arange(200)])
+    found = spectrogram_of_frames(starts, 6.4e-3)
+    mesh, = [one for one in found.plot().collections if one.get_array() is not None]
+    level = 10.0 * np.log10(found.power[:, 4]) + 30.0
+    for later in (0.001, 0.025, 0.049):
+        assert [level_at(mesh, start + later) for start in starts] == pytest.approx(level)
+    assert all(np.isnan(level_at(mesh, time)) for time in (10.01, 20.0, 29.99))
+    labels = ep.spectrogram_labels({"echo": found}, found)
+    assert not any(np.isnan(level_at(mesh, 12.34 - 10.0)) for mesh in labels.plot().collections if mesh.get_array() is not None)
+
+
+def test_a_spectrogram_leaves_gaps_between_long_frames_blank():
+    starts = 0.5 * np.arange(6)
+    mesh, = [one for one in spectrogram_of_frames(starts, 0.2).plot().collections if one.get_array() is not None]
+    assert not any(np.isnan(level_at(mesh, start + 0.1)) for start in starts)
+    assert all(np.isnan(level_at(mesh, start + 0.3)) for start in starts[:-1])
+
+
 def test_tracks_that_share_a_colour_differ_in_their_lines(ax):
     count = 15
     tracks = ep.Tracks(track=np.repeat(np.arange(count, dtype=np.int32), 2), frame=np.tile([0, 1], count),

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text, vector
 from .arguments import (
-    GOES_ON, LATEST, RATE, Outside, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times,
+    GOES_ON, LATEST, NEAREST, RATE, Outside, checked_headings, checked_path, checked_points, checked_speed, checked_stops,
+    checked_times,
 )
 from .knots import curve_through
 from .limits import Limits, over_distance
@@ -35,7 +36,8 @@ class Trajectory(_core.CurveMotion):
     points: [P, 2] or [P, 3] in m, P >= 2; those of two columns are at z = 0
     speed: m/s, constant; or [N, 2]: distances in m and speeds in m/s, between which the acceleration is constant; of `times`
         [P] m/s at the points, None: as the points say
-    times: [P] in s, ascending: when it is at the points, which then may repeat where it stands. None: by `speed`
+    times: [P] in s, ascending: when it is at the points, which then may repeat where it stands. Of points within 1 mm of each
+        other the first tells where the path goes, the others how far it has come. None: by `speed`
     yaw: [P] in rad, with `times`: where it looks. None: along the path
     turn_radius: m; straight lines between the points, joined by arcs. None: a C2 spline over the chord lengths
     stops: [N, 2]: distances in m (math.inf: the end) and waiting times in s; one at 0 lets it start from rest. Needs no times
@@ -280,16 +282,36 @@ def _timed(arguments: dict) -> Track:
 
 
 def _path_of_places(points, turn_radius, towards: float):
-    """(the Path through points [P, 3] which may repeat, their distances [P] along it)."""
-    moved = np.linalg.norm(np.diff(points, axis=0), axis=-1) > 1e-3
-    index = np.concatenate([[0], np.cumsum(moved)])
-    own = points[np.concatenate([[True], moved])]
-    if len(own) == 1:
-        own = np.concatenate([own, own + [[math.cos(towards), math.sin(towards), 0.0]]])
+    """(the Path through points [P, 3] which may repeat, their distances [P] along it).
+
+    Points within NEAREST of the last one that the path goes through tell no direction, but how far it has come: what creeps by
+    less than that from row to row still moves.
+    """
     if turn_radius is not None:
         raise refused(ValueError, "turn_radius", "given without times", turn_radius)
-    path = checked_path(own, None)
-    return path, path.junctions[index]
+    kept = _apart(points)
+    stands = len(kept) == 1
+    ends = points[kept] if not stands else points[0] + np.array([np.zeros(3), [math.cos(towards), math.sin(towards), 0.0]])
+    path = checked_path(ends, None)
+    if stands:
+        path.length = 0.0  # its second point only says where it looks
+        return path, np.zeros(len(points))
+    of = np.minimum(np.searchsorted(kept, np.arange(len(points)), side="right") - 1, len(kept) - 2)
+    chords = np.diff(ends, axis=0)[of]
+    shares = np.clip(np.sum((points - ends[of]) * chords, axis=-1) / np.sum(chords**2, axis=-1), 0.0, 1.0)
+    places = path.junctions[of] + shares * np.diff(path.junctions)[of]
+    return path, np.maximum.accumulate(places)
+
+
+def _apart(points) -> np.ndarray:
+    """Indices of the points [P, 3] that are more than NEAREST from the one before among them, both ends included if they can."""
+    rows, kept = points.tolist(), [0]
+    for index, row in enumerate(rows):
+        if math.dist(row, rows[kept[-1]]) > NEAREST:
+            kept.append(index)
+    if len(kept) > 1 and math.dist(rows[-1], rows[kept[-2]]) > NEAREST:
+        kept[-1] = len(rows) - 1
+    return np.array(kept)
 
 
 def _each(values: ArrayLike, function, argument: str = "time"):

@@ -35,6 +35,36 @@ def test_a_straight_line_is_travelled_evenly():
     assert line.yaw(5.0) == pytest.approx(math.atan2(8, 6))
 
 
+@pytest.mark.parametrize("speed", [0.02, 0.05, 0.099, 0.11])
+def test_what_creeps_between_rows_of_a_fast_table_moves(speed):
+    """A robot or a drawer at some cm/s, by a tracker of 100 Hz: less than a millimetre from row to row."""
+    times = 0.01 * np.arange(2001)
+    direction = np.array([np.cos(0.4), np.sin(0.4)])
+    slow = ep.Trajectory((1.0, -2.0) + speed * times[:, None] * direction, times=times)
+    inside = np.linspace(0.0, 20.0, 777)
+    np.testing.assert_allclose(slow.position(inside)[:, :2], (1.0, -2.0) + speed * inside[:, None] * direction, atol=MICROMETRES)
+    np.testing.assert_allclose(slow.speed(inside), speed, rtol=1e-6)
+    assert slow.length == pytest.approx(20.0 * speed) and np.ptp(slow.yaw(inside)) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_what_slows_down_to_a_creep_on_an_arc_goes_on_without_a_jump():
+    times = 0.01 * np.arange(1501)
+    speeds = np.interp(times, [0.0, 3.0, 5.0, 10.0, 12.0, 15.0], [0.4, 0.4, 0.03, 0.03, 0.4, 0.4])
+    angle = np.concatenate([[0.0], np.cumsum(0.005 * (speeds[1:] + speeds[:-1]))]) / 2.0  # of a circle of 2 m
+    points = 2.0 * np.stack([np.sin(angle), 1.0 - np.cos(angle)], axis=-1)
+    arc = ep.Trajectory(points, times=times)
+    inside = np.linspace(0.01, 14.99, 999)
+    assert np.abs(arc.speed(inside) - np.interp(inside, times, speeds)).max() < 0.002
+    assert np.abs(arc.position(times)[:, :2] - points).max() < MICROMETRES
+    assert np.abs(arc.yaw(times) - angle).max() < 0.01
+
+
+def test_what_stands_has_no_length():
+    still = ep.Trajectory([(2.0, 1.0), (2.0, 1.0)], times=[0.0, 5.0], goes_on=1.0)
+    assert (still.length, still.distance(5.0), still.speed(2.0)) == (0.0, 0.0, 0.0) and "0 m" in str(still)
+    np.testing.assert_array_equal(still.position([-1.0, 2.0, 7.0]), np.tile([2.0, 1.0, 0.0], (3, 1)))
+
+
 def test_a_turn_has_the_length_and_the_rates_of_its_arc():
     turn, speed = corner(speed=6.0), 6.0
     assert turn.length == pytest.approx(2 * (40 - RADIUS) + RADIUS * np.pi / 2, abs=ROUNDING)

@@ -61,6 +61,21 @@ def test_side_maps_have_the_axes_and_peaks_of_their_functions(frame, moving_sequ
     assert np.array_equal(samples, frame.cube[1, 0, 3]) and times[1] == pytest.approx(1e-7)
 
 
+def test_elevations_are_those_where_the_antennas_look(frame):
+    """Antennas in the x-z plane, turned to the left: what stands there is no echo from straight ahead."""
+    half = 0.5 * frame.radar.waveform.wavelength
+    waveform = frame.radar.waveform.replace(num_samples=64, num_chirps=2)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna(yaw=np.pi / 2)],
+                     receivers=[ep.Antenna((left * half, 0, up * half), yaw=np.pi / 2) for left in range(6) for up in range(4)])
+    up = np.radians(20.0)
+    waves = np.exp(-2j * np.pi * ep.virtual_array(radar).positions @ [0, np.cos(up), np.sin(up)] / waveform.wavelength)
+    beat = np.exp(2j * np.pi * 10 * np.arange(64) / 64)
+    found = range_elevation_map(ep.range_doppler(waves[:, :, None, None] * np.ones((2, 1)) * beat, radar), radar, "everything")
+    row, column = np.unravel_index(found.level.argmax(), found.level.shape)
+    assert (found.y[row], column) == (pytest.approx(20.0, abs=1.0), 10)
+    assert found.level.max() == pytest.approx(30.0, abs=0.1)  # dBm, of a wave of 1 W
+
+
 def test_a_ghost_over_a_plane_seems_to_be_at_the_mirror_image():
     """Image method: an echo that goes over a wall both ways comes from behind it, as far as the object stands before it."""
     scene = ep.Scene()

@@ -48,13 +48,14 @@ def require_signals(session) -> None:
 
 
 def range_elevation_map(spectrum, radar, name: str, progress=None) -> SideMap:
-    """The strongest velocity at each range and elevation, at azimuth 0. Raises ValueError where the antennas tell none apart."""
+    """The strongest velocity at each range and elevation, at the azimuth to which the antennas look. Raises ValueError where they
+    tell no elevations apart."""
     array = ep.virtual_array(radar)
     if not array.tells_elevations:
         raise ValueError("the antennas of this radar tell no elevations apart")
     elevation = np.asarray(array.default_angles()[1])
     elevation = elevation[::-(-len(elevation) // MOST_BEAMS)]
-    beams = ep.beamform(spectrum, radar, 0.0, elevation, progress=progress)
+    beams = ep.beamform(spectrum, radar, array.boresight, elevation, progress=progress)
     power = np.asarray(beams.power)[:, 0].max(axis=1)
     return SideMap(f"range-elevation, {name}", _level(power), np.asarray(spectrum.range), np.degrees(elevation))
 

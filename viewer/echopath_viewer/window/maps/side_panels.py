@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+import echopath as ep
 from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
@@ -172,7 +173,7 @@ class _AnglePanel(SidePanel):
         return box, cell
 
     def pick(self, x_index: int, y_index: int) -> None:
-        angles = [0.0, 0.0]
+        angles = [ep.virtual_array(self.session.radar).boresight, 0.0]
         angles[self.axis] = float(np.radians(self.map.y[y_index]))
         self.session.select_beam(x_index, *angles)
 
@@ -194,7 +195,7 @@ class AzimuthPanel(_AnglePanel):
 
 
 class ElevationPanel(_AnglePanel):
-    """Range-elevation map of the part on display, straight ahead."""
+    """Range-elevation map of the part on display, where the antennas look."""
 
     y_label, axis = ELEVATION_LABEL, 1
 

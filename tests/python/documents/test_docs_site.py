@@ -11,6 +11,7 @@ from pathlib import Path
 
 import matplotlib
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -27,8 +28,8 @@ NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
 TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories",
                                          "ego_motion", "live_scene")),
          *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr")),
-         *(f"results/{name}" for name in ("angle_map", "spectrogram", "arms_only", "rcs_over_angle", "polarimetry", "label_masks",
-                                          "detections", "truth_and_tracks")),
+         *(f"results/{name}" for name in ("angle_map", "spectrogram", "breath_and_heartbeat", "arms_only", "rcs_over_angle",
+                                          "polarimetry", "label_masks", "detections", "truth_and_tracks")),
          *(f"runs/{name}" for name in ("frames_in_time", "several_processes", "dataset")))
 LARGEST_FILE = 200_000  # bytes
 
@@ -111,6 +112,16 @@ def test_the_gallery_has_its_pages():
         title, underline = ast.get_docstring(ast.parse(text)).splitlines()[:2]
         assert underline == "=" * len(title), script
         assert 15 <= len([line for line in text.splitlines() if line.strip()]) <= 65, script
+
+
+def test_the_page_on_breathing_finds_the_way_of_the_chest():
+    """Chirps are 50 ms apart, the first of them with its middle at half of its 51.2 us."""
+    names = {"np": np, "ep": ep}
+    exec(compile(code_of(DOCS / "how_do_i" / "results" / "breath_and_heartbeat.md"), "a_page", "exec"), names)
+    time = 0.05 * np.arange(400) + 25.6e-6
+    chest = 4e-3 * np.sin(2.0 * np.pi * 0.25 * time) + 0.2e-3 * np.sin(2.0 * np.pi * 1.2 * time)
+    assert np.std(names["way"] - chest) < 0.15e-3
+    assert names["ranges"][names["cell"]] == pytest.approx(1.88, abs=0.05)  # 12 cm before the middle of the body
 
 
 def with_little_work(text: str) -> str:

@@ -16,7 +16,8 @@ ClutterMethod = Literal["mean", "mti"]
 def remove_clutter(cube: ArrayLike, *, method: ClutterMethod = "mean", order: int = 1) -> NDArray[np.complex128]:
     """A cube without the echoes of what stands still.
 
-    cube: [tx, rx, chirp, sample] in sqrt(W), of each transmitter alone
+    cube: [tx, rx, chirp, sample] in sqrt(W), of each transmitter alone, with 2 chirps or more: of frames of a chirp each those of
+        several frames, joined along that axis
     method: "mean": the mean over the chirps of each channel is taken away, which leaves every other Doppler cell of a map
         without a window as it is; "mti": each chirp less the one before it, `order` times over (a canceller of order + 1
         pulses): a velocity v keeps |2 sin(2 pi v T / wavelength)|^(2 order) of its power, T from chirp to chirp
@@ -25,6 +26,8 @@ def remove_clutter(cube: ArrayLike, *, method: ClutterMethod = "mean", order: in
     TypeError or ValueError naming the argument.
     """
     cube = np.array(cube, np.complex128)
+    if cube.shape[2] < 2:
+        raise ValueError(f"cube: must hold 2 chirps or more, which alone tell what stands still, got {cube.shape[2]}")
     if method == "mean":
         return cube - cube.mean(axis=2, keepdims=True)
     if order >= cube.shape[2]:

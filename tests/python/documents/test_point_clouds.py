@@ -33,6 +33,13 @@ def test_a_canceller_needs_its_pulses():
         ep.remove_clutter(np.zeros((1, 1, 2, 4)), method="mti", order=2)
 
 
+@pytest.mark.parametrize("method", ["mean", "mti"])
+@pytest.mark.parametrize("num_chirps", [0, 1])
+def test_a_single_chirp_does_not_tell_what_stands_still(method, num_chirps):
+    with pytest.raises(ValueError, match=f"^cube: must hold 2 chirps or more.* got {num_chirps}$"):
+        ep.remove_clutter(np.ones((1, 1, num_chirps, 4)), method=method)
+
+
 def array_map(azimuths, seed=1):
     """Plane waves of independent phases in each cell, on 8 elements, with little noise."""
     radar = build_radar(receivers=[(0, n * HALF, 0) for n in range(8)], num_chirps=16, num_samples=32)

@@ -31,6 +31,6 @@ def checked_keywords(scene, radar, spectrum_settings: dict, keywords: dict) -> d
 
 def require_folds(radar, folds: int) -> None:
     """Raises ValueError where the turns of the transmitters do not tell so many velocities apart, as `estimate_angles` does."""
-    if 2 * folds >= max(2, radar.num_slots):
-        rule = f"less than half of the {radar.num_slots} slots in which transmitters take turns"
-        raise refused(ValueError, "folds", rule, folds)
+    turns = len(radar.transmitters) if radar.multiplexing == "tdm" else 1
+    if 2 * folds >= max(2, turns):
+        raise refused(ValueError, "folds", f"0, or less than half of the {turns} slots in which transmitters take turns", folds)

@@ -229,5 +229,5 @@ def test_a_fast_radar_finds_what_stands_where_it_is_by_the_turns_of_its_transmit
     echoes = np.sort(frame.spectrum.velocity[frame.detections.cells[:, 0]])
     np.testing.assert_allclose(np.sort(shown), echoes, atol=0.5 * (frame.spectrum.velocity[1] - frame.spectrum.velocity[0]))
     for call in (lambda: ep.detect_frame(frame, folds=2), lambda: ep.simulate(scene, radar, detections={"folds": 2})):
-        with pytest.raises(ValueError, match="^folds: must be less than half of the 3 slots in which .* take turns, got 2"):
+        with pytest.raises(ValueError, match="^folds: must be 0, or less than half of the 3 slots in which .*, got 2"):
             call()

@@ -258,6 +258,15 @@ def test_fast_targets_unfold_by_their_slots():
     assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] - 0.4) > 2 * DEGREE
 
 
+def test_codes_of_signs_tell_no_velocities_apart():
+    """All transmitters of "bpm" send in every slot: there is no phase between turns that could tell."""
+    radar = three_by_four().replace(multiplexing="bpm")
+    with pytest.raises(ValueError, match="^folds: must be at least 0 and less than half the number of slots in which"):
+        ep.estimate_angles(noise_map(radar), radar, cells=[[0, 0]], folds=1)
+    with pytest.raises(ValueError, match="^folds: must be 0, or less than half of the 1 slots in which"):
+        ep.simulate(ep.Scene(), radar, detections={"folds": 1})
+
+
 @pytest.mark.parametrize("steps", [dict(frequency_steps=(0.0, 3e6, 1e6)), dict(bandwidth_steps=(0.0, -2e6, 3e6)),
                                    dict(frequency_steps=(1e6, 0.0, 1e6), bandwidth_steps=(2e6, 0.0, 0.0))])
 def test_transmitters_that_send_on_carriers_of_their_own_see_the_same_direction(steps):

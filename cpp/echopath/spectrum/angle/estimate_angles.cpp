@@ -182,7 +182,7 @@ void EstimateOptions::validate(int num_slots) const {
 AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells,
                                const AngleGrid& angles, const EstimateOptions& options, Job* job) {
   angles.validate();
-  options.validate(radar.num_slots());
+  options.validate(radar.takes_turns() ? radar.num_slots() : 1);  // codes leave no phase between slots
   require(options.folds == 0 || !map.is_tdm_compensated, "folds", "needs a map that was not compensated before",
           options.folds);
   const BeamSource source(map, radar, options.beams);

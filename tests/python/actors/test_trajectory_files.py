@@ -268,6 +268,48 @@ def test_what_is_wrong_is_refused_by_file_and_line(tmp_path, name, text, words):
 DEGREES = 1.0 / 111320.0  # of a metre on a great circle
 
 
+def steps_of(rows, *, time="{:g}", speed='speed="10"'):
+    """Floating car data of one car that goes along x, [(time, x, or None where it is missing)]."""
+    car = '<vehicle id="a" x="{}" y="0" angle="90" type="passenger" ' + speed + "/>"
+    return "<fcd-export>" + "".join(f'<timestep time="{time.format(at)}">{"" if x is None else car.format(x)}</timestep>'
+                                    for at, x in rows) + "</fcd-export>"
+
+
+def test_who_is_missing_in_a_file_of_sumo_and_comes_back_elsewhere_is_another(tmp_path):
+    """Teleported by 480 m while it is missing for 8 s, and then out of what is written for as long at the same place."""
+    rows = [(at, 10 * at) for at in range(3)] + [(at, None) for at in range(3, 10)]
+    rows += [(at, 400 + 10 * at) for at in range(10, 13)] + [(at, None) for at in range(13, 20)] + [(20, 530), (21, 540)]
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(rows)))
+    assert {name: (one.begin, one.end) for name, one in found.items()} == {"a": (0, 2), "a_2": (10, 12), "a_3": (20, 21)}
+    middle = found["a"].position(1.0) - [10, 0, 0]
+    for name, at, x in (("a", 2.0, 20), ("a_2", 11.0, 510), ("a_3", 20.5, 535)):
+        np.testing.assert_allclose(found[name].position(at) - middle, [x, 0, 0], rtol=0, atol=1e-9)
+    scene = ep.Scene()
+    ep.add_traffic(scene, found)
+    assert scene["a_2"].lifetime == (10, 12)
+
+
+@pytest.mark.parametrize("speed", ['speed="10"', ""])
+def test_who_goes_on_as_before_behind_steps_that_a_file_of_sumo_lacks_is_the_same(tmp_path, speed):
+    rows = [(at, None if at in (3, 4) else 10 * at) for at in range(8)]
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(rows, speed=speed)))
+    assert list(found) == ["a"] and found["a"].speed(3.5) == pytest.approx(10.0)
+    seldom = [(at, 10 * at if at % 3 == 0 else None) for at in range(10)]
+    assert list(ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(seldom, speed='speed="2"')))) == ["a"]
+
+
+def test_times_of_sumo_may_be_those_of_a_clock(tmp_path):
+    rows = [("23:59:59.50", 0), ("1:00:00:00.50", 10), ("1:00:00:01.50", 20)]
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(rows, time="{}")))["a"]
+    assert (found.begin, found.end) == (86399.5, 86401.5)
+
+
+def test_positions_that_jump_are_warned_of(tmp_path):
+    table = "time,id,x,y\n0,a,0,0\n0.1,a,1,0\n0.2,a,60,0\n0.3,a,61,0\n"
+    with pytest.warns(RuntimeWarning, match="'a' goes 59 m from 0.1 to 0.2 s, as where a name is given to something else"):
+        ep.read_trajectories(write(tmp_path, "jump.csv", table))
+
+
 def in_degrees(metres):
     """Data as SUMO writes them with --fcd-output.geo, at the equator and the meridian of Greenwich."""
     return re.sub(r'([xy])="([\d.]+)"', lambda found: f'{found[1]}="{8.5 + float(found[2]) * DEGREES:.7f}"', metres)

@@ -1,4 +1,4 @@
-"""Speeds and yaws of a file that its positions contradict, as those in other units do."""
+"""Speeds and yaws of a file that its positions contradict, as those in other units do, and positions that jump."""
 from __future__ import annotations
 
 import math
@@ -10,6 +10,7 @@ LEAST_WAY = 5.0        # m, below which nothing is said
 STEADY = 0.5           # of two speeds in a row the smaller over the larger, from which on their mean tells the way between
 MOST_RATIO = 1.5       # of a way by speeds and by positions: corners and rounding make less, km/h 3.6
 LEAST_STEP = 0.2       # m, of positions that tell a direction
+FASTEST = 150.0        # m/s from one position to the next, above which nothing goes on roads and rails
 BETTER = 0.05          # mean cosine by which yaws in degrees lie nearer to the way than they do in rad
 
 
@@ -19,7 +20,8 @@ def doubts_of(times: NDArray[np.float64], places: NDArray[np.float64], yaws: NDA
 
     times: [P] s; places: [P, 3] m; yaws: [P] rad or empty; speeds: [P] m/s or empty
     """
-    said = [_of_speeds(times, places, speeds) if len(speeds) else "", _of_yaws(places, yaws) if len(yaws) else ""]
+    said = [_of_speeds(times, places, speeds) if len(speeds) else "", _of_yaws(places, yaws) if len(yaws) else "",
+            _of_jumps(times, places)]
     return [words for words in said if words]
 
 
@@ -32,6 +34,16 @@ def _of_speeds(times: NDArray[np.float64], places: NDArray[np.float64], speeds: 
         return ""
     return (f"goes {by_speed:.3g} m by its speeds and {by_place:.3g} m by its positions; a unit in brackets, such as "
             "'speed [km/h]', says in which a column is")
+
+
+def _of_jumps(times: NDArray[np.float64], places: NDArray[np.float64]) -> str:
+    ways = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    beyond = ways - FASTEST * np.diff(times)
+    jump = int(np.argmax(beyond))
+    if beyond[jump] <= LEAST_WAY:
+        return ""
+    return (f"goes {ways[jump]:.3g} m from {times[jump]:g} to {times[jump + 1]:g} s, as where a name is given to something "
+            "else, or a unit is another")
 
 
 def _of_yaws(places: NDArray[np.float64], yaws: NDArray[np.float64]) -> str:

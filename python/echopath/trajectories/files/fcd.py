@@ -11,10 +11,12 @@ from typing import NoReturn
 import numpy as np
 
 from ... import _core
+from .absences import parted
 from .markup import attribute, parse
 from .samples import MOST_SAMPLES, Samples, number, refuse
 
 _GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
+_CLOCK = re.compile(r"(?:(\d{1,5}):)?(\d\d?):(\d\d):(\d\d(?:\.\d+)?)")
 _IN_DEGREES = "places are in degrees (--fcd-output.geo), must be in m: write them without that option"
 LEAST_WAY, SMALLEST_SHARE = 10.0, 0.01  # m by speed, from which on places that go less than that share of it are no metres
 MOST_METRES, MOST_DEGREES = 1e7, 1e6    # of places and angles
@@ -24,13 +26,14 @@ def read_fcd(path: Path) -> dict[str, Samples]:
     """{name: Samples} of a file of SUMO's --fcd-output. Raises FileError.
 
     x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
-    Persons are left out while they ride in a vehicle; one who gets off is another from there on, "name_2".
+    Persons are left out while they ride in a vehicle; one who gets off is another from there on, "name_2", and so is who is
+    missing in some steps and comes back where the speeds before and behind do not lead.
     Longitudes and latitudes are refused: by the options that the file names, or where all go much less far than their speeds say.
     """
     reader = _Fcd(path)
     parse(path, reader.begin, comment=reader.comment)
     reader.refuse_degrees()
-    return reader.tracks
+    return reader.ways()
 
 
 class _Fcd:
@@ -40,6 +43,7 @@ class _Fcd:
         self.tracks: dict[str, Samples] = {}
         self._path, self._root, self._time, self._count = path, "", math.nan, 0
         self._on_foot = _OnFoot()
+        self._steps = array("d")  # s
         self._told_speeds: dict[str, array] = {}  # m/s, nan where a row has none: what follows a way is as fast as its places
 
     def begin(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
@@ -50,7 +54,12 @@ class _Fcd:
         if tag in ("vehicle", "person"):
             self._row(tag, attributes, line)
         elif tag == "timestep":
-            self._time = number(self._path, line, "time", attribute(self._path, line, tag, attributes, "time"), 1e9)
+            self._time = _time(self._path, line, attribute(self._path, line, tag, attributes, "time"))
+            self._steps.append(self._time)
+
+    def ways(self) -> dict[str, Samples]:
+        """{name: Samples}, of everybody from coming to leaving."""
+        return parted(self.tracks, self._told_speeds, np.unique(self._steps))
 
     def comment(self, words: str, line: int) -> None:
         if _GEO_OPTION.search(words):
@@ -116,6 +125,15 @@ class _Fcd:
             by_speed += float(np.sum((speeds * np.abs(np.diff(samples.times)))[is_told]))
         if by_speed >= LEAST_WAY and by_place < SMALLEST_SHARE * by_speed:
             raise _core.FileError(f"{self._path}: {_IN_DEGREES} (they go {by_place:.3g}, by their speeds {by_speed:.3g} m)")
+
+
+def _time(path: Path, line: int, text: str) -> float:
+    """A time in s, also as --human-readable-time has it, "12:00:00.00" with days before that from the second on."""
+    clock = _CLOCK.fullmatch(text.strip())
+    if clock is None:
+        return number(path, line, "time", text, 1e9)
+    days, hours, minutes, seconds = (float(part or 0.0) for part in clock.groups())
+    return ((24.0 * days + hours) * 60.0 + minutes) * 60.0 + seconds
 
 
 class _OnFoot:

@@ -24,7 +24,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
         (degrees), and, where it has them, z or ele (m), id or name, type, yaw (rad, from x to y) or yaw_deg, speed (m/s). Names
         may be written in other usual ways ("Timestamp [s]", "track_id"), with a usual unit in brackets ("t [ms]", "x [cm]",
         "speed (km/h)"); other columns are left out. Commas, semicolons or tabs
-    .xml, .xml.gz: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions
+    .xml, .xml.gz: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions.
+        Who is missing in some steps and comes back where no speed leads, as behind a teleport, is another from there, "name_2"
     .gpx: tracks of a GPS receiver
 
     origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon
@@ -43,7 +44,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
     with a single position, which are left out, of speeds and yaws that the positions contradict, as those in km/h and in degrees
-    do, of globs of types of which the file has none, and of a span in which nobody is on the way.
+    do, of positions that jump by more than 150 m/s, of globs of types of which the file has none, and of a span in which nobody
+    is on the way.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
     file = TrackFile(path, origin=origin, smoothing=smoothing, vehicle_length=vehicle_length, goes_on=goes_on, outside=outside,

@@ -69,7 +69,10 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
             axes.tick_params(labelbottom=True)  # the lowest of its column, perhaps above an empty place
         for axes in panels[len(maps):]:
             axes.remove()
-        figure.supxlabel(LEFT_LABEL, fontsize=9)
+        if len(maps) == 1:  # labels of axes have room of their own above the legend of a narrow sector
+            panels[0].set_xlabel(LEFT_LABEL, fontsize=9)
+        else:
+            figure.supxlabel(LEFT_LABEL, fontsize=9)
         figure.supylabel(AHEAD_LABEL, fontsize=9)
         set_title(figure, title, 11)
         colour_bar(figure, image, panels[:len(maps)])

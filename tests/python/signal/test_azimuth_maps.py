@@ -103,3 +103,14 @@ def test_the_picture_of_a_radar_that_looks_back_holds_all_that_it_sees():
     across, ahead = 8.0 * np.sin(-150 * DEGREE), 8.0 * np.cos(-150 * DEGREE)
     assert right < across < left and back < ahead < front
     pyplot.close(figure)
+
+
+def test_the_legend_of_a_narrow_sector_leaves_its_label_readable():
+    from echopath import plots
+    radar = three_by_four()
+    seen = ep.range_azimuth(spectrum_of(scene_of_spheres(at(8.0, 60 * DEGREE, 0.0)), radar, num_rays=500), radar,
+                            np.linspace(30 * DEGREE, 180 * DEGREE, 31))
+    figure = plots.plot_range_azimuth(seen, places={"ball": (8.0, 60 * DEGREE)})
+    figure.draw_without_rendering()
+    label, (legend,) = figure.axes[0].xaxis.label, figure.legends
+    assert label.get_text() and not label.get_window_extent().overlaps(legend.get_window_extent())

@@ -4,6 +4,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/text/streamed.h"
+#include "echopath/validity/frame/check_times.h"
 #include "echopath/validity/validity.h"
 
 namespace echopath {
@@ -68,6 +69,12 @@ std::string missing_warning(const ObjectValidity& object, const Validity& report
 }
 
 std::string fast_warning(const ObjectValidity& object, const Validity& report) {
+  if (kChecksPerTurn * object.turn / kTwoPi < 0.5 * kMaxCheckTimes) {
+    return "'" + object.name + "' goes from key to key so often within the frame that " +
+           std::to_string(report.times.size()) +
+           " times of the check may miss what becomes of it. Trace shorter frames, or let it move smoothly through its "
+           "keys.";
+  }
   return "'" + object.name + "' turns up to " + with_digits(3, object.turn / kTwoPi) +
          " times within the frame: " + std::to_string(report.times.size()) +
          " times of the check may miss what becomes of it. Trace shorter frames.";

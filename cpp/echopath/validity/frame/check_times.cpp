@@ -10,7 +10,6 @@
 namespace echopath {
 namespace {
 
-constexpr double kChecksPerTurn = 8.0;
 constexpr double kSmallTurn = 0.25 * kPi;  // rad: what turns no farther is followed by the base
 constexpr double kChecksPerBreakpoint = 2.0;
 

@@ -9,6 +9,7 @@ namespace echopath {
 
 inline constexpr int kBaseCheckTimes = 5;   // both ends and three places between, for whatever moves
 inline constexpr int kMaxCheckTimes = 256;  // a warning is due for what turns too fast for so many
+inline constexpr double kChecksPerTurn = 8.0;
 
 // Holds the times of a check. Everything is checked at the first of them, and meshes that need them at the others: prefixes
 // of a sequence by the golden ratio are spread evenly, and lie at no fraction of a frame or of a turn.
@@ -17,7 +18,7 @@ struct CheckTimes {
   int num_base = 0;                // at which everything is checked
   std::vector<int> of_mesh;        // [meshes] how many of them a mesh needs
   std::vector<double> turn;        // [meshes] rad, how far it turns within the frame at most (Motion::turn_rate)
-  std::vector<uint32_t> too_fast;  // IDs of meshes that would need more than kMaxCheckTimes
+  std::vector<uint32_t> too_fast;  // IDs of meshes that would need more than kMaxCheckTimes, by turns or breakpoints
 };
 
 // Returns the beginning of the frame that starts at `start` (s), and where something moves its end and times between: eight

@@ -112,8 +112,7 @@ std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, con
   const double at = time.value_or(radar.middle_of_frame(0.0));
   return run_job("visibility", progress, [&](Job& job) {
     radar.validate();
-    const Vec3 antenna = mean_position(radar.transmitters, radar.world_from_radar(at));
-    const SurfaceMap surfaces = objects ? surfaces_of(scene, *objects) : map_surfaces(scene, at, antenna);
+    const SurfaceMap surfaces = objects ? surfaces_of(scene, *objects) : map_surfaces(scene, at, radar);
     return visibility(scene, radar, surfaces, {at, num_directions}, &job);
   });
 }
@@ -186,8 +185,7 @@ void bind_visibility(py::module_& m) {
       "meshes_of_usual_objects",
       [](const Scene& scene, const Radar& radar, double time) {
         radar.validate();
-        const Vec3 antenna = mean_position(radar.transmitters, radar.world_from_radar(time));
-        return meshes_by_name(map_surfaces(scene, time, antenna));
+        return meshes_by_name(map_surfaces(scene, time, radar));
       },
       py::arg("scene"), py::arg("radar"), py::arg("time"),
       "{name: IDs of its meshes} of the objects that find_families has where none are named, at a time in s.");

@@ -8,6 +8,7 @@ import numpy as np
 from .rates import radar_rate
 
 CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
+ALL_AROUND = 1e-6    # length of a mean of unit vectors that has no direction
 
 
 def centre_of(radar):
@@ -20,6 +21,13 @@ def middle_of_antennas(radar, time: float):
     """[3] m, in the world at a time in s: `centre_of`."""
     world_from_radar = radar.world_from_radar(time)
     return world_from_radar[:3, :3] @ centre_of(radar) + world_from_radar[:3, 3]
+
+
+def ahead_of(radar, time: float):
+    """[3] unit vector in the world at a time in s along the mean boresight of the transmitters, zero for all around."""
+    mean = np.mean([_turned(antenna.orientation, (1.0, 0.0, 0.0)) for antenna in radar.transmitters], axis=0)
+    length = np.linalg.norm(mean)
+    return radar.world_from_radar(time)[:3, :3] @ (mean / length if length > ALL_AROUND else np.zeros(3))
 
 
 def velocity_of_antennas(radar, time: float):
@@ -51,6 +59,11 @@ def mixes_polarisations(radar) -> bool:
 
 def polarization_of(antenna) -> np.ndarray:
     """[3] unit vector in the radar's frame."""
-    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
-    cross = np.cross(imaginary, antenna.polarization)
-    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))
+    return _turned(antenna.orientation, antenna.polarization)
+
+
+def _turned(orientation, vector) -> np.ndarray:
+    """A vector [3] turned by a unit quaternion (w, x, y, z)."""
+    real, imaginary = orientation[0], orientation[1:]
+    cross = np.cross(imaginary, vector)
+    return vector + 2.0 * (real * cross + np.cross(imaginary, cross))

@@ -103,7 +103,8 @@ def families(paths: _core.Paths, objects: Objects = None) -> Families:
     paths: of `trace`
     objects: {name: glob or list of globs}, or a list of globs, which are then the names; None: the children of the scene's
         root that are neither flagged mirrors nor around the antenna at mid-frame, in a `Sequence` at that of its first frame.
-        Around it is what it stands in or on, within 0.5 m of the box along the own axes, and what is flat, as a wall or a
+        Around it is what it stands in or on, within 0.5 m of the box along the own axes, unless all of it is ahead of the
+        transmitters' boresight by more than 5 cm, as a person close by is; and what is flat, as a wall or a
         road, and so wide that its bounding sphere holds the antenna; `find_objects` names what stands in a town that is
         one child
     Returns Families: a family index [P], and of each family object, ghost type, order, surfaces and class code. Raises

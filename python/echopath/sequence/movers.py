@@ -6,13 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.antennas import middle_of_antennas
+from ..base.antennas import ahead_of, middle_of_antennas
 from ..base.mesh_names import object_of
 from ..base.rates import step_within
 from ..signals.measures import STATIC_SPEED
 from ..truth.boxes import boxes_at
 
-BESIDE = 0.5  # m, from the box of an object: an antenna that is as near stands in or on it
+BESIDE = 0.5  # m, from the box of an object: an antenna that is as near stands in or on it,
+AHEAD = 0.05  # m, but for one that begins farther before it, as a hand or a person does
 
 
 class _Instant(NamedTuple):
@@ -81,6 +82,9 @@ def _carries(scene, radar, name: str, parts: list[_Mover], now: _Instant) -> boo
     """Whether the antennas are in or on an object of these parts, by its box along its own axes."""
     low, high = np.min([part.low for part in parts], axis=0), np.max([part.high for part in parts], axis=0)
     if np.any(now.antenna < low - BESIDE) or np.any(now.antenna > high + BESIDE):
+        return False
+    ahead = ahead_of(radar, now.time)
+    if np.minimum(ahead * (low - now.antenna), ahead * (high - now.antenna)).sum() > AHEAD:
         return False
     box = boxes_at(scene, [[name]], now.time, radar.frame_duration)
     own = (now.antenna - box.centre[0]) @ box.rotation[0]

@@ -115,6 +115,20 @@ TEST(SurfaceMap, LongObjectsBesideTheAntennaStayObjects) {
   EXPECT_EQ(map.num_objects, 2u);
 }
 
+TEST(SurfaceMap, WhatStandsCloseBeforeTheAntennaIsAnObject) {
+  Scene scene;
+  add_box(scene, "person", {0.4, -0.25, -1.1}, {0.7, 0.25, 0.6});  // its sphere of 0.9 m holds the antenna
+  add_box(scene, "pole", {-0.3, -0.1, -1.5}, {-0.1, 0.1, 0.4});    // carries it
+  add_box(scene, "tunnel", {0, -6, -1}, {60, 6, 5});               // begins at the antenna
+  const SurfaceMap map = map_surfaces(scene, 0.0, Vec3::Zero(), Vec3::UnitX());
+  EXPECT_EQ(map.names, (Names{"person", "pole", "tunnel"}));
+  EXPECT_EQ(map.num_objects, 1u);
+  const SurfaceMap turned = map_surfaces(scene, 0.0, Vec3::Zero(), -Vec3::UnitX());  // the pole is ahead now
+  EXPECT_EQ(turned.names.front(), "pole");
+  EXPECT_EQ(turned.num_objects, 1u);
+  EXPECT_EQ(map_surfaces(scene, 0.0, Vec3::Zero()).num_objects, 0u);
+}
+
 TEST(SurfaceMap, ARecordTellsObjectsAtTheTimeThatItsFrameNames) {
   auto scene = std::make_shared<Scene>();
   add_box(*scene, "wall", {6, 4, -1}, {16, 4.2, 2});  // its sphere of 5.2 m holds the antenna from x = 7.6 to 14.3 m

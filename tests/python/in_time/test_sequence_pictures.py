@@ -96,6 +96,16 @@ def test_movers_are_what_moves_in_the_world_but_the_car_of_the_radar():
     assert 11.5 < near <= far < 12.5 and slow == pytest.approx(-24.0, abs=0.1) and fast == pytest.approx(-24.0, abs=0.1)
 
 
+@pytest.mark.parametrize("distance", [0.2, 0.45, 0.7])
+def test_a_hand_close_before_the_radar_is_a_mover(distance):
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.04), name="hand", material="skin", position=(distance, 0.0, 0.0),
+              motion=ep.LinearMotion((0.5, 0.0, 0.0)))
+    (near, _, _, fastest), = movers_at(scene, make_radar(), 0.0)
+    assert near == pytest.approx(distance - 0.04, abs=0.02) and fastest == pytest.approx(0.5, abs=0.02)
+    assert len(movers_at(scene, make_radar(yaw=np.pi), 0.0)) == (distance > 0.6)
+
+
 def test_leakage_sets_no_scale_of_frames_in_time(tmp_path):
     receiver = ep.Receiver(leakage_db=[[0.0]], leakage_delay=0.3e-9)  # 110 dB above the plate
     clean, leaking = (ep.Sequence(make_scene(), make_radar(**some), frames=2, interval=INTERVAL, num_rays=500, guard=False)

@@ -33,6 +33,20 @@ def test_a_frame_of_parts_is_labelled_by_the_same_selections(plates_and_wall):
     assert list(labelled) == list(frame.parts) and labelled["parts"].part_names == list(frame.parts["parts"])
 
 
+@pytest.mark.parametrize("yaw", [0.0, 2.0])
+def test_a_person_close_before_the_radar_is_an_object(yaw):
+    """A sensor at a bed or in a car: the sphere about a body of 1.7 m holds an antenna 0.3 m before its chest."""
+    scene, ahead = ep.Scene(), np.array([np.cos(yaw), np.sin(yaw), 0.0])
+    scene.add(ep.actors.standing_person(height=1.7), name="person", position=0.45 * ahead, yaw=yaw + np.pi)
+    scene.add(ep.actors.box((0.1, 0.1, 1.3)), name="stand", material="wood", position=(0.0, 0.0, 0.65) - 0.15 * ahead, yaw=yaw)
+    radar = make_radar(height=0.0, bandwidth=3e9).replace(position=(0.0, 0.0, 1.15), yaw=yaw)
+    frame = ep.simulate(scene, radar, num_rays=1000, labels=True, detections=True, truth=True, guard=False)
+    assert [one.name for one in frame.labels["parts"].objects] == ["person"] == frame.truth.name.tolist()
+    assert "person" in frame.detections.object and frame.truth.range[0] < 0.6
+    turned = ep.annotate(ep.trace(scene, radar.replace(yaw=yaw + np.pi), num_rays=1000))  # what is behind may carry the radar
+    assert [one.name for one in turned.objects] == ["stand"]
+
+
 def test_words_name_objects_and_ghosts(labels):
     text = str(labels)
     assert "object a: seen" in text and "ghost  a: type" in text and "part   wall:" in text

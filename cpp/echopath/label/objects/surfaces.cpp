@@ -7,6 +7,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/principal_box.h"
 #include "echopath/base/text/nearest_names.h"
+#include "echopath/posed/posed_antenna.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/strata/scene_objects.h"
 
@@ -16,7 +17,8 @@ namespace {
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 constexpr double kSureOutside = 1.001;
 constexpr double kFlat = 0.1;    // of its middle side: the smallest side of a wall or a road, at most
-constexpr double kBeside = 0.5;  // m; a body as near to the antenna is what the radar is mounted on
+constexpr double kBeside = 0.5;  // m; a body as near to the antenna is what the radar is mounted on,
+constexpr double kAhead = 0.05;  // m; but for one that begins farther before it
 
 // Fills in the surfaces of meshes that belong to no object.
 class SurfaceFinder {
@@ -105,41 +107,51 @@ Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint3
   return world;
 }
 
-// Returns whether what has these vertices is flat, or holds a point in the box along its own axes or close to it.
-bool is_flat_or_holds(const std::vector<Vec3>& vertices, const Vec3& point) {
+// Holds from where a radar sees a scene: the place of its antenna (world), and where it looks, zero for all around.
+struct Standpoint {
+  Vec3 antenna, ahead;
+};
+
+bool is_all_ahead(const std::vector<Vec3>& vertices, const Standpoint& from) {
+  return std::ranges::all_of(vertices, [&](const Vec3& vertex) { return (vertex - from.antenna).dot(from.ahead) > kAhead; });
+}
+
+// Returns whether what has these vertices is flat, or holds the antenna in the box along its own axes or close to it.
+bool is_flat_or_holds(const std::vector<Vec3>& vertices, const Standpoint& from) {
   const PrincipalBox own = principal_box(vertices);
   Vec3 sides = own.box.sizes();
   std::ranges::sort(sides);
-  return sides[0] <= kFlat * sides[1] || own.box.exteriorDistance(own.coordinates(point)) <= kBeside;
+  if (sides[0] <= kFlat * sides[1]) return true;
+  return own.box.exteriorDistance(own.coordinates(from.antenna)) <= kBeside && !is_all_ahead(vertices, from);
 }
 
-// Returns whether an object surrounds a point (world): it is all around, as a room or a vehicle is, or a wide surface beside
-// it, as a wall or a road is. Its bounding sphere holds the point then. The radius of that sphere is no more than half a
+// Returns whether an object surrounds the antenna: it is all around, as a room or a vehicle is, or a wide surface beside
+// it, as a wall or a road is. Its bounding sphere holds the antenna then. The radius of that sphere is no more than half a
 // diagonal of any box that holds the object, and its centre lies in that box.
-bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& object, const Vec3& point) {
+bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& object, const Standpoint& from) {
   Eigen::AlignedBox3d box;
   for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(scene, pose, mesh));
-  if (box.exteriorDistance(point) > kSureOutside * 0.5 * box.diagonal().norm()) return false;
+  if (box.exteriorDistance(from.antenna) > kSureOutside * 0.5 * box.diagonal().norm()) return false;
   std::vector<Vec3> vertices;
   for (const uint32_t mesh : object.mesh_ids) {
     const std::vector<Vec3> more = pose.world_vertices(mesh);
     vertices.insert(vertices.end(), more.begin(), more.end());
   }
   const VerticesOf all = [&](uint32_t) -> const std::vector<Vec3>& { return vertices; };
-  return bounding_sphere(all, {0}).holds(point) && is_flat_or_holds(vertices, point);
+  return bounding_sphere(all, {0}).holds(from.antenna) && is_flat_or_holds(vertices, from);
 }
 
-// Returns the nodes of the objects that surround a point (world) at `time` (s). What is not there then surrounds nothing.
-std::set<int> nodes_around(const Scene& scene, double time, const Vec3& point) {
+// Returns the nodes of the objects that surround the antenna at `time` (s). What is not there then surrounds nothing.
+std::set<int> nodes_around(const Scene& scene, double time, const Standpoint& from) {
   if (scene.has_lifetimes()) {
     Scene then = scene;
     then.hide_absent(time, time);
-    if (then.meshes().size() < scene.meshes().size()) return nodes_around(then, time, point);
+    if (then.meshes().size() < scene.meshes().size()) return nodes_around(then, time, from);
   }
   const PosedScene pose(scene, time);
   std::set<int> around;
   for (const SceneObject& object : objects_of(scene)) {
-    if (surrounds(scene, pose, object, point)) around.insert(object.node);
+    if (surrounds(scene, pose, object, from)) around.insert(object.node);
   }
   return around;
 }
@@ -174,10 +186,10 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
   return map;
 }
 
-SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
+SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna, const Vec3& ahead) {
   SurfaceMap map;
   map.of_mesh.assign(scene.meshes().size(), kNone);
-  const std::set<int> around = nodes_around(scene, time, antenna);
+  const std::set<int> around = nodes_around(scene, time, {antenna, ahead});
   for (const SceneObject& object : objects_of(scene)) {
     if (around.contains(object.node)) continue;
     for (const uint32_t mesh : object.mesh_ids) map.of_mesh[mesh] = map.num_objects;
@@ -188,9 +200,14 @@ SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
   return map;
 }
 
+SurfaceMap map_surfaces(const Scene& scene, double time, const Radar& radar) {
+  const Transform world_from_radar = radar.world_from_radar(time);
+  return map_surfaces(scene, time, mean_position(radar.transmitters, world_from_radar),
+                      mean_boresight(radar.transmitters, world_from_radar));
+}
+
 SurfaceMap map_surfaces(const Paths& paths) {
-  const double time = paths.frame.objects_time.value_or(paths.frame.trace_time);
-  return map_surfaces(*paths.scene, time, mean_position(paths.radar.transmitters, paths.radar.world_from_radar(time)));
+  return map_surfaces(*paths.scene, paths.frame.objects_time.value_or(paths.frame.trace_time), paths.radar);
 }
 
 }  // namespace echopath

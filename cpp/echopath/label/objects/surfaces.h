@@ -36,10 +36,15 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
 // `antenna` (world) at `time` (s); in the order of the scene. An object whose bounding sphere holds the antenna surrounds it
 // where the box along its principal axes, half a metre wider, holds the antenna too, as those of a tunnel and of the radar's
 // own vehicle do, or where it is flat (the smallest side of that box is at most a tenth of the middle one), as a wall or a
-// road. What is not there at `time` (Node::lifetime) surrounds nothing.
-SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna);
+// road. What lies wholly ahead of the antenna, along the unit vector `ahead` (world; zero: it looks all around), is no
+// vehicle of the radar but what it looks at, as a person half a metre away, unless it is flat. What is not there at `time`
+// (Node::lifetime) surrounds nothing.
+SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna, const Vec3& ahead = Vec3::Zero());
 
-// Does the same for a record, as its frame says: at objects_time, for the mean position of the transmitters then.
+// Does the same for a radar, by the mean position and boresight of its transmitters at `time` (s).
+SurfaceMap map_surfaces(const Scene& scene, double time, const Radar& radar);
+
+// Does the same for a record, as its frame says: at objects_time.
 SurfaceMap map_surfaces(const Paths& paths);
 
 }  // namespace echopath

@@ -8,13 +8,6 @@ Vec3 in_world(const Antenna& antenna, const Vec3& own, const Transform& world_fr
   return (world_from_radar.linear() * (antenna.orientation * own)).normalized();
 }
 
-Vec3 mean_boresight(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
-  constexpr double kAllAround = 1e-6;  // of an antenna, the length of a mean without a direction
-  Vec3 sum = Vec3::Zero();
-  for (const Antenna& antenna : antennas) sum += in_world(antenna, Vec3::UnitX(), world_from_radar);
-  return sum.norm() > kAllAround * static_cast<double>(antennas.size()) ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
-}
-
 std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar,
                                          const Vec3& origin) {
   std::vector<PosedAntenna> out;

@@ -22,9 +22,6 @@ struct PosedAntenna {
 // Returns a vector in an antenna's own axes as a unit vector in those of the world.
 Vec3 in_world(const Antenna& antenna, const Vec3& own, const Transform& world_from_radar);
 
-// Returns the unit vector (world) along the mean of the boresights, or zero where they look all around.
-Vec3 mean_boresight(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
-
 // Poses antennas, which must outlive the result; positions count from `origin` (m, world). Raises invalid_argument for an
 // antenna out of the range of coordinates (base/range_of_coordinates.h).
 std::vector<PosedAntenna> posed_antennas(const std::vector<Antenna>& antennas, const Transform& world_from_radar,

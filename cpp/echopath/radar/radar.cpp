@@ -187,6 +187,12 @@ Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_
   return mean;
 }
 
+Vec3 sum_of_boresights(const std::vector<Antenna>& antennas) {
+  Vec3 sum = Vec3::Zero();
+  for (const Antenna& antenna : antennas) sum += antenna.orientation * Vec3::UnitX();
+  return sum;
+}
+
 void Radar::validate() const {
   waveform.validate();
   validate_antennas(transmitters, "transmitters");

@@ -82,6 +82,9 @@ struct Antenna {
 // coordinates (base/range_of_coordinates.h).
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
 
+// Returns the sum of the unit vectors to which the antennas look, in the radar's frame: short where they look to all sides.
+Vec3 sum_of_boresights(const std::vector<Antenna>& antennas);
+
 // Says how transmitters share the chirps. With kTdm, one transmitter sends in each slot. With the others, all transmitters
 // send in all slots, each with a code over the slots; echoes and cubes, [tx, rx, chirp, sample], are then those of each
 // transmitter by itself, as a receiver has them that undoes the code. kBpm uses the signs of a Hadamard matrix over

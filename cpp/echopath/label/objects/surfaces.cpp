@@ -7,7 +7,6 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/principal_box.h"
 #include "echopath/base/text/nearest_names.h"
-#include "echopath/posed/posed_antenna.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/strata/scene_objects.h"
 
@@ -201,9 +200,11 @@ SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna, co
 }
 
 SurfaceMap map_surfaces(const Scene& scene, double time, const Radar& radar) {
+  constexpr double kAllAround = 1e-6;  // length of a sum of boresights without a direction
   const Transform world_from_radar = radar.world_from_radar(time);
-  return map_surfaces(scene, time, mean_position(radar.transmitters, world_from_radar),
-                      mean_boresight(radar.transmitters, world_from_radar));
+  const Vec3 sum = world_from_radar.linear() * sum_of_boresights(radar.transmitters);
+  const Vec3 ahead = sum.norm() > kAllAround ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
+  return map_surfaces(scene, time, mean_position(radar.transmitters, world_from_radar), ahead);
 }
 
 SurfaceMap map_surfaces(const Paths& paths) {

@@ -12,6 +12,13 @@ namespace {
 constexpr double kMinSpacing = 0.2;  // wavelengths
 constexpr double kLeastMean = 0.1;   // length of the mean of the antennas' boresights in the xy-plane
 
+// Returns the azimuth in rad of the mean boresight; 0 where the antennas look up, or to all sides.
+double boresight_azimuth(const Radar& radar) {
+  const Vec3 sum = sum_of_boresights(radar.transmitters) + sum_of_boresights(radar.receivers);
+  const auto num_antennas = static_cast<double>(radar.transmitters.size() + radar.receivers.size());
+  return std::hypot(sum.x(), sum.y()) < kLeastMean * num_antennas ? 0.0 : std::atan2(sum.y(), sum.x());
+}
+
 std::vector<Vec3> sums_of_positions(const Radar& radar) {
   std::vector<Vec3> positions;
   for (const Antenna& transmitter : radar.transmitters) {
@@ -115,15 +122,6 @@ VirtualArray virtual_array(const Radar& radar) {
   array.boresight = boresight_azimuth(radar);
   arrange_elements(array);
   return array;
-}
-
-double boresight_azimuth(const Radar& radar) {
-  Vec3 sum = Vec3::Zero();
-  for (const auto* antennas : {&radar.transmitters, &radar.receivers}) {
-    for (const Antenna& antenna : *antennas) sum += antenna.orientation * Vec3::UnitX();
-  }
-  const Vec3 mean = sum / static_cast<double>(radar.transmitters.size() + radar.receivers.size());
-  return std::hypot(mean.x(), mean.y()) < kLeastMean ? 0.0 : std::atan2(mean.y(), mean.x());
 }
 
 void arrange_elements(VirtualArray& array) {

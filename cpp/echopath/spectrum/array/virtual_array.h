@@ -52,9 +52,6 @@ struct VirtualArray {
 // times as many points as elements along each axis.
 VirtualArray virtual_array(const Radar& radar);
 
-// Returns the azimuth in rad of the mean boresight of the antennas; 0 where they look up, or to all sides.
-double boresight_azimuth(const Radar& radar);
-
 // Makes the elements and the grid of an array from its positions and its wavelength.
 void arrange_elements(VirtualArray& array);
 

@@ -121,11 +121,18 @@ RangeDoppler compensated(const RangeDoppler& map, const Radar& radar, int fold) 
   return run_job("compensate_tdm", py::none(), [&](Job& job) { return compensate_tdm(map, radar, fold, &job); });
 }
 
+py::object slot_turns(const Radar& radar, const py::object& velocity) {
+  const auto turns = to_numpy(slot_phasors(radar, as_vector<double>(velocity, "velocity")));
+  return turns.attr("reshape")(radar.transmitters.size(), -1);
+}
+
 }  // namespace
 
 void bind_angle(py::module_& m) {
   m.def("compensate_tdm", &compensated, py::arg("spectrum"), py::arg("radar"), py::arg("fold") = 0,
         "What ep.compensate_tdm calls.");
+  m.def("slot_phasors", &slot_turns, py::arg("radar"), py::arg("velocity"),
+        "[tx, V], which take out the phase that velocities [V] in m/s add in the slots of the transmitters.");
   m.def("angle_fft", &angle_spectrum, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("window") = "hann",
         py::arg("zero_pad") = 4, py::arg("overlaps") = "average", py::arg("compensate") = true,
         py::arg("progress") = py::none(), "What ep.angle_fft calls.");

@@ -40,13 +40,12 @@ def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, 
     wavenumber = 2.0 * np.pi / radar.waveform.wavelength
     toward = np.stack([np.cos(azimuth), np.sin(azimuth), np.zeros(len(azimuth))])
     steering = np.exp(-1j * wavenumber * places @ toward)
-    delays = np.repeat(_slot_delays(radar), len(radar.receivers))
     found = []
     for velocity, distance in cells.tolist():  # numbers of Python: unsigned ones know nothing below 0
         rows = np.arange(velocity - velocity_neighbours, velocity + velocity_neighbours + 1) % values.shape[1]
         columns = np.arange(max(0, distance - range_neighbours), min(values.shape[2], distance + range_neighbours + 1))
         faster = spectrum.velocity[rows] - spectrum.velocity[velocity]  # than the echo of the cell, which lies in them, too
-        turn = np.exp(2j * wavenumber * delays[:, None] * faster)
+        turn = np.repeat(np.conj(_core.slot_phasors(radar, faster)), len(radar.receivers), axis=0)
         found.append(_pseudo_spectrum(values[:, rows][:, :, columns] * turn[..., None], steering, num_sources, opposite))
     return np.array(found).reshape(len(cells), len(azimuth))
 
@@ -55,15 +54,6 @@ def _check_cells(cells, shape) -> None:
     wrong = [tuple(map(int, cell)) for cell in cells if not all(0 <= index < size for index, size in zip(cell, shape))]
     if wrong:
         raise IndexError(f"cells: must lie within the {shape} cells of the map, got {wrong[0]}")
-
-
-def _slot_delays(radar) -> np.ndarray:
-    """[tx] s by which each sends after the first, the mean over the chirps; 0 where they do not take turns."""
-    count = len(radar.transmitters)
-    if radar.multiplexing != "tdm":
-        return np.zeros(count)
-    starts = np.vectorize(radar.waveform.slot_start)(np.arange(radar.waveform.num_chirps * count)).reshape(-1, count)
-    return np.mean(starts - starts[:, :1], axis=0)
 
 
 def _opposite_channels(places, wavelength: float) -> np.ndarray:

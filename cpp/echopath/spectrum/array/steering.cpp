@@ -1,12 +1,12 @@
 #include "echopath/spectrum/array/steering.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/principal_box.h"
 
 namespace echopath {
 namespace {
@@ -31,30 +31,10 @@ bool tells_apart(double extent, double wavelength) { return extent >= kTellingEx
 
 double width_of(const VirtualArray& array) { return std::hypot(array.extent().x(), array.extent().y()); }
 
-double extent_along(const VirtualArray& array, const Vec3& axis) {
-  double low = array.positions.front().dot(axis), high = low;
-  for (const Vec3& position : array.positions) {
-    low = std::min(low, position.dot(axis));
-    high = std::max(high, position.dot(axis));
-  }
-  return high - low;
-}
-
-// Returns the principal axes of the positions as columns, by ascending extent; `kept` scales the axes of the radar's frame.
-Mat3 principal_axes(const VirtualArray& array, const Vec3& kept) {
-  const Vec3 centre = array.centre();
-  Mat3 scatter = Mat3::Zero();
-  for (const Vec3& position : array.positions) {
-    const Vec3 offset = kept.cwiseProduct(position - centre);
-    scatter += offset * offset.transpose();
-  }
-  return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors();
-}
-
 // Returns whether all positions lie on a line, inclined or not. Such an array tells one angle only, that off its line: all
 // directions of a cone about it have the same phases.
 bool is_line(const VirtualArray& array) {
-  return !tells_apart(extent_along(array, principal_axes(array, Vec3::Ones()).col(1)), array.wavelength);
+  return !tells_apart(principal_box(array.positions).box.sizes()[1], array.wavelength);
 }
 
 bool is_upright(const VirtualArray& array) { return array.extent().z() > width_of(array); }
@@ -62,10 +42,12 @@ bool is_upright(const VirtualArray& array) { return array.extent().z() > width_o
 // Returns the azimuth in rad about which directions differ most: that of the boresights, or for an array that is a line from
 // above the one across it on their side, because such an array cannot tell one side from the other.
 double middle_azimuth(const VirtualArray& array) {
-  const Vec3 boresight = direction(array.boresight, 0.0);
-  const Vec3 left = Vec3::UnitZ().cross(principal_axes(array, Vec3(1.0, 1.0, 0.0)).col(2));
-  if (!tells_azimuths(array) || tells_apart(extent_along(array, left), array.wavelength)) return array.boresight;
-  const double sine = left.dot(boresight);
+  std::vector<Vec3> from_above = array.positions;
+  for (Vec3& position : from_above) position.z() = 0.0;
+  const PrincipalBox line = principal_box(from_above);
+  if (!tells_azimuths(array) || tells_apart(line.box.sizes()[1], array.wavelength)) return array.boresight;
+  const Vec3 left = Vec3::UnitZ().cross(line.axes.col(2));
+  const double sine = left.dot(direction(array.boresight, 0.0));
   if (std::abs(sine) < kEndfire || std::abs(sine) > std::cos(kAligned)) return array.boresight;
   const Vec3 across = std::copysign(1.0, sine) * left;
   return std::atan2(across.y(), across.x());

@@ -19,7 +19,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MESH_SUFFIXES', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'RECORD_SETTINGS', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'main_lobe_half_width', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_of_large_planes', 'meshes_of_objects', 'meshes_of_usual_objects', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'slot_phasors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeptStillRays', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MESH_SUFFIXES', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'RECORD_SETTINGS', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'main_lobe_half_width', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_of_large_planes', 'meshes_of_objects', 'meshes_of_usual_objects', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'slot_phasors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -2674,6 +2674,16 @@ class KeptGeometry:
     """
     def __init__(self) -> None:
         ...
+class KeptStillRays:
+    """
+    Rays of what stands still, for all frames of a scene, no part of the public interface.
+    """
+    def __init__(self) -> None:
+        ...
+    def __reduce__(self) -> tuple[type, tuple[typing.Any, ...]]:
+        """
+        A copy keeps none yet: what it keeps is the same.
+        """
 class LiveTrace:
     """
     The record of a scene that is changed again and again, no part of the public interface.
@@ -3522,9 +3532,9 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tracing.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, objects_time: float | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, kept_still: KeptStillRays | None = None, objects_time: float | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> Paths:
     """
-    What ep.trace calls. kept: KeptGeometry of the scene, or None; objects_time: s, as of TraceFrame.
+    What ep.trace calls. kept: KeptGeometry of the scene, or None; kept_still: KeptStillRays of the scene, radar and settings, whatever the start, or None; objects_time: s, as of TraceFrame.
     """
 def triangles_of_polygons(vertices: typing.Any, corners: typing.Any, counts: typing.Any) -> tuple[typing.Any, ...]:
     """

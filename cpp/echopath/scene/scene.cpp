@@ -191,6 +191,11 @@ bool Scene::is_moving(uint32_t mesh_id) const {
   return false;
 }
 
+bool Scene::stands_still(uint32_t mesh_id) const {
+  const TimeSpan always;
+  return !is_moving(mesh_id) && covers(lifetime(meshes_[mesh_id].node), always.begin, always.end);
+}
+
 bool Scene::is_anything_moving() const {
   for (uint32_t mesh_id = 0; mesh_id < meshes().size(); ++mesh_id) {
     if (is_moving(mesh_id)) return true;

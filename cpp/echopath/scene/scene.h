@@ -77,6 +77,8 @@ class Scene {
   // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
   bool is_moving(uint32_t mesh_id) const;
   bool is_anything_moving() const;
+  // Returns whether a mesh is the same at all times: it does not move, and is always there.
+  bool stands_still(uint32_t mesh_id) const;
   // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
   // scales unevenly.
   bool may_stretch(uint32_t mesh_id) const;

@@ -69,7 +69,7 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
       frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)), plan_(plan_rays(settings, fitted)),
       shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
-  if (settings.for_edits) pieces_ = plan_.pieces(kRaysPerBlock);
+  if (!plan_.first_number.empty()) pieces_ = plan_.pieces(kRaysPerBlock);
   pose_edges();
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
@@ -86,6 +86,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted
   launch.guide = settings.guide;
   launch.fitted = fitted;
   launch.by_object = settings.for_edits;
+  launch.by_name = settings.for_edits || settings.scatterers == Scatterers::kSurface;
   launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);

@@ -38,7 +38,8 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 
 PathsPtr trace_paths(Scene scene, const Radar& radar, const RecordSettings& of_record, std::optional<int64_t> num_rays,
                      double start_time, std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
-                     const std::shared_ptr<KeptGeometry>& kept, std::optional<double> objects_time) {
+                     const std::shared_ptr<KeptGeometry>& kept, const std::shared_ptr<KeptStillRays>& kept_still,
+                     std::optional<double> objects_time) {
   const Effort effort = effort_of(num_rays, of_record.batches, target_error_db, max_rays);
   TraceSettings settings{of_record};
   settings.num_rays = effort.num_rays;
@@ -46,8 +47,8 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, const RecordSettings& of_r
   settings.batches = effort.batches;
   const SceneSnapshot snapshot(std::move(scene));
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
-    return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get())
-                         : trace_by_need(snapshot, radar, settings, &job, kept.get());
+    return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get(), kept_still.get())
+                         : trace_by_need(snapshot, radar, settings, &job, kept.get(), kept_still.get());
   }));
   if (kept) remember_geometry(paths->scene, kept);
   paths->frame.objects_time = objects_time;
@@ -64,15 +65,17 @@ void bind_trace_paths(py::module_& m, ListOfKeywords<RecordSettings, Keywords...
       "trace",
       [](Scene scene, const Radar& radar, std::optional<int64_t> num_rays, double start_time,
          std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
-         const std::shared_ptr<KeptGeometry>& kept, std::optional<double> objects_time,
-         const typename Keywords::Argument&... settings) {
+         const std::shared_ptr<KeptGeometry>& kept, const std::shared_ptr<KeptStillRays>& kept_still,
+         std::optional<double> objects_time, const typename Keywords::Argument&... settings) {
         return trace_paths(std::move(scene), radar, decltype(of_record)::made_of(settings...), num_rays, start_time,
-                           target_error_db, max_rays, progress, kept, objects_time);
+                           target_error_db, max_rays, progress, kept, kept_still, objects_time);
       },
       py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(), py::arg("start_time") = 0.0,
       py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
-      py::arg("kept") = py::none(), py::arg("objects_time") = py::none(), Keywords::argument()...,
-      "What ep.trace calls. kept: KeptGeometry of the scene, or None; objects_time: s, as of TraceFrame.");
+      py::arg("kept") = py::none(), py::arg("kept_still") = py::none(), py::arg("objects_time") = py::none(),
+      Keywords::argument()...,
+      "What ep.trace calls. kept: KeptGeometry of the scene, or None; kept_still: KeptStillRays of the scene, radar and "
+      "settings, whatever the start, or None; objects_time: s, as of TraceFrame.");
   py::dict defaults;
   ((defaults[Keywords::name()] = Keywords::value(RecordSettings{})), ...);
   m.attr("RECORD_SETTINGS") = defaults;  // by keyword, as TraceFrame has them too
@@ -120,6 +123,12 @@ void bind_trace(py::module_& m) {
   py::class_<KeptGeometry, std::shared_ptr<KeptGeometry>>(
       m, "KeptGeometry", "Geometry that goes from one trace of a scene to the next, no part of the public interface.")
       .def(py::init<>());
+  py::class_<KeptStillRays, std::shared_ptr<KeptStillRays>>(
+      m, "KeptStillRays", "Rays of what stands still, for all frames of a scene, no part of the public interface.")
+      .def(py::init<>())
+      .def(
+          "__reduce__", [](const py::object& self) { return py::make_tuple(py::type::of(self), py::tuple()); },
+          "A copy keeps none yet: what it keeps is the same.");
 
   bind_trace_paths(m, RecordKeywords{});
   m.def(

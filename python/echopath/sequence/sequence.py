@@ -102,6 +102,7 @@ class Sequence(Row[Frame]):
         if not warn_of_absence(scene, radar, start_time, end):
             warn_of_the_unseen(scene, radar, start_time, interval, frames)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
+        self._still_rays = _core.KeptStillRays()
 
     @property
     def scene(self) -> Scene:
@@ -159,7 +160,7 @@ class Sequence(Row[Frame]):
             keep_geometry(run.scene, geometry)
         with at_work_on(_name_of(place)):
             return place, run.recorded(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval,
-                                                         number=number, progress=progress))
+                                                         number=number, still_rays=self._still_rays, progress=progress))
 
     @checked(self=anything, path=path_rule, keep=one_of(Keep), shard=shard_rule)
     def save(self, path: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,

@@ -69,7 +69,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         the surfaces, the same in all traces of a scene with one seed, so that the speckle of what moves goes on from frame
         to frame; or "auto": "surface" in a `Sequence`, else "rays". Points of surfaces are less even: 5000 of them tell the
         mean power of a body to 0.5 %, as many rays to 0.1 %. What rays meet straight from the transmitter persists; second
-        and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays
+        and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays. With
+        "surface", rays persist too: before a radar at rest half of num_rays go to what stands still, the same in all traces
     edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
         meet at 30 degrees or more, and at rims (`E` in path expressions), directly from the radar, over flagged mirrors and
         over unflagged planes that rays found, and on from edge to edge over flat faces of up to 40 wavelengths (`E E`).
@@ -99,10 +100,11 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
 
 
 def traced(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, objects_time: float | None = None,
-           progress: Progress = None) -> _core.Paths:
+           still_rays: _core.KeptStillRays | None = None, progress: Progress = None) -> _core.Paths:
     """What `trace` returns, warns of and raises, for settings that hold everything.
 
     objects_time: s, when the objects of the record are told from what surrounds the antenna; None: at mid-frame
+    still_rays: where those of what stands still are kept for calls that differ in the start alone, or None
     """
     start_time = settings.start_time
     require_frame("radar", radar, start_time)
@@ -121,7 +123,7 @@ def traced(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, o
                         edges=looks_for_edges(settings.edges, scene, radar, start_time),
                         faint_power=faint_power_of(settings.faint_power, radar),
                         attenuation=attenuation_of(scene, radar, settings.effects), progress=progress, kept=geometry,
-                        objects_time=objects_time)
+                        kept_still=still_rays, objects_time=objects_time)
     warn_of_record(paths.frame)
     warn_of_edge_paths(paths)
     return paths

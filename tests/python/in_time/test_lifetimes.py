@@ -87,7 +87,7 @@ def test_frames_alone_have_the_bits_of_the_run_and_of_simulate(tmp_path):
 
 
 def test_the_points_of_rough_surfaces_stay_where_another_body_before_them_comes_and_goes():
-    """A body that is absent takes no rays, so there are more points then; those that were there are among them."""
+    """What is always there has its part of the rays, whether or not what comes and goes is there."""
     scene = ep.Scene()
     scene.add(ep.actors.plate(2.0, 2.0), name="guest", material=ROUGH, position=(14.0, -4.0, 0.0), yaw=np.pi)
     scene.add(ep.actors.plate(2.0, 2.0), name="host", material=ROUGH, position=(10.0, 2.0, 0.0), yaw=np.pi)
@@ -101,8 +101,7 @@ def test_the_points_of_rough_surfaces_stay_where_another_body_before_them_comes_
         return {(int(hit["triangle_id"]), round(float(hit["u"]), 5), round(float(hit["v"]), 5)) for hit in hits}
 
     assert [len(frame.paths.scene.meshes) for frame in (alone, beside)] == [1, 2]
-    assert 100 < len(points(beside)) < len(points(alone))
-    assert len(points(beside) - points(alone)) < 0.02 * len(points(beside))  # those next to an edge
+    assert len(points(alone)) > 100 and points(beside) == points(alone)
 
 
 @pytest.mark.parametrize("start, is_there", [(0.1 * 3, True), (0.3, True), (0.3 - 1e-6, False), (0.5, True)])

@@ -41,7 +41,7 @@ def test_slices_have_the_bits_and_times_of_the_whole(in_order):
 
 
 def test_a_frame_is_that_of_simulate_at_its_time(in_order):
-    alone = ep.simulate(make_scene(), make_radar(), start_time=2 * INTERVAL, **SETTINGS)
+    alone = ep.simulate(make_scene(), make_radar(), start_time=2 * INTERVAL, scatterers="surface", **SETTINGS)
     assert signal_of(alone) == in_order[2]
 
 

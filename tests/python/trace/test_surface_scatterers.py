@@ -95,12 +95,14 @@ def test_mean_powers_are_those_of_rays(records, expression):
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_fields_are_those_of_rays():
+    """The rays of both are others, whose error on a smooth ball is below 0.1 dB."""
+    scene = walker_by_a_wall()
+    scene.add(ep.actors.sphere(radius=0.3), name="ball", position=(6, -1, 1), material="metal", smooth=True)
     fields = []
     for scatterers in ("rays", "surface"):
-        paths = ep.trace(walker_by_a_wall(), radar(), num_rays=FEW_RAYS, scatterers=scatterers)
-        chosen = paths.select("T 'walker' R")
-        fields.append(ep.synthesize(chosen.select(chosen.diffuse == 0), radar()))
-    assert np.array_equal(*fields)
+        paths = ep.trace(scene, radar(), num_rays=FEW_RAYS, scatterers=scatterers)
+        fields.append(ep.synthesize(paths.select("T 'ball' R"), radar()))
+    assert np.linalg.norm(fields[1] - fields[0]) < 0.01 * np.linalg.norm(fields[0])
 
 
 def test_nothing_that_stands_still_changes():

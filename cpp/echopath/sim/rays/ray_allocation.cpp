@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "echopath/power/faint_paths.h"
@@ -152,12 +154,19 @@ void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const s
 
 // Returns the echoes by index of the strata.
 std::vector<KnownEcho> echoes_of(const TraceFrame& frame, const RayNeeds& needs) {
-  std::vector<KnownEcho> echoes(frame.strata.size());
-  size_t next = 0;
-  for (size_t k = 0; k < echoes.size(); ++k) {
-    if (!frame.strata[k].is_focus()) echoes[k] = needs.strata[next++].echo;
-  }
+  std::map<std::string_view, KnownEcho> known;
+  for (const RayNeed& need : needs.strata) known[need.stratum] = need.echo;
+  std::vector<KnownEcho> echoes;
+  for (const Stratum& stratum : frame.strata) echoes.push_back(known[stratum.name]);
   return echoes;
+}
+
+// Puts the rays of what stands still in the place of those that a guide has for it.
+void put_in(const StillRays& still, LaunchGuide& guide) {
+  for (const auto& [name, rays] : still.guide.shares) guide.shares[name] = rays;
+  std::erase_if(guide.foci, [&](const LaunchFocus& focus) { return still.holds(focus.of); });
+  guide.foci.insert(guide.foci.begin(), still.guide.foci.begin(), still.guide.foci.end());
+  guide.still_rays = still.num_rays();
 }
 
 }  // namespace
@@ -168,7 +177,7 @@ double RayNeeds::num_rays() const {
   return sum;
 }
 
-RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
+RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still, Job* job) {
   const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
   const double floor =
       wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
@@ -178,7 +187,7 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
   RayNeeds needs;
   for (size_t k = 0; k < paths.frame.strata.size(); ++k) {
     const Stratum& stratum = paths.frame.strata[k];
-    if (stratum.is_focus()) continue;
+    if (stratum.is_focus() || still.holds(stratum.name)) continue;
     const double missing = missing_db(powers[k], least);
     const bool is_moving = stratum.object >= 0 && moves[stratum.object];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
@@ -199,34 +208,46 @@ RayShares share_out(const RayNeeds& needs, double num_rays) {
   return shares;
 }
 
-LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job) {
+LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, const StillRays& still, Job* job) {
   LaunchGuide guide;
-  guide.shares = share_out(needs, static_cast<double>(num_rays));
+  const double left = static_cast<double>(num_rays) - still.num_rays();
+  if (!needs.strata.empty()) guide.shares = share_out(needs, left);
   const std::vector<Glint> glints = find_glints(paths, job);
-  raise_field_of_view(paths.frame, needs, glints, guide.shares);
-  const double rays_per_share = static_cast<double>(num_rays) / sum_of(guide.shares);
+  if (!still.any()) raise_field_of_view(paths.frame, needs, glints, guide.shares);
+  const double rays_per_share = left / sum_of(guide.shares);
   for (auto& [name, share] : guide.shares) share = rounded_rays(rays_per_share * share);
+  put_in(still, guide);
   set_foci(paths.frame, echoes_of(paths.frame, needs), glints, guide);
+  put_in(still, guide);  // without the foci that this frame would have set
   return guide;
 }
 
 Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
-                    KeptGeometry* kept) {
-  TraceSettings launch = settings;
+                    KeptGeometry* kept, KeptStillRays* kept_still) {
   settings.validate();
-  launch.num_rays = settings.num_rays / kPilotDivisor;
-  launch.num_rays_to_come = settings.num_rays;
-  if (!settings.guide.shares.empty() || launch.num_rays < kFewestPilotRays)
+  if (!settings.guide.shares.empty() || settings.num_rays / kPilotDivisor < kFewestPilotRays)
     return thinned(trace(scene, radar, settings, job, kept), job);
   KeptGeometry own;
   if (!kept) kept = &own;
   FittedStrata fitted;
   Job unseen(job);  // its progress is that of the trace
-  const Paths pilot = trace(scene, radar, launch, &unseen, kept, &fitted);
-  launch.num_rays = settings.num_rays;
-  launch.num_rays_to_come = 0;
-  const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower};
-  launch.guide = guide_rays(pilot, ray_needs(pilot, wanted, &unseen), settings.num_rays, &unseen);
+  const auto pilot_of = [&](const SceneSnapshot& seen, int64_t num_rays, KeptGeometry* geometry, FittedStrata* strata) {
+    TraceSettings launch = settings;
+    launch.num_rays = num_rays / kPilotDivisor;
+    launch.num_rays_to_come = settings.num_rays;
+    return trace(seen, radar, launch, &unseen, geometry, strata);
+  };
+  const auto guide_by = [&](const Paths& pilot, int64_t num_rays, const StillRays& still) {
+    const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower};
+    return guide_rays(pilot, ray_needs(pilot, wanted, still, &unseen), num_rays, still, &unseen);
+  };
+  const auto still = still_rays(*scene, radar, settings, kept_still, [&](const SceneSnapshot& standing) {
+    const int64_t of_half = settings.num_rays / 2;
+    const Paths pilot = pilot_of(standing, of_half, nullptr, nullptr);
+    return StillRays(guide_by(pilot, of_half, {}), pilot.frame.strata, *scene);
+  });
+  TraceSettings launch = settings;
+  launch.guide = guide_by(pilot_of(scene, settings.num_rays, kept, &fitted), settings.num_rays, *still);
   return thinned(trace(scene, radar, launch, job, kept, &fitted), job);
 }
 

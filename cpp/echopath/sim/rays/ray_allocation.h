@@ -5,6 +5,7 @@
 
 #include "echopath/base/threads/job.h"
 #include "echopath/sim/rays/plan_foci.h"
+#include "echopath/sim/rays/still_rays.h"
 #include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
@@ -49,13 +50,13 @@ struct RayNeeds {
   double num_rays() const;
 };
 
-// Returns for every stratum whose echo may stand above the floor as many rays as bring its interval, as far as rays mend it
+// Returns for every stratum, but those of `still`, whose echo may stand above the floor as many rays as bring its interval, as far as rays mend it
 // (PowerInterval::high_of_rays), to what is wanted, for objects that move, but not for their images, to a quarter of it.
 // The interval of a coherent echo falls about with the rays, that of a diffuse one with their root; both get rays in
 // proportion to the error over the target, within a factor of kMaxGrowth. An echo that is known better gives rays back,
 // down to WantedError::least_growth; a stratum that sends nothing back keeps a quarter, or that if it is more. One that was
 // too small to have rays is counted as if it had the fewest that a stratum has. Raises Cancelled.
-RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job = nullptr);
+RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still = {}, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 
 // Returns the shares of `num_rays` rays. Where they are too few, what the radar sees itself is served before images, up to
@@ -65,14 +66,16 @@ inline constexpr double kMaxGrowth = 32.0;
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints
-// (plan_foci.h). Raises Cancelled.
-LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
+// (plan_foci.h). What stands still gets the rays of `still`, and the needs are those of all else. Raises Cancelled.
+LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, const StillRays& still = {},
+                       Job* job = nullptr);
 
 // Traces with rays shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h). A pilot
 // trace of an eighth of settings.num_rays tells the needs, with a margin for what it does not foresee, and is thrown away.
-// Where settings.guide gives the shares, or rays are few, there is no pilot, and rays are shared as in `trace`. Raises as
-// `trace`.
+// Where settings.guide gives the shares, or rays are few, there is no pilot, and rays are shared as in `trace`. Of a
+// standing_scene (still_rays.h) a pilot tells how half of the rays go, and that of the frame how the rest does; `kept_still`
+// keeps the first for the frames to come. Raises as `trace`.
 Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
-                    KeptGeometry* kept = nullptr);
+                    KeptGeometry* kept = nullptr, KeptStillRays* kept_still = nullptr);
 
 }  // namespace echopath

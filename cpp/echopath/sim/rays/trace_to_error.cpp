@@ -11,11 +11,35 @@ namespace echopath {
 namespace {
 
 // Returns the record with the error that it has once faint paths are left out by lot, which more rays hardly mend.
-Paths with_error_of_lot(Paths paths, const WantedError& wanted, Job* job) {
+Paths with_error_of_lot(Paths paths, const WantedError& wanted, const StillRays& still, Job* job) {
   if (paths.frame.statistics.num_faint_paths > 0) {
-    paths.frame.error_db = std::max(paths.frame.error_db, ray_needs(paths, wanted, job).worst_db);
+    paths.frame.error_db = std::max(paths.frame.error_db, ray_needs(paths, wanted, still, job).worst_db);
   }
   return paths;
+}
+
+// What stands still has the rays of `still`. The first trace, which has no guide, tells the needs of all else alone.
+Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, const Radar& radar,
+                            const TraceSettings& settings, const ErrorTarget& target, Job* job, KeptGeometry* kept) {
+  KeptGeometry own;
+  if (!kept) kept = &own;
+  FittedStrata fitted;
+  TraceSettings launch = settings;
+  const WantedError wanted{
+      .db = target.error_db, .floor = target.floor, .least_power = target.least_power, .least_growth = 1.0};
+  for (;;) {
+    Paths paths = trace(scene, radar, launch, job, kept, &fitted);
+    const RayNeeds needs = ray_needs(paths, wanted, still, job);
+    paths.frame.target_error_db = target.error_db;
+    paths.frame.error_db = std::max(needs.worst_db, still.error_db);
+    const bool is_met = needs.worst_db <= target.error_db, is_complete = !still.any() || !launch.guide.shares.empty();
+    if ((is_complete && (is_met || launch.num_rays == target.max_rays)) || paths.frame.statistics.num_hits == 0)
+      return with_error_of_lot(thinned(std::move(paths), job), wanted, still, job);
+    const double rays = std::min(still.num_rays() + needs.num_rays(), static_cast<double>(target.max_rays));
+    launch.num_rays = std::clamp(std::llround(rays), std::min<long long>(2 * launch.num_rays, target.max_rays),
+                                 static_cast<long long>(target.max_rays));
+    launch.guide = guide_rays(paths, needs, launch.num_rays, still, job);
+  }
 }
 
 }  // namespace
@@ -27,29 +51,21 @@ void ErrorTarget::validate() const {
 }
 
 Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
-                     const ErrorTarget& target, Job* job, KeptGeometry* kept) {
+                     const ErrorTarget& target, Job* job, KeptGeometry* kept, KeptStillRays* kept_still) {
   target.validate();
   settings.validate();
   require(settings.num_rays <= target.max_rays, "num_rays", "must not exceed max_rays", settings.num_rays);
-  KeptGeometry own;
-  if (!kept) kept = &own;
-  FittedStrata fitted;
-  TraceSettings launch = settings;
-  const WantedError wanted{
-      .db = target.error_db, .floor = target.floor, .least_power = target.least_power, .least_growth = 1.0};
-  for (;;) {
-    Paths paths = trace(scene, radar, launch, job, kept, &fitted);
-    const RayNeeds needs = ray_needs(paths, wanted, job);
-    paths.frame.target_error_db = target.error_db;
-    paths.frame.error_db = needs.worst_db;
-    const bool is_met = needs.worst_db <= target.error_db;
-    if (is_met || launch.num_rays == target.max_rays || paths.frame.statistics.num_hits == 0)
-      return with_error_of_lot(thinned(std::move(paths), job), wanted, job);
-    const double rays = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
-    launch.num_rays = std::clamp(std::llround(rays), std::min<long long>(2 * launch.num_rays, target.max_rays),
-                                 static_cast<long long>(target.max_rays));
-    launch.guide = guide_rays(paths, needs, launch.num_rays, job);
-  }
+  const auto still = still_rays(*scene, radar, settings, kept_still, [&](const SceneSnapshot& standing) {
+    ErrorTarget of_half = target;
+    TraceSettings few = settings;
+    of_half.max_rays = std::max<int64_t>(target.max_rays / 2, 1);
+    few.num_rays = std::min(settings.num_rays, of_half.max_rays);
+    const Paths paths = trace_to_error_beside({}, standing, radar, few, of_half, job, nullptr);
+    StillRays rays(guide_like(paths.frame.strata), paths.frame.strata, *scene);
+    rays.error_db = paths.frame.error_db;
+    return rays;
+  });
+  return trace_to_error_beside(*still, scene, radar, settings, target, job, kept);
 }
 
 }  // namespace echopath

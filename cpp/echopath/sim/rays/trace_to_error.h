@@ -27,8 +27,10 @@ struct ErrorTarget {
 // is a fresh one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the square root
 // only; all traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the outcome. It
 // stops at once where no ray meets anything. Raises as `trace`. All traces share one geometry: `kept`, as in `trace`, or
-// their own.
+// their own. A standing_scene (still_rays.h) is traced to the target by itself first, with half of max_rays at most, and has
+// the rays of that; `kept_still` keeps them for the frames to come.
 Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
-                     const ErrorTarget& target, Job* job = nullptr, KeptGeometry* kept = nullptr);
+                     const ErrorTarget& target, Job* job = nullptr, KeptGeometry* kept = nullptr,
+                     KeptStillRays* kept_still = nullptr);
 
 }  // namespace echopath

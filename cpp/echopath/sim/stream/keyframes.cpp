@@ -5,6 +5,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/power/faint_paths.h"
+#include "echopath/sim/rays/still_rays.h"
 #include "echopath/trace/trace.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/surface/new_surface.h"
@@ -95,7 +96,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
   if (retrace_ == Retrace::kAlways) {
     TraceSettings settings = settings_like(paths_.frame);
     settings.start_time = stretch.start_time;
-    settings.guide = guide_like(paths_.frame.strata);
+    settings.guide = guide_like(paths_);
     return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
   }
   std::vector<Paths> records;

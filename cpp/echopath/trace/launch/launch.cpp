@@ -1,21 +1,18 @@
 #include "echopath/trace/launch/launch.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
 #include "echopath/base/random.h"
 #include "echopath/record/paths.h"
 #include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/launch/launch_shares.h"
 #include "echopath/trace/launch/rays_by_object.h"
 #include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {
 namespace {
-
-constexpr double kFieldShare = 0.15;
-constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
 
 // Returns the shifts: each batch has one of its own in each stratum, which is known by a number.
 std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
@@ -29,8 +26,8 @@ std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batch
 }
 
 void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, const LaunchSettings& settings) {
-  const int64_t number = settings.by_object ? first_number_of(stratum.name) : std::ssize(plan.strata);
-  if (settings.by_object) plan.first_number.push_back(number);
+  const int64_t number = settings.by_name ? first_number_of(stratum.name) : std::ssize(plan.strata);
+  if (settings.by_name) plan.first_number.push_back(number);
   const LaunchDomain domain = domain_of(stratum);
   plan.points.push_back(launch_points(settings.sampler, domain, num_rays, shifts_of(plan.seed, number, plan.batches)));
   stratum.num_rays = plan.points.back()->size();
@@ -39,18 +36,12 @@ void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, const Laun
   plan.strata.push_back(std::move(stratum));
 }
 
-// Names a focus and the target that it is in; where `of` is the number of targets, it is in the field of view.
-struct Focus {
-  const LaunchFocus* asked;
-  size_t of;
-};
-
 // Returns the foci that are asked for in existing strata, up to the number of strata that a record can tell apart.
-std::vector<Focus> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<RayTarget>& targets,
-                           const Stratum& field) {
+std::vector<FocusOfTarget> foci_of(const std::vector<LaunchFocus>& asked, const std::vector<RayTarget>& targets,
+                                   const Stratum& field) {
   std::map<std::string, size_t> index{{field.name, targets.size()}};
   for (size_t k = 0; k < targets.size(); ++k) index.emplace(targets[k].stratum.name, k);
-  std::vector<Focus> foci;
+  std::vector<FocusOfTarget> foci;
   for (const LaunchFocus& one : asked) {
     const auto found = index.find(one.of);
     if (found != index.end() && targets.size() + foci.size() + 1 < kNoStratum) foci.push_back({&one, found->second});
@@ -68,76 +59,6 @@ Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_
   cone.num_mirrors = owner.num_mirrors;
   cone.focus_of = index_of_owner;
   return cone;
-}
-
-// Returns the shares of the rays by stratum, the field of view last: it divides them among objects that move, others, and
-// the field of view.
-std::vector<double> default_shares(const std::vector<RayTarget>& targets, bool field_owns_any) {
-  double moving = 0.0, resting = 0.0;
-  for (const RayTarget& target : targets) (target.moves ? moving : resting) += target.weight;
-  const double aimed = targets.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
-  const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
-  std::vector<double> shares;
-  for (const RayTarget& target : targets) {
-    const double of_tier = target.moves ? moving_share / moving : (1.0 - moving_share) / resting;
-    shares.push_back(aimed * of_tier * target.weight);
-  }
-  shares.push_back(1.0 - aimed);
-  return shares;
-}
-
-// Returns the shares of the strata in the order of the plan.
-std::vector<double> named_shares(const std::vector<RayTarget>& targets, const std::vector<Focus>& foci, const Stratum& field,
-                                 const RayShares& shares) {
-  double mean = 0.0;
-  for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
-  const auto share_of = [&](const std::string& name) {
-    const auto found = shares.find(name);
-    return found == shares.end() ? mean : found->second;
-  };
-  std::vector<double> out;
-  for (const RayTarget& target : targets) out.push_back(share_of(target.stratum.name));
-  for (const Focus& focus : foci) out.push_back(focus.asked->share);
-  out.push_back(share_of(field.name));
-  return out;
-}
-
-// Returns whole rays, which add up; a share that is too small for a stratum falls to the last one.
-std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_rays) {
-  double all = 0.0, before = 0.0;
-  for (const double share : shares) all += share;
-  std::vector<int64_t> rays;
-  int64_t done = 0, given = 0;
-  for (size_t k = 0; k + 1 < shares.size(); ++k) {
-    before += shares[k];
-    const auto end = static_cast<int64_t>(std::llround(before / all * static_cast<double>(num_rays)));
-    const int64_t here = end - done >= LaunchPlan::kFewestRays ? end - done : 0;
-    done = end;
-    given += here;
-    rays.push_back(here);
-  }
-  rays.push_back(num_rays - given);
-  return rays;
-}
-
-// Returns the rays per sr of each stratum by the default rule; foci, which stand between the targets and the field of view,
-// have none.
-std::vector<double> default_densities(const RayTargets& found, bool field_owns_any, const LaunchPlan& plan,
-                                      int64_t num_rays) {
-  const std::vector<double> shares = default_shares(found.targets, field_owns_any);
-  std::vector<double> densities(plan.strata.size(), 0.0);
-  const auto set = [&](size_t stratum, double share) {
-    densities[stratum] = share * static_cast<double>(num_rays) / plan.strata[stratum].solid_angle();
-  };
-  for (size_t k = 0; k < found.targets.size(); ++k) set(k, shares[k]);
-  set(plan.strata.size() - 1, shares.back());
-  return densities;
-}
-
-std::vector<double> mean_densities(const std::vector<Stratum>& strata) {
-  std::vector<double> densities;
-  for (const Stratum& one : strata) densities.push_back(static_cast<double>(one.num_rays) / one.solid_angle());
-  return densities;
 }
 
 Stratum field_of_view(const LaunchSettings& settings) {
@@ -160,15 +81,10 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
                                settings.num_rays / (LaunchPlan::kFewestRays - 1),
                                settings.fitted};
   RayTargets found = find_ray_targets(scene, geometry, mirrors, aims);
-  const bool is_guided = !settings.guide.shares.empty();
-  std::vector<Focus> foci;
-  if (is_guided) foci = foci_of(settings.guide.foci, found.targets, field);
-  const bool field_owns_any = found.any_unaimed || !mirrors.empty(), is_by_object = settings.by_object && !is_guided;
-  std::vector<int64_t> rays = is_by_object
-                                  ? rays_by_object(scene, found.targets, field_owns_any, kFieldShare, settings.num_rays)
-                                  : whole_rays(is_guided ? named_shares(found.targets, foci, field, settings.guide.shares)
-                                                         : default_shares(found.targets, field_owns_any),
-                                               settings.num_rays);
+  std::vector<FocusOfTarget> foci;
+  if (!settings.guide.shares.empty()) foci = foci_of(settings.guide.foci, found.targets, field);
+  const LaunchShares shares(scene, found, found.any_unaimed || !mirrors.empty(), settings);
+  std::vector<int64_t> rays = shares.rays(foci, field.name);
   for (size_t i = 0; i < foci.size(); ++i) {  // a stratum without rays owns nothing
     if (foci[i].of < found.targets.size() && rays[foci[i].of] == 0)
       rays.back() += std::exchange(rays[found.targets.size() + i], 0);
@@ -196,8 +112,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   }
   add_stratum(plan, field, rays.back(), settings);
   plan.foci = LaunchFoci(plan.strata);
-  plan.default_density =
-      is_by_object ? mean_densities(plan.strata) : default_densities(found, field_owns_any, plan, settings.num_rays);
+  plan.default_density = shares.default_densities(plan.strata);
   return plan;
 }
 

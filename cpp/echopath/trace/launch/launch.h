@@ -25,10 +25,10 @@ namespace echopath {
 //
 // Each stratum counts the echoes that it owns (ray_owners.h). The field of view owns the echoes of objects that surround the
 // transmitter, of objects and images without a stratum of their own, and the diffuse echoes of mirrors. It gets 15 % of the
-// rays where it owns anything; the others are aimed. By default, moving objects get at least half of the aimed rays. Apart
-// from that, objects and images over one mirror get equal shares, and images over two mirrors a quarter of such a share; the
-// things of one object share what it would get. A stratum that would get fewer than kFewestRays rays is left out.
-// LaunchSettings::by_object has another rule.
+// rays where it owns anything; the others are aimed. By default, moving objects get at least half of the aimed rays, or half
+// of them in all frames (LaunchSettings::by_name). Apart from that, objects and images over one mirror get equal shares, and
+// images over two mirrors a quarter of such a share; the things of one object share what it would get. A stratum that would
+// get fewer than kFewestRays rays is left out. LaunchSettings::by_object has another rule.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 
@@ -41,8 +41,8 @@ struct LaunchPlan {
   std::vector<Stratum> strata;
   std::vector<std::unique_ptr<const LaunchPoints>> points;  // of each stratum
   std::vector<int64_t> first_ray;                           // [strata + 1] running sum of num_rays
-  // [strata] where the random numbers of their rays begin; empty: each ray has the numbers of its index. A packet then has
-  // rays of one stratum.
+  // [strata] where the random numbers of their rays begin, so that packets have rays of one stratum; empty: each ray has the
+  // numbers of its index.
   std::vector<int64_t> first_number;
   RayOwners owners;
   LaunchFoci foci;
@@ -85,9 +85,12 @@ struct LaunchSettings {
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
   LaunchGuide guide;           // by default the rule above, without foci
-  // The rule is that of rays_by_object, and rays have random numbers by the name of their stratum: those of an object hang
-  // little on what else is in the scene.
+  // The rule is that of rays_by_object, for scenes that are edited: the rays of an object hang little on what else is in the
+  // scene.
   bool by_object = false;
+  // Rays have random numbers by the name of their stratum, shares are rounded to whole rays one by one, and those of a guide
+  // count rays: a stratum that stands still and gets the same share in another plan has the same rays there.
+  bool by_name = false;
   FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
 };
 

@@ -33,7 +33,7 @@ class Target {
       const std::vector<Vec3>& own = geometry.vertices(id);
       sum.add(own.size());
       sum.add_bytes(own.data(), own.size() * sizeof(Vec3));
-      moves = moves || scene.is_moving(id);
+      moves = moves || !scene.stands_still(id);
     }
     bits = sum.value();
   }
@@ -93,6 +93,9 @@ class RayTargetFinder {
       std::optional<RayTarget> made =
           target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum), num_mirrors, images_of_vertices);
       if (!made) continue;
+      made->moves = made->moves || std::ranges::any_of(frustum.mirrors, [&](int mirror) {
+        return !scene_.stands_still(mirrors_[mirror].mesh_id);
+      });
       const auto same =
           std::ranges::find_if(images, [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
       RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;

@@ -20,7 +20,7 @@ struct RayTarget {
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh
   // Rays find it over these; planes at right angles have one image in both orders.
   std::vector<MirrorSequence> sequences;
-  bool moves = false;
+  bool moves = false;   // it, or a mirror that shows it, or it comes and goes (Scene::stands_still)
   double weight = 1.0;  // in the sharing of the rays; the things of one object share the weight of that
 };
 

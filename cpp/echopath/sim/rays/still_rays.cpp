@@ -1,0 +1,73 @@
+#include "echopath/sim/rays/still_rays.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace echopath {
+namespace {
+
+bool ever_moves(const Scene& scene) { return scene.is_anything_moving() || scene.has_lifetimes(); }
+
+// Marks the nodes at which and below which all stands still.
+std::vector<bool> still_nodes(const Scene& scene) {
+  std::vector<bool> still(scene.nodes().size(), true);
+  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
+    if (scene.stands_still(mesh)) continue;
+    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[node].parent) still[node] = false;
+  }
+  return still;
+}
+
+}  // namespace
+
+StillRays::StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, const Scene& scene) : guide(std::move(of_all)) {
+  const std::vector<bool> still = still_nodes(scene);
+  for (const Stratum& stratum : strata) {
+    if (stratum.object >= 0 && !still[stratum.object]) guide.shares.erase(stratum.name);
+  }
+  std::erase_if(guide.shares, [](const auto& share) { return share.second == 0.0; });
+  std::erase_if(guide.foci, [&](const LaunchFocus& focus) { return !holds(focus.of); });
+  for (const auto& [name, share] : guide.shares) guide.still_rays += share;
+  for (const LaunchFocus& focus : guide.foci) guide.still_rays += focus.share;
+}
+
+std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
+  if (settings.scatterers != Scatterers::kSurface || !settings.guide.shares.empty() || radar.motion) return std::nullopt;
+  if (!ever_moves(scene)) return std::nullopt;
+  std::vector<bool> stands;
+  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) stands.push_back(scene.stands_still(mesh));
+  if (std::ranges::none_of(stands, std::identity())) return std::nullopt;
+  Scene still(scene);
+  still.keep_meshes(stands);
+  return still;
+}
+
+LaunchGuide guide_like(const Paths& paths) {
+  LaunchGuide guide = guide_like(paths.frame.strata);
+  if (paths.frame.scatterers != Scatterers::kSurface || paths.radar.motion || !ever_moves(*paths.scene)) return guide;
+  const std::vector<bool> still = still_nodes(*paths.scene);
+  for (const Stratum& stratum : paths.frame.strata) {
+    if (stratum.object < 0 || still[stratum.object]) guide.still_rays += static_cast<double>(stratum.num_rays);
+  }
+  return guide;
+}
+
+std::shared_ptr<const StillRays> KeptStillRays::get(const std::function<StillRays()>& find) {
+  const std::lock_guard lock(mutex_);
+  if (!rays_) rays_ = std::make_shared<const StillRays>(find());
+  return rays_;
+}
+
+std::shared_ptr<const StillRays> still_rays(const Scene& scene, const Radar& radar, const TraceSettings& settings,
+                                            KeptStillRays* kept,
+                                            const std::function<StillRays(const SceneSnapshot&)>& find) {
+  KeptStillRays own;
+  return (kept ? *kept : own).get([&] {
+    std::optional<Scene> standing = standing_scene(scene, radar, settings);
+    return standing ? find(SceneSnapshot(*std::move(standing))) : StillRays{};
+  });
+}
+
+}  // namespace echopath

@@ -1,0 +1,55 @@
+#pragma once
+// Gives what stands still the same rays in all frames of a radar at rest.
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "echopath/record/paths.h"
+#include "echopath/trace/launch/launch_focus.h"
+#include "echopath/trace/trace.h"
+
+namespace echopath {
+
+// Where scatterers persist from frame to frame (Scatterers::kSurface), so must the rays of what stands still: other rays
+// would find echoes that differ by their error, and who takes one frame from another would see what stands still beside what
+// moves. Its rays are therefore shared out in the scene without all that moves or comes and goes, which is the same at all
+// times, and what moves gets other rays beside them in each frame.
+struct StillRays {
+  LaunchGuide guide;      // of the strata of what stands still and the field of view; its shares count rays; empty: none
+  double error_db = 0.0;  // of their echoes, where there is a target for it
+
+  StillRays() = default;
+  // Takes what stands still in `scene` from the guide of its standing_scene, whose trace had these strata. A part that stands
+  // still of an object that moves has no rays of its own.
+  StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, const Scene& scene);
+  bool any() const { return !guide.shares.empty(); }
+  bool holds(const std::string& stratum) const { return guide.shares.contains(stratum); }
+  double num_rays() const { return guide.still_rays; }
+};
+
+// Returns the scene without what moves or has a lifetime; nothing where the rays of a trace need not persist: scatterers are
+// those of rays, the settings have a guide, the radar moves, or all of the scene does or none.
+std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings);
+
+// Returns the guide that repeats the launch of a record, with the points of rough surfaces that it had.
+LaunchGuide guide_like(const Paths& paths);
+
+// Keeps the StillRays of the first trace for the traces after it, which are those of the same scene, radar and settings but
+// for the start. Thread-safe.
+class KeptStillRays {
+ public:
+  std::shared_ptr<const StillRays> get(const std::function<StillRays()>& find);  // which is called unless some are kept
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const StillRays> rays_;
+};
+
+// Returns what `kept` (may be null) keeps, or else what `find` says of the standing_scene; none where there is none.
+std::shared_ptr<const StillRays> still_rays(const Scene& scene, const Radar& radar, const TraceSettings& settings,
+                                            KeptStillRays* kept, const std::function<StillRays(const SceneSnapshot&)>& find);
+
+}  // namespace echopath

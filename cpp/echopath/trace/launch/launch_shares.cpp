@@ -1,0 +1,135 @@
+#include "echopath/trace/launch/launch_shares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "echopath/trace/launch/rays_by_object.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kFieldShare = 0.15;
+constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
+
+// Returns the shares of the strata in the order of the plan.
+std::vector<double> named_shares(const std::vector<RayTarget>& targets, const std::vector<FocusOfTarget>& foci,
+                                 const std::string& field, const RayShares& shares) {
+  double mean = 0.0;
+  for (const auto& [name, share] : shares) mean += share / static_cast<double>(shares.size());
+  const auto share_of = [&](const std::string& name) {
+    const auto found = shares.find(name);
+    return found == shares.end() ? mean : found->second;
+  };
+  std::vector<double> out;
+  for (const RayTarget& target : targets) out.push_back(share_of(target.stratum.name));
+  for (const FocusOfTarget& focus : foci) out.push_back(focus.asked->share);
+  out.push_back(share_of(field));
+  return out;
+}
+
+// Returns whole rays, which add up; a share that is too small for a stratum falls to the last one.
+std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_rays) {
+  double all = 0.0, before = 0.0;
+  for (const double share : shares) all += share;
+  std::vector<int64_t> rays;
+  int64_t done = 0, given = 0;
+  for (size_t k = 0; k + 1 < shares.size(); ++k) {
+    before += shares[k];
+    const auto end = static_cast<int64_t>(std::llround(before / all * static_cast<double>(num_rays)));
+    const int64_t here = end - done >= LaunchPlan::kFewestRays ? end - done : 0;
+    done = end;
+    given += here;
+    rays.push_back(here);
+  }
+  rays.push_back(num_rays - given);
+  return rays;
+}
+
+// Returns whole rays, each number rounded by itself. What is too little for a stratum falls to the last one where that would
+// have none.
+std::vector<int64_t> rounded_one_by_one(const std::vector<double>& rays) {
+  std::vector<int64_t> whole;
+  double dropped = 0.0;
+  for (size_t k = 0; k + 1 < rays.size(); ++k) {
+    const int64_t here = std::llround(rays[k]);
+    const bool is_enough = here >= LaunchPlan::kFewestRays;
+    whole.push_back(is_enough ? here : 0);
+    if (!is_enough) dropped += rays[k];
+  }
+  const int64_t of_last = std::llround(rays.back());
+  whole.push_back(of_last == 0 && dropped > 0.0 ? std::max<int64_t>(1, std::llround(dropped)) : of_last);
+  return whole;
+}
+
+// Gives what is missing from num_rays, or takes what is too much, to the target that has the most rays of those that move,
+// which have others in every frame anyway, or of all where they may be still.
+void add_remainder(const std::vector<RayTarget>& targets, bool may_be_still, int64_t num_rays, std::vector<int64_t>& rays) {
+  size_t most = targets.size();
+  for (size_t k = 0; k < targets.size(); ++k) {
+    const bool may_serve = may_be_still || targets[k].moves;
+    if (may_serve && (most == targets.size() || rays[k] > rays[most])) most = k;
+  }
+  if (most == targets.size()) return;
+  const int64_t missing = num_rays - std::accumulate(rays.begin(), rays.end(), int64_t{0});
+  if (rays[most] + missing >= LaunchPlan::kFewestRays) rays[most] += missing;
+}
+
+std::vector<double> mean_densities(const std::vector<Stratum>& strata) {
+  std::vector<double> densities;
+  for (const Stratum& one : strata) densities.push_back(static_cast<double>(one.num_rays) / one.solid_angle());
+  return densities;
+}
+
+}  // namespace
+
+LaunchShares::LaunchShares(const Scene& scene, const RayTargets& found, bool field_owns_any, const LaunchSettings& settings)
+    : scene_(scene), found_(found), field_owns_any_(field_owns_any), settings_(settings),
+      is_steady_(settings.by_name && (scene.is_anything_moving() || scene.has_lifetimes())) {
+  for (const RayTarget& target : found.targets) (target.moves ? moving_ : still_) += target.weight;
+}
+
+// Returns the share of what moves, of the rays that are aimed.
+double LaunchShares::moving_share() const {
+  if (still_ == 0.0) return 1.0;
+  if (is_steady_) return kMovingShare;
+  return moving_ == 0.0 ? 0.0 : std::max(moving_ / (moving_ + still_), kMovingShare);
+}
+
+// Returns the shares of the targets and the field of view by the rule. Steady shares leave that of what moves where none of
+// it is there.
+std::vector<double> LaunchShares::of_rule() const {
+  const double aimed = found_.targets.empty() ? 0.0 : field_owns_any_ ? 1.0 - kFieldShare : 1.0, of_moving = moving_share();
+  std::vector<double> shares;
+  for (const RayTarget& target : found_.targets) {
+    const double by_weight = target.moves ? of_moving / moving_ : (1.0 - of_moving) / still_;
+    shares.push_back(aimed * by_weight * target.weight);
+  }
+  shares.push_back(1.0 - aimed);
+  return shares;
+}
+
+std::vector<int64_t> LaunchShares::rays(const std::vector<FocusOfTarget>& foci, const std::string& field) const {
+  if (is_by_object()) return rays_by_object(scene_, found_.targets, field_owns_any_, kFieldShare, settings_.num_rays);
+  std::vector<double> shares = is_guided() ? named_shares(found_.targets, foci, field, settings_.guide.shares) : of_rule();
+  if (!settings_.by_name) return whole_rays(shares, settings_.num_rays);
+  if (!is_guided()) std::ranges::for_each(shares, [&](double& share) { share *= static_cast<double>(settings_.num_rays); });
+  std::vector<int64_t> rays = rounded_one_by_one(shares);
+  add_remainder(found_.targets, !is_guided() && !is_steady_, settings_.num_rays, rays);
+  return rays;
+}
+
+std::vector<double> LaunchShares::default_densities(const std::vector<Stratum>& strata) const {
+  if (is_by_object()) return mean_densities(strata);
+  const std::vector<double> shares = of_rule();
+  const auto all = static_cast<double>(settings_.num_rays);
+  const double own = settings_.guide.still_rays, for_still = own > 0.0 ? own / (1.0 - kMovingShare) : all;
+  std::vector<double> densities(strata.size(), 0.0);
+  const auto set = [&](size_t stratum, double rays) { densities[stratum] = rays / strata[stratum].solid_angle(); };
+  for (size_t k = 0; k < found_.targets.size(); ++k) set(k, shares[k] * (found_.targets[k].moves ? all : for_still));
+  set(strata.size() - 1, shares.back() * for_still);
+  return densities;
+}
+
+}  // namespace echopath

@@ -1,0 +1,84 @@
+"""Frames of a radar at rest: what stands still sends the same samples in all of them, whatever moves beside it."""
+import numpy as np
+import pytest
+
+import echopath as ep
+
+CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=500e6, num_samples=64, sampling_rate=5e6, num_chirps=4,
+                          chirp_interval=50e-6)
+RADAR = ep.Radar(CHIRPS, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.01, 0))], position=(0, 0, 1))
+INTERVAL = 0.05  # s
+
+
+def room() -> ep.Scene:
+    """Smooth and rough things before a wall that mirrors, and a ball that flies where it hides none of them."""
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(5, 3), name="wall", position=(8, -2.5, 0), yaw=-np.pi / 2,
+              material=ep.materials["concrete"].replace(scattering=0.2, mirror=True))
+    scene.add(ep.actors.sphere(radius=0.3), name="globe", position=(4, -2, 0.8), material="metal", smooth=True)
+    for place in range(3):
+        scene.add(ep.actors.box(size=(0.5, 0.5, 0.4)), name=f"box_{place}", position=(3 + place, -1 - place, 0), yaw=0.4 * place,
+                  material=ep.materials["wood"].replace(scattering=0.4))
+    scene.add(ep.actors.sphere(radius=0.25), name="ball", position=(3, 1.5, 1), speed=1.0, material="metal", smooth=True)
+    return scene
+
+
+def of_what_stands_still(frame) -> np.ndarray:
+    return ep.decompose(frame.paths, RADAR, {"still": ~ep.hits("ball*")}, tolerance=1e-12)["still"]
+
+
+def differences(scene, **keywords) -> list[float]:
+    """Of the samples of what stands still from those of frame 0, relative to the largest of these."""
+    sequence = ep.Sequence(scene, RADAR, interval=INTERVAL, noise_seed=None, guard=False, **keywords)
+    first, *later = [of_what_stands_still(frame) for frame in sequence]
+    return [np.abs(cube - first).max() / np.abs(first).max() for cube in later]
+
+
+@pytest.mark.parametrize("rays", [
+    pytest.param({"num_rays": 2_000}, id="few rays, shared out without a pilot"),
+    pytest.param({"num_rays": 20_000}, id="rays that a pilot shares out"),
+    pytest.param({"target_error_db": 1.0, "max_rays": 60_000}, id="rays that an error asks for"),
+])
+def test_the_samples_of_what_stands_still_are_those_of_the_frame_before(rays):
+    """Rays shared out for each frame by itself leave -30 to -50 dB."""
+    assert max(differences(room(), frames=4, **rays)) < 1e-9
+
+
+def test_they_are_where_something_comes_and_goes():
+    scene = room()
+    scene.add(ep.actors.sphere(radius=0.2), name="ball_that_comes", position=(5, 2, 1), material="metal", smooth=True)
+    scene["ball_that_comes"].lifetime = (0.9 * INTERVAL, 2.5 * INTERVAL)
+    assert max(differences(scene, frames=4, num_rays=20_000)) < 1e-9
+
+
+def test_a_frame_alone_shares_its_rays_out_likewise():
+    sequence = ep.Sequence(room(), RADAR, frames=3, interval=INTERVAL, num_rays=20_000, guard=False)
+    alone = ep.simulate(room(), RADAR, start_time=sequence.times[2], num_rays=20_000, scatterers="surface", guard=False)
+    assert alone.noisy_cube.tobytes() == sequence[2].noisy_cube.tobytes()
+
+
+def echo_of_sphere(radius: float, distance: float) -> float:
+    """Power in W of a metal sphere: the field at 1 m, radius / (2 d (d + radius)), d from its next point (geometrical optics)."""
+    wavelength = 299792458.0 / CHIRPS.start_frequency
+    field = wavelength / (4 * np.pi) * radius / (2 * (distance - radius) * distance)
+    return RADAR.transmit_power * field**2
+
+
+def error_db(frame, name: str, expected: float) -> float:
+    return abs(10 * np.log10(ep.received_power(frame.paths.select(f"T '{name}' R")).power / expected))
+
+
+def test_what_moves_gets_the_rays_that_its_echo_needs():
+    for frame in ep.Sequence(room(), RADAR, frames=3, interval=INTERVAL, num_rays=20_000, noise_seed=None, guard=False):
+        to_centre = np.hypot(3.0 + frame.paths.frame.trace_time, 1.5)
+        assert error_db(frame, "ball", echo_of_sphere(0.25, to_centre)) < 0.2
+
+
+def test_a_part_that_stands_still_of_an_object_that_moves_is_found():
+    scene = room()
+    scene.add(name="carousel", position=(5, 1, 1))
+    scene.add(ep.actors.sphere(radius=0.3), name="post", parent="carousel", material="metal", smooth=True)
+    scene.add(ep.actors.sphere(radius=0.1), name="horse", parent="carousel", position=(0, 1.0, 0), speed=2.0, material="metal",
+              smooth=True)
+    for frame in ep.Sequence(scene, RADAR, frames=2, interval=INTERVAL, num_rays=20_000, noise_seed=None, guard=False):
+        assert error_db(frame, "carousel/post", echo_of_sphere(0.3, np.hypot(5, 1))) < 0.2

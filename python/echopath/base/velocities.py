@@ -7,9 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def ambiguity_of(radar: Any) -> float:
-    """m/s, by which radial velocities differ that look the same; inf for a single chirp."""
-    return 2.0 * float(radar.waveform.max_velocity(radar.num_slots))
+def ambiguity_of(radar: Any, folds: int = 0) -> float:
+    """m/s, by which radial velocities differ that look the same; inf for a single chirp.
+
+    folds: as of `estimate_angles`; where some were tried, transmitters in turns tell velocities apart from slot to slot
+    """
+    return 2.0 * float(radar.waveform.max_velocity(1 if folds else radar.num_slots))
 
 
 def folded(velocities: NDArray[np.float64], ambiguity: float) -> NDArray[np.float64]:

@@ -6,12 +6,15 @@ import numpy as np
 from .. import _core
 from ..base.rotations import matrices
 
+_BORESIGHT = 1.0, 0.0, 0.0  # in an antenna's frame
+
 
 def isotropic_power(radar, points, time: float):
     """Power in W that the first receiver would have from the first transmitter over a target of 1 m^2 at points [N, 3] in m.
 
     P = Pt Gt Gr lambda^2 / ((4 pi)^3 Rt^2 Rr^2) at the start frequency, to which the amplitudes of paths belong; gains are
-    those of the antennas' patterns, polarisation is left out. points: in world axes at `time` in s. Returns [N].
+    those of the antennas' patterns, polarisation is left out. points: in world axes at `time` in s. Returns [N], not
+    finite at an antenna.
     """
     world = radar.world_from_radar(time)
     own = (points - world[:3, 3]) @ world[:3, :3]
@@ -19,13 +22,14 @@ def isotropic_power(radar, points, time: float):
     gain_in, distance_in = _leg(radar.receivers[0], own)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     spread = (4.0 * np.pi) ** 3 * distance_out**2 * distance_in**2
-    return radar.transmit_power * gain_out * gain_in * wavelength**2 / spread
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return radar.transmit_power * gain_out * gain_in * wavelength**2 / spread
 
 
 def cross_section_dbsm(power, radar, points, time: float):
     """The cross section in dBsm [N] of what sends so much power [N] in W back from points, as of `isotropic_power`.
 
-    Minus infinity for no power, NaN where the antennas hear nothing.
+    Minus infinity for no power, NaN where the antennas hear nothing, one of them at an antenna.
     """
     unit = isotropic_power(radar, points, time)
     with np.errstate(divide="ignore"):
@@ -33,8 +37,9 @@ def cross_section_dbsm(power, radar, points, time: float):
 
 
 def _leg(antenna, points) -> tuple:
-    """(power gain, distance in m) [N] each, of an antenna toward points in the radar's frame."""
-    ways = points - antenna.position
+    """(power gain, distance in m) [N] each, of an antenna toward points in the radar's frame; of itself that of boresight."""
+    ways = (points - antenna.position) @ matrices(antenna.orientation)  # in the antenna's frame
     distance = np.linalg.norm(ways, axis=1)
-    directions = ways / distance[:, None] @ matrices(antenna.orientation)  # in the antenna's frame
+    ways[distance == 0.0] = _BORESIGHT
+    directions = ways / np.where(distance == 0.0, 1.0, distance)[:, None]
     return (np.abs(antenna.pattern.field(directions)) ** 2 if len(points) else np.zeros(0)), distance

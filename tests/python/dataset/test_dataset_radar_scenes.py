@@ -130,6 +130,41 @@ def test_what_stands_stands_for_radars_beyond_their_unambiguous_speed(tmp_path):
     assert abs(ball["vr_compensated"]) < VELOCITY_CELL
 
 
+def test_folds_tell_who_comes_towards_a_fast_radar(tmp_path):
+    """Three transmitters in turns see +-13 m/s: at 20 m/s, what comes with 15 m/s had been given away as 11 m/s the other way."""
+    speed, oncoming = 20.0, 15.0
+    antennas = "".join(f"[[radar.transmitters]]\nposition = [0.0, {-0.0156 * k:.4f}, 0.0]\n" for k in (1, 2))
+    text = TEMPLATE.replace("scenes = 4", "scenes = 1").replace("frames = 3", "frames = 1").replace(
+        f"speed = {EGO}\n", f"speed = {speed}\n", 1).replace("[[radar.receivers]]", antennas + "[[radar.receivers]]", 1)
+    text = text.replace("chirp_interval = 1e-4", "chirp_interval = 2.5e-5").replace("[detections]\n", "[detections]\nfolds = 1\n")
+    text = text.replace(f"yaw_deg = 0.0\nspeed = {SPEED}", f"yaw_deg = 180.0\nspeed = {oncoming}")
+    (tmp_path / "oncoming.toml").write_text(text)
+    list(dataset.make(tmp_path / "oncoming.toml", tmp_path / "made"))
+    dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    points = sequences_of(tmp_path)[0].radar_data
+    walker = points[points["label_id"] == Label.PEDESTRIAN.value][0]
+    assert walker["vr"] == pytest.approx(-(speed + oncoming) * np.cos(walker["azimuth_sc"]), abs=0.6)
+    assert walker["vr_compensated"] == pytest.approx(-oncoming * np.cos(walker["azimuth_sc"]), abs=0.6)
+    ball = points[np.argmax(np.where(points["label_id"] == Label.STATIC.value, points["rcs"], -99.0))]
+    assert abs(ball["vr_compensated"]) < 0.6
+
+
+def test_leakage_at_the_antennas_is_told_like_what_stands(tmp_path):
+    """Noise puts leakage at 0 m in about every other frame, here at the place of the transmitter amid its receivers."""
+    leakage = f"[radar.receiver]\nleakage_db = [{[-90.0] * 8}]\n"
+    text = TEMPLATE.replace("frames = 3", "frames = 1").replace("num_rays = 3000", "num_rays = 100").replace(
+        "[radar.waveform]", leakage + "[radar.waveform]")
+    for k in range(8):
+        text = text.replace(f"position = [0.0, {0.00195 * k:.5f}, 0.0]", f"position = [0.0, {0.00195 * (k - 3.5):.6f}, 0.0]")
+    (tmp_path / "leaking.toml").write_text(text)
+    list(dataset.make(tmp_path / "leaking.toml", tmp_path / "made"))
+    dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    points = np.concatenate([one.radar_data for one in sequences_of(tmp_path)])
+    leaked = points[points["range_sc"] == 0.0]
+    assert len(leaked) and not np.isfinite(leaked["rcs"]).any()
+    assert leaked["vr_compensated"] == pytest.approx(EGO * np.cos(leaked["azimuth_sc"]), abs=1e-2)  # it goes along
+
+
 def test_tracks_last_over_the_frames_of_a_scene_alone(written):
     tracks = [{point["track_id"] for point in one.radar_data if point["label_id"] == Label.PEDESTRIAN.value}
               for one in sequences_of(written)]

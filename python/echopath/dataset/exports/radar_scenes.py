@@ -21,6 +21,7 @@ from ...base.files import write_texts, written_whole
 from ...base.rates import radar_rate
 from ...base.velocities import ambiguity_of, folded
 from ...detections.detections import Detections
+from ...detections.directions import toward
 from ...frame_file.h5 import writing
 from ..classes import CODES
 from ..opened import Dataset, dataset_rule
@@ -71,11 +72,12 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
         points that no moving road user makes; "omit": they are left out. `write_osi` has them as CLUTTER of
         existence_probability 0
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
-    the radar equation with the gains of the first antennas), vr and vr_compensated (m/s, receding positive; the second without
-    the radar's own motion, the smallest of those that look the same), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid,
-    track_id ("" of what is static or clutter), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset
-    (Kraus et al. 2021): 1000 times its class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has
-    the track and the label_id of its object.
+    the radar equation with the gains of the first antennas, not finite for leakage at 0 m), vr and vr_compensated (m/s, receding
+    positive; the second without the radar's own motion, the smallest of those that look the same, with `folds` in [detections]
+    to the transmitters in turns), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
+    clutter), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its
+    class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its
+    object.
     Ranges and azimuths count from where sensors.json has the sensor in the car: between transmitters and receivers
     (`Detections.centre`). odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame, and
     behind them vy (m/s), which is not 0 where the radar's frame does not look to where it drives: x_cc is ahead of the car
@@ -102,6 +104,7 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, senso
     """Writes one scene of the sensor of a number; returns what sequences.json says of it."""
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
+    ambiguity = ambiguity_of(radar, (stored.settings.get("detections") or {}).get("folds", 0))
     classes = dataset.classes(scene)
     frames = dataset.of_scene(scene)
     points, odometry = [], np.zeros(len(frames), ODOMETRY)
@@ -111,7 +114,7 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, senso
         ahead, aside, _ = pose.velocity_of(np.zeros(3))
         odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw, ahead, pose.yaw_rate, aside)
         found = detections_of(dataset, one)
-        rows = _points_of(found, one.number, scene, radar, time, pose, classes)
+        rows = _points_of(found, one.number, scene, radar, time, pose, classes, ambiguity)
         rows["sensor_id"] = sensor
         points.append(rows if clutter == "static" else rows[are_echoes(found)])
     _write_data(folder / "radar_data.h5", np.concatenate(points), odometry)
@@ -128,8 +131,8 @@ def _pose(radar: Any, time: float) -> _Pose:
 
 
 def _points_of(found: Detections, number: int, scene: int, radar: Any, time: float, pose: _Pose,
-               classes: dict[str, Any]) -> NDArray[Any]:
-    """The rows of one frame, but for the number of the sensor."""
+               classes: dict[str, Any], ambiguity: float) -> NDArray[Any]:
+    """The rows of one frame, but for the number of the sensor. ambiguity: m/s, of the velocities found"""
     rows = np.zeros(len(found), POINTS)
     own = found.points                                     # in the radar's frame
     world = own @ pose.world[:3, :3].T + pose.world[:3, 3]
@@ -138,7 +141,7 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
     rows["rcs"] = cross_sections_dbsm(found, radar, time)
     rows["vr"] = found.velocity
-    rows["vr_compensated"] = folded(found.velocity - _own_velocity(found, own, pose), ambiguity_of(radar))
+    rows["vr_compensated"] = folded(found.velocity - _own_velocity(found, pose), ambiguity)
     rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
     rows["uuid"] = [_identity(number, index) for index in range(len(found))]
     rows["track_id"] = ["" if kind == "static" else _identity(scene, name) for kind, name in zip(kinds, found.object)]
@@ -147,10 +150,9 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     return rows
 
 
-def _own_velocity(found: Detections, own: NDArray[np.float64], pose: _Pose) -> NDArray[np.float64]:
+def _own_velocity(found: Detections, pose: _Pose) -> NDArray[np.float64]:
     """Radial velocity in m/s that a point at rest would have, [D]: what the radar's own motion makes."""
-    ways = own - found.centre
-    directions = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    directions = toward(found.azimuth, np.nan_to_num(found.elevation))
     return np.asarray(-directions @ pose.velocity_of(found.centre))
 
 

@@ -37,14 +37,17 @@ _OF_TRAFFIC: dict[str, ClassName] = {"bus": "bus", "coach": "bus", "tram": "trai
 
 def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], named: NamedGlobs = ()) -> dict[str, ClassName]:
     """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors,
-    before which the types of traffic tell buses and trams, or as motion captures of people; and behind them of those that
-    labels name otherwise.
+    before which the types of traffic tell buses and trams, as motion captures of people, or as groups of what they carry;
+    and behind them of those that labels name otherwise.
 
     named: of the labels: a glob that was chosen takes their name or what they consist of, else they have the class of the
         object of the table that they are, or are part of
     """
-    found = {one["name"]: _chosen_class(chosen, one["name"]) or _usual_class(one) for one in objects}
-    paths = {"/".join(filter(None, (one.get("parent"), one["name"]))): found[one["name"]] for one in objects}
+    paths = {_full_name(one): _chosen_class(chosen, one["name"]) or _usual_class(one) for one in objects}
+    groups = [_full_name(one) for one in objects if one.get("group") and not _chosen_class(chosen, one["name"])]
+    for group in sorted(groups, key=lambda path: path.count("/"), reverse=True):  # those that others carry first
+        paths[group] = _joint_class({kind for path, kind in paths.items() if path.rpartition("/")[0] == group})
+    found = {one["name"]: paths[_full_name(one)] for one in objects}
     for name, globs in named:
         if name not in found:
             found[name] = _chosen_class(chosen, name, *globs) or _class_below(paths, globs)
@@ -57,15 +60,23 @@ def _chosen_class(chosen: dict[str, ClassName], *names: str) -> ClassName | None
 
 
 def _class_below(paths: dict[str, ClassName], globs: Iterable[str]) -> ClassName:
-    """Of the objects, by their full names, that globs take or are within: of those that carry each other the ones carried.
-    Road users of several classes are "other"."""
+    """Of the objects, by their full names, that globs take or are within: of those that carry each other the ones carried."""
     found = set()
     for glob in globs:
         owners = [path for path in paths if _core.glob_takes(path, glob) or _core.glob_takes(glob, path)]
         deepest = max((path.count("/") for path in owners), default=0)
         found |= {paths[path] for path in owners if path.count("/") == deepest}
-    users = found - {"static"}
+    return _joint_class(found)
+
+
+def _joint_class(kinds: set[ClassName]) -> ClassName:
+    """Of several objects together: road users of several classes are "other"."""
+    users = kinds - {"static"}
     return users.pop() if len(users) == 1 else "other" if users else "static"
+
+
+def _full_name(one: dict[str, Any]) -> str:
+    return "/".join(filter(None, (one.get("parent"), one["name"])))
 
 
 def _usual_class(one: dict[str, Any]) -> ClassName:

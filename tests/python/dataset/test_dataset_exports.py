@@ -133,6 +133,21 @@ def test_motion_captures_are_people():
     assert found == {"a": "pedestrian", "b": "static", "c": "van", "d": "cyclist"}
 
 
+def test_groups_are_what_they_carry():
+    """By the objects below them, not by what these carry in turn; a glob goes before it."""
+    objects = [{"name": "lane", "group": True}, {"name": "convoy", "group": True, "parent": "lane"},
+               {"name": "car", "actor": "car", "parent": "lane/convoy"},
+               {"name": "roof", "actor": "standing_person", "parent": "lane/convoy/car"},
+               {"name": "sign", "actor": "traffic_sign", "parent": "lane"}, {"name": "yard", "group": True},
+               {"name": "dog", "actor": "dog", "parent": "yard"}, {"name": "child", "actor": "child", "parent": "yard"},
+               {"name": "crowd", "group": True}, {"name": "one", "actor": "runner", "parent": "crowd"},
+               {"name": "fence", "group": True}, {"name": "wall", "actor": "wall", "parent": "fence"}]
+    found = classes_of(objects, {"crowd": "pedestrian_group"})
+    assert {name: found[name] for name in ("lane", "convoy", "yard", "crowd", "fence")} == {
+        "lane": "car", "convoy": "car", "yard": "other", "crowd": "pedestrian_group", "fence": "static"}
+    assert found["roof"] == "pedestrian"
+
+
 def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
     """By a glob of [dataset.classes] that takes their name or what they consist of, else by the object that they are part of."""
     text = TEMPLATE.format(keep="labels").replace("frames = 2\ninterval = 0.05\n", "").replace(

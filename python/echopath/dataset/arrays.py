@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 CELLS = ("nothing", "object", "ghost")
 KINDS = tuple(CODES)
+_POWER = {"units": "W"}
 _SCENES = 64  # whose classes are remembered
 
 
@@ -26,32 +27,42 @@ def lazy_arrays(dataset: Dataset) -> XarrayDataset:
     from .maps_array import MapsArray  # late: a class of xarray's, which is not always installed
 
     first = dataset[0].frame
-    velocity, range_ = first.velocity, first.range
-    shape = (len(dataset), len(velocity), len(range_))
+    labels = next(iter(first.labels.values()), None)
+    axes = {"velocity": first.velocity, "range": first.range}
+    if labels is not None and labels.azimuth is not None:
+        axes["azimuth"] = labels.azimuth
+    row = "azimuth" if "azimuth" in axes else "velocity"
 
-    def maps(read: Callable[[DatasetFrame], NDArray[Any]], dtype: str, attributes: dict[str, Any]) -> Any:
+    def maps(read: Callable[[DatasetFrame], NDArray[Any]], row: str, dtype: str, attributes: dict[str, Any]) -> Any:
+        shape = (len(dataset), len(axes[row]), len(axes["range"]))
         lazy = xarray.core.indexing.LazilyIndexedArray(MapsArray(dataset, read, shape, dtype))
-        return ("frame", "velocity", "range"), lazy, attributes
+        return ("frame", row, "range"), lazy, attributes
 
     variables: dict[str, Any] = {}
     words: dict[str, Any] = {}
     if dataset.keep != "labels":
-        variables["power"] = maps(_power, "f4", {"units": "W", "long_name": "power with noise, mean over channels"})
-    if first.labels:
+        variables["power"] = maps(_power, "velocity", "f4", _POWER | {"long_name": "power with noise, mean over channels"})
+        if row == "azimuth":
+            variables["azimuth_power"] = maps(_azimuth_power, row, "f4", _POWER | {"long_name": "power with noise"})
+    if labels is not None:
         kinds = _Kinds(dataset)
-        variables["cell"] = maps(_cells, "i1", {})
-        variables["kind"] = maps(kinds.of, "i1", {})
+        variables["cell"] = maps(_cells, row, "i1", {})
+        variables["kind"] = maps(kinds.of, row, "i1", {})
         words = words_of("cell", CELLS) | words_of("kind", KINDS)
     per_scene = dataset.template.settings.frames
     scenes = np.array([number // per_scene for number in dataset.numbers])
     splits = {scene: dataset.template.split_of(int(scene)) for scene in np.unique(scenes)}
-    coordinates = {"frame": dataset.numbers, "scene": ("frame", scenes), "split": ("frame", [splits[one] for one in scenes]),
-                   "velocity": axis("velocity", velocity), "range": axis("range", range_)} | words
-    return xarray.Dataset(variables, coords=coordinates)
+    coordinates = {"frame": dataset.numbers, "scene": ("frame", scenes), "split": ("frame", [splits[one] for one in scenes])}
+    coordinates |= {name: axis(name, values) for name, values in axes.items()}
+    return xarray.Dataset(variables, coords=coordinates | words)
 
 
 def _power(one: DatasetFrame) -> NDArray[np.float32]:
     return np.asarray(one.frame.power)
+
+
+def _azimuth_power(one: DatasetFrame) -> NDArray[np.float32]:
+    return np.asarray(one.frame.azimuth_power)
 
 
 def _cells(one: DatasetFrame) -> NDArray[np.int8]:

@@ -172,8 +172,10 @@ class Dataset:
         power: f32 [frame, velocity, range] W, mean over channels, with noise; not with keep="labels"
         cell: i8, nothing, object or ghost; kind: i8, class of the object or of the ghost's object, -1: none; indices of the
             coordinates cell_names and kind_names, where there are labels
-        Coordinates: frame, the numbers; scene and split of each; velocity (m/s) and range (m) of the first frame. Needs xarray,
-        raises ModuleNotFoundError without it, IndexError without frames, ValueError on reading a map of another size.
+        For labels of the plane "range_azimuth", cell and kind are [frame, azimuth, range], as azimuth_power is: f32 W, with noise
+        Coordinates: frame, the numbers; scene and split of each; velocity (m/s), range (m) and azimuth (rad, left positive) of
+        the first frame. Needs xarray, raises ModuleNotFoundError without it, IndexError without frames, ValueError on reading a
+        map of another size.
         """
         return lazy_arrays(self)
 

@@ -57,3 +57,22 @@ def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monk
     travelled = pickle.loads(pickle.dumps(opened.to_xarray()))  # as to the workers of a loader that spawns them
     for name in ("power", "cell", "kind"):
         np.testing.assert_array_equal(travelled[name].values, arrays[name].values)
+
+
+@pytest.mark.parametrize("keep", ["maps", "labels"])
+def test_xarray_has_the_cells_of_maps_over_azimuth(tmp_path, keep):
+    """Beside the range-Doppler map, which has another number of rows."""
+    pytest.importorskip("xarray")
+    scene = SCENE.replace("[[objects]]", "[[radar.receivers]]\nposition = [0.0, 0.012, 1.0]\n[[objects]]", 1)
+    head = HEAD.replace('keep = "labels"', f'keep = "{keep}"').replace("scenes = 6", "scenes = 1")
+    make(written(tmp_path, head + scene + 'plane = "range_azimuth"\nnoise = false\n'), tmp_path / "out")
+    opened = dataset.open(tmp_path / "out")
+    arrays, labels = opened.to_xarray(), opened[1].frame.labels["parts"]
+    assert arrays.cell.dims == arrays.kind.dims == ("frame", "azimuth", "range") and labels.mask.any()
+    np.testing.assert_array_equal(arrays.azimuth, labels.azimuth)
+    np.testing.assert_array_equal(arrays.cell[1], np.where(labels.ghost_map >= 0, 2, labels.object_map >= 0))
+    np.testing.assert_array_equal(arrays.kind[1] >= 0, arrays.cell[1] > 0)
+    assert set(arrays) == {"cell", "kind"} | ({"power", "azimuth_power"} if keep == "maps" else set())
+    if keep == "maps":
+        np.testing.assert_array_equal(arrays.azimuth_power[1], opened[1].frame.azimuth_power)
+        assert arrays.power.dims == ("frame", "velocity", "range")

@@ -14,7 +14,6 @@ from .large_planes import VEHICLE_LENGTH, large_planes
 from .scene import Scene
 
 THICKEST = 4.5  # m, of the second longest side: what stands yawed takes more than the 4 m of a lorry
-GLOB_LETTERS = set("*?[")  # a name that has any stands for others, too
 GAP = 0.1    # m, along the axis that separates two boxes most: parts of one body touch
 CHUNK = 256  # boxes that are compared with all others at a time
 
@@ -31,7 +30,7 @@ def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None)
     its parts. A child that surrounds the radar, as a town, a room or a tunnel does, is no object: here the things in it are, the
     nodes below the first one that has several, or below a larger one whose parts stand apart, as far as they are no larger
     than a vehicle. What carries the radar is no larger itself, and has no things. No thing or part is what is a mirror or such
-    as `mark_mirrors` would flag. Names with *, ? or [ are left out, since globs cannot take them alone.
+    as `mark_mirrors` would flag.
 
     scene: of `Scene` or `load_scene`; radar: with its antennas in the scene
     time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0.
@@ -43,7 +42,7 @@ def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None)
     time = radar.middle_of_frame() if time is None else time
     require_motion("radar", radar, (time,))
     usual = _core.meshes_of_usual_objects(scene, radar, time)
-    names = [name for name in _names_of(scene, radar, usual, time) if not GLOB_LETTERS & set(name)]
+    names = _names_of(scene, radar, usual, time)
     lasts = Counter(name.split("/")[-1] for name in names)
     return {name if lasts[last := name.split("/")[-1]] > 1 else last: name for name in names}
 

@@ -47,9 +47,14 @@ def test_things_of_a_town_are_found_and_parts_of_a_house_are_not(town):
 def test_usual_objects_keep_their_names_and_go_before_things(town):
     scene = town
     scene.add(shapes.box((0.5, 0.6, 1.8)), name="pole", material=ROUGH, position=(9.0, 1.0, 0.0))
-    _add(scene, "town/block", "what[ever]", (1.0, 1.0, 1.0), (14.0, 2.0, 0.0))
+    _add(scene, "town/block", "box [1]", (1.0, 1.0, 1.0), (14.0, 2.0, 0.0))  # letters like any others to a glob
     found = ep.find_objects(scene, make_radar())
-    assert found == {"pole": "pole", "town/block/pole": "town/block/pole"} | CARS
+    assert found == {"pole": "pole", "town/block/pole": "town/block/pole", "box [1]": "town/block/box [1]"} | CARS
+    paths = ep.trace(scene, make_radar(), num_rays=500, max_bounces=1)
+    boxes = [mesh.id for mesh in scene.meshes if mesh.name == found["box [1]"]]
+    families = ep.families(paths, {"box": found["box [1]"]})
+    assert np.array_equal(families.object_of_path == 0, np.isin(paths.mesh_id[paths.offsets], boxes))
+    assert np.any(families.object_of_path == 0)
 
 
 def test_a_group_of_the_scene_whose_parts_stand_apart_gives_way_to_them():

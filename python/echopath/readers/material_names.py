@@ -4,7 +4,6 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterable, Iterator, Mapping, MutableMapping
-from fnmatch import translate
 
 from .. import _core
 from ..arguments.checks import refused
@@ -14,6 +13,7 @@ from ..scene.materials import known_material, materials
 Meaning = _core.Material | str
 
 DEFAULT = "concrete"  # of names that nothing takes
+_OF_GLOB = {"*": ".*", "?": "."}  # all other letters of a pattern stand for themselves
 
 # Patterns of names, the first that takes a name decides. A material of several words stands before those of one.
 _NAMES: dict[str, str] = {
@@ -62,7 +62,8 @@ _NAMES: dict[str, str] = {
 
 @functools.cache
 def _matcher(pattern: str):
-    return re.compile(translate(pattern.lower())).fullmatch
+    letters = (_OF_GLOB.get(letter, re.escape(letter)) for letter in pattern.lower())
+    return re.compile("".join(letters), re.DOTALL).fullmatch
 
 
 def _words(name: str) -> list[str]:

@@ -46,6 +46,15 @@ def test_patterns_that_take_nothing_are_told(tmp_path):
         assert not [note for note in ep.load_model(path, materials=own).notes if note.startswith("materials")]
 
 
+def test_brackets_in_patterns_stand_for_themselves(tmp_path):
+    path = tmp_path / "car.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl Lack [rot]\nf 1 2 3\n")
+    for pattern in ("Lack [rot]", "*[ROT]", "lack ?rot?"):
+        model = ep.load_model(path, materials={pattern: "metal"})
+        assert not model.notes and [node.material for node in model.nodes if node.mesh] == ["metal"]
+    assert material_of("Lack r", {"lack [rot]": "metal"})[0] == "concrete"
+
+
 def test_info_tells_what_lies_on_each_other_in_a_model(tmp_path, capsys):
     pytest.importorskip("trimesh")
     import trimesh

@@ -19,7 +19,7 @@ def named_globs(objects: Objects) -> list | None:
         return None
     found = objects if isinstance(objects, (Mapping, set, frozenset)) else listed(objects)
     if not isinstance(found, (Mapping, list)):  # sets have no first, which is who owns what several globs take
-        raise refused(TypeError, "objects", "a dict or a list of globs, as ['walker']", objects)
+        raise refused(TypeError, "objects", "a dict or a list of globs, as ['walker'] or as ep.find_objects gives it", objects)
     pairs = found.items() if isinstance(found, Mapping) else [_pair(glob) for glob in found]
     return list({_name(name): _globs_of(globs) for name, globs in pairs}.items())
 

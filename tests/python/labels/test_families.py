@@ -87,6 +87,7 @@ def test_family_is_a_value(street):
     ({"a": "pedestrain"}, ValueError, "nearest names: pedestrian"),
     ({"": "street"}, ValueError, "objects: must have non-empty names"),
     ({"a": "*", "b": "street"}, ValueError, "objects: must each have a mesh that none before it takes"),
+    ("found", TypeError, "objects: must be a dict or a list of globs, as .* ep.find_objects gives it, got .found."),
     ("pedestrian", TypeError, "objects: must be a dict or a list"),
 ])
 def test_bad_objects_are_named(street, objects, error, text):

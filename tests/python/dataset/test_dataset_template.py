@@ -56,6 +56,31 @@ def test_objects_stand_apart_as_they_ask(path):
             assert all(np.hypot(*np.subtract(one, other)) >= 1.0 for other in placed[:index])
 
 
+def test_what_is_left_out_takes_along_what_it_carries(tmp_path):
+    """A lamp on the wall, a bulb in it, and a sign on the second plate; a carrier that nobody names is a fault."""
+    carried = "".join(f"""[[objects]]
+name = "{name}"
+actor = "plate"
+parameters = {{width = 0.1, height = {{uniform = [0.1, 0.2]}}}}
+material = "metal"
+parent = {parent}
+""" for name, parent in (("lamp", '"wall"'), ("bulb", '"wall/lamp"'), ("sign", '{choice = ["plate_2", "plate_2"]}')))
+    template = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", carried + "[trace]")))
+    drawn = [template.draw(number) for number in range(40)]
+    for carrier, names in (("wall", ("lamp", "bulb")), ("plate_2", ("sign",))):
+        is_there = [carrier in names_of(one) for one in drawn]
+        assert 0 < sum(is_there) < len(drawn)
+        for name in names:
+            assert [name in names_of(one) for one in drawn] == is_there
+            assert [f"objects.{name}.parameters.height" in one.values for one in drawn] == is_there
+    with_lamp = next(one.number for one in drawn if "lamp" in names_of(one))
+    assert "wall/lamp/bulb" in template.scene_file(with_lamp).scene
+    carried = carried.replace('"wall"', '"wal"')
+    misspelt = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", carried + "[trace]")))
+    with pytest.raises(ValueError, match="objects.lamp: parent: must be the full name of a node .*, got 'wal'"):
+        misspelt.scene_file(with_lamp)
+
+
 def test_other_keys_and_more_scenes_change_no_draw(path, tmp_path):
     before = dataset.Template(path).draw(4)
     post = 'name = "post"\nactor = "plate"\nparameters = {width = 1, height = 1}\nposition = [{uniform = [1, 2]}, 9, 0]\n'

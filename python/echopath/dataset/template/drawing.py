@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -90,6 +91,7 @@ class DrawnObjects:
 
     def __init__(self, drawing: Drawing):
         self._drawing = drawing
+        self._left_out: list[tuple[re.Pattern[str], int]] = []  # of full names, the number of a copy that follows, and the last
         self._places: list[tuple[np.ndarray, float]] = []  # (x, y) and radius in m of what stands apart
 
     def of(self, entries: Any) -> list[Any]:
@@ -111,7 +113,21 @@ class DrawnObjects:
         if self._drawing.random(f"{place}.presence").random() >= chance:
             count = 0
         names = [f"{name}_{number}" for number in range(1, int(count) + 1)] if is_row else [name] * int(count)
-        return [self._one(one, dict(entry), f"objects.{one}") for one in names]
+        if is_row or not names:
+            self._leave_out(name, entry.get("parent"), int(count), is_row)
+        made = (self._one(one, dict(entry), f"objects.{one}") for one in names)
+        return [one for one in made if one is not None]
+
+    def _leave_out(self, name: str, parent: Any, last: int, is_row: bool) -> None:
+        """Notes that an entry has no copies behind the last; of an entry without copies, that it is not there."""
+        if parent is None or isinstance(parent, str):
+            full_name = re.escape("/".join(filter(None, (parent, name))))
+            self._left_out.append((re.compile(full_name + (r"_(\d{1,9})" if is_row else "()") + "(/|$)"), last))
+
+    def _is_left_out(self, carrier: Any) -> bool:
+        """Whether an object, or what carries it, is one that chance or count leave out."""
+        found = [(pattern.match(carrier), last) for pattern, last in self._left_out if isinstance(carrier, str)]
+        return any(name is not None and int(name[1] or 1) > last for name, last in found)
 
     def _number(self, value: Any, place: str, rule: str, holds: Callable[[float], bool]) -> float:
         number = self._drawing.of(value, place)
@@ -119,7 +135,10 @@ class DrawnObjects:
             raise ValueError(f"{place}: must be {rule}, got {shown(number)}")
         return float(number)
 
-    def _one(self, name: str, entry: dict[str, Any], place: str) -> dict[str, Any]:
+    def _one(self, name: str, entry: dict[str, Any], place: str) -> dict[str, Any] | None:
+        """The table of an object; None: what carries it is left out of the scene."""
+        if self._is_left_out(self._drawing.of(entry.get("parent"), f"{place}.parent")):
+            return None
         apart, position = entry.pop("apart", None), entry.pop("position", None)
         made: dict[str, Any] = {"name": name} | self._drawing.of(entry, place)
         if apart is not None:

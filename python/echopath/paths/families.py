@@ -96,10 +96,10 @@ def check_objects(scene, objects) -> None:
 def families(paths: _core.Paths, objects: Objects = None) -> Families:
     """Which object each path belongs to, and which ghost it makes, after the Radar Ghost Dataset (Kraus et al. 2021).
 
-    A path belongs to the first of the objects that it touches; what else it touches has mirrored it. Hits that follow each
-    other on one object are one bounce: an echo that touches nothing else is real, whatever its number of hits. What
-    mirrored is named by the child of the scene's root, or below one that holds objects or several mirrors by the largest
-    group that does not, so that the walls of a street are told apart.
+    A path belongs to the first of the objects, in their order here and not on its way, that it touches; what else it touches
+    has mirrored it. Hits that follow each other on one object are one bounce: an echo that touches nothing else is real,
+    whatever its number of hits. What mirrored is named by the child of the scene's root, or below one that holds objects or
+    several mirrors by the largest group that does not, so that the walls of a street are told apart.
     paths: of `trace`
     objects: {name: glob or list of globs}, or a list of globs, which are then the names; None: the children of the scene's
         root that are neither flagged mirrors nor around the antenna at mid-frame, in a `Sequence` at that of its first frame.

@@ -32,17 +32,27 @@ def small_radar() -> ep.Radar:
 
 def hand_made_paths(street, routes, weight=0.0) -> ep.Paths:
     """Paths [P] over [[("street/floor", "S"), ...], ...], of weight [P] or one for all."""
+    diffuse = [sum((event == "D") << k for k, (_, event) in enumerate(route)) for route in routes]
+    return _paths(street, [[MESHES.index(name) for name, _ in route] for route in routes], diffuse, weight)
+
+
+def diffuse_paths(scene, routes, weight=0.0) -> ep.Paths:
+    """Paths [P] over [[ID of a mesh, ...], ...] that scatter at each of them, in its middle, of weight [P] or one for all."""
+    return _paths(scene, routes, [2 ** len(route) - 1 for route in routes], weight, middle=1.0 / 3.0)
+
+
+def _paths(scene, routes, diffuse, weight, middle=0.0) -> ep.Paths:
     radar = small_radar()
     counts = np.array([len(route) for route in routes], np.uint8)
     hits = np.zeros(int(counts.sum(dtype=int)), HIT)
-    hits["mesh_id"] = [MESHES.index(name) for route in routes for name, _ in route]
-    diffuse = [sum((event == "D") << k for k, (_, event) in enumerate(route)) for route in routes]
+    hits["mesh_id"] = [mesh for route in routes for mesh in route]
+    hits["u"] = hits["v"] = middle
     zeros = np.zeros(len(routes))
     return ep.Paths.from_arrays(
         hits=hits, offsets=np.cumsum(counts, dtype=np.int64) - counts, num_bounces=counts,
         diffuse=np.array(diffuse, np.uint64), weight=(zeros + weight).astype(np.complex64), stratum=zeros.astype(np.uint16),
-        batch=zeros.astype(np.uint8), flags=zeros.astype(np.uint32), scene=street, radar=radar,
-        frame=ep.trace(street, radar, num_rays=100, polarization="scalar").frame)
+        batch=zeros.astype(np.uint8), flags=zeros.astype(np.uint32), scene=scene, radar=radar,
+        frame=ep.trace(scene, radar, num_rays=100, polarization="scalar").frame)
 
 
 def random_routes(count, max_hits, seed):

@@ -9,11 +9,13 @@ from .. import _core
 from ..paths.resolution import Interval, unmet_interval
 from .labels import COMES_INTO_VIEW, NONE, UNRESOLVED, GhostLabel, ObjectLabel, is_occluded
 
+_MOST_NUMBERED = np.iinfo(np.int16).max + 1  # labels, from 0 on, in the maps of objects and ghosts
+
 
 class FamilyCells(NamedTuple):
     """The cells of all families: list of Family; received: power of each, [F] W; regions: of each, dict or None;
 
-    strongest: i16 [V, R], index of the family that a cell belongs to, -1: none; is_above_noise: [F] whether the family's
+    strongest: i32 [V, R], index of the family that a cell belongs to, -1: none; is_above_noise: [F] whether the family's
     own power is above the noise in some cell; peak: W, of each in its strongest cell, [F]; intervals: of each, list [F] of
     Interval in W; of_object: {object: indices of its families}; noise_floor: W, that echoes must exceed to stand out.
     """
@@ -32,14 +34,24 @@ class FamilyCells(NamedTuple):
 def family_cells(owners, mask, noise_floor: float, plane, intervals: dict) -> FamilyCells:
     """owners: CellOwners; mask: bool [V, R]; noise_floor in W; intervals: {family: Interval}."""
     families = owners.families
-    strongest, of_object = np.where(mask, owners.family, NONE).astype(np.int16), {}
+    strongest, of_object = np.where(mask, owners.family, NONE), {}
     for number, family in enumerate(families):
         of_object.setdefault(family.object, []).append(number)
     return FamilyCells(families=families, received=owners.received.tolist(),
-                       regions=_core.label_regions(strongest, owners.own, len(families), plane.rows_wrap),
+                       regions=_regions(strongest, owners.own, len(families), plane.rows_wrap),
                        strongest=strongest, is_above_noise=(owners.peak > noise_floor).tolist(), peak=owners.peak.tolist(),
                        intervals=[intervals.get(family) for family in families], of_object=of_object,
                        noise_floor=noise_floor)
+
+
+def _regions(strongest, own, count: int, rows_wrap: bool) -> list:
+    """Cells of each of `count` families, dict or None. The core numbers those that have cells alone, in 16 bits."""
+    present = np.unique(strongest[strongest != NONE])
+    numbers = np.where(strongest == NONE, NONE, np.searchsorted(present, strongest)).astype(np.int16)
+    regions = [None] * count
+    for family, region in zip(present.tolist(), _core.label_regions(numbers, own, len(present), rows_wrap)):
+        regions[family] = region
+    return regions
 
 
 def occluded_objects(names, found: FamilyCells, visibility: dict, plane) -> list:
@@ -69,15 +81,20 @@ def _families_of(name: str, found: FamilyCells):
 
 
 def label_ghosts(found: FamilyCells, plane):
-    """The labels of the ghosts and i16 [V, R], index of the ghost in each cell, -1: none."""
+    """The labels of the ghosts and i16 [V, R], index of the ghost in each cell, -1: none.
+
+    Ghosts are in the order of the families; those with cells go first where there are more than the map can number.
+    """
     ghosts = [f for f, family in enumerate(found.families) if family.is_ghost]
+    if len(ghosts) > _MOST_NUMBERED:
+        ghosts.sort(key=lambda f: found.regions[f] is None)
     labels = []
     for f in ghosts:
         family = found.families[f]
         labels.append(GhostLabel(object=family.object, ghost_type=family.ghost_type, order=family.order, via=family.via,
                                  class_code=family.class_code, power=found.received[f], received=found.intervals[f],
                                  **_cells(found.regions[f], plane)))
-    return labels, _map_of(found, {f: index for index, f in enumerate(ghosts)})
+    return labels, _map_of(found, {f: index for index, f in enumerate(ghosts) if found.regions[f] is not None})
 
 
 def _object_label(name, real, found: FamilyCells, seen, appears: bool, plane, paths) -> ObjectLabel:

@@ -1,5 +1,6 @@
 """Labels of a crowd keep few signals: they are those that the signals of all families give."""
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from echopath.labels.request import make_request
 from echopath.labels.left_out import LeftOut
 from echopath.labels.cell_owners import ALIKE, SHARED
 from echopath.labels.powers import parts_by_rival
+from support.hand_made import diffuse_paths
 
 SUM = 1e-12  # relative, of parts that add up
 PLANES = ("range_doppler", "range_azimuth")
@@ -181,3 +183,22 @@ def test_cells_are_divided_among_families_early_or_late(paths, radar, monkeypatc
     for one, another in zip(usual.objects + usual.ghosts, other.objects + other.ghosts):
         assert (one.cells, one.box) == (another.cells, another.box)
         assert another.power == pytest.approx(one.power, rel=SUM, abs=0.0)
+
+
+def test_a_crowd_has_more_ghosts_than_its_map_can_number():
+    """Faint ways over any three of 38 triangles, and one over a wall: the ghost of the last of them has all cells."""
+    def triangle(x, y):
+        return ep.Mesh([[x, y - 0.1, -0.1], [x, y + 0.1, -0.1], [x, y, 0.1]], [[0, 1, 2]])
+
+    scene, rough = ep.Scene(), ep.Material(reflectivity=0.5, scattering=1.0)
+    for k in range(38):
+        scene.add(triangle(1.2 + 0.002 * k, -0.5 + 0.025 * k), name=f"body_{k}", material=rough)
+    scene.add(triangle(0.7, 0.5), name="wall", material=rough.replace(mirror=True))
+    routes = [*itertools.permutations(range(38), 3), (37, 38, 37)]
+    paths = diffuse_paths(scene, routes, weight=np.r_[np.full(len(routes) - 1, 1e-9), 1e-3])
+    labels = ep.annotate(paths, noise=False)
+    assert len(labels.ghosts) > 32768 and len({(one.object, one.ghost_type, one.via) for one in labels.ghosts}) > 32768
+    (seen,) = (one for one in labels.ghosts if one.cells)
+    assert (seen.object, seen.via, seen.cells) == ("body_37", ("wall",), np.count_nonzero(labels.mask)) and seen.cells > 0
+    np.testing.assert_array_equal(labels.ghost_map, np.where(labels.mask, labels.ghosts.index(seen), -1))
+    assert seen.peak.power == pytest.approx(labels.whole.max(), rel=1e-6) and not np.any(labels.object_map >= 0)

@@ -59,12 +59,13 @@ def maps_of(paths: list[Path]) -> dict[str, Map]:
     words = [_words(path) for path in paths] if planes else []
     for group, (partition, dims, axes) in planes.items():
         for name, field in (_INDICES | {"mask": "mask"}).items():
-            names, known = None, None
+            names, known, dtype = None, None, np.dtype(bool)
             if name != "mask":
                 names, known = _numbered([one[group][field] for one in words])
+                dtype = known[0].dtype
             variable = name if len(planes) == 1 or name != "dominant" else f"{name}_{partition}"
             read = functools.partial(_read_labels, f"labels/{group}", field, known)
-            found[variable] = Map(dims, axes, np.dtype(bool if known is None else np.int16), {}, read, names)
+            found[variable] = Map(dims, axes, dtype, {}, read, names)
     return found
 
 
@@ -107,7 +108,8 @@ def _numbered(words: list[list[str]]) -> tuple[list[str], list[np.ndarray]]:
     """(all words of frames, each once; the number of each word of each frame among them, that of none last)"""
     names = list(dict.fromkeys(word for one in words for word in one))
     number = {name: place for place, name in enumerate(names)}
-    return names, [np.array([*(number[word] for word in one), NONE], np.int16) for one in words]
+    dtype = np.int16 if len(names) <= np.iinfo(np.int16).max else np.int32  # all frames together may have many ghosts
+    return names, [np.array([*(number[word] for word in one), NONE], dtype) for one in words]
 
 
 def _read_labels(group: str, field: str, numbers: list | None, file, place: int) -> np.ndarray:

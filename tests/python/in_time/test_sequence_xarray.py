@@ -116,3 +116,11 @@ def test_names_are_the_same_in_all_frames_where_objects_come_and_go(tmp_path):
     assert maps.object_names.values.tolist() == ["left", "right"] and maps.object.dtype == np.int16
     found = [first.labels["parts"].object_map.T, second.labels["parts"].object_map.T]
     assert np.array_equal(maps.object[0], found[0]) and np.array_equal(maps.object[1], np.where(found[1] == 0, 1, -1))
+
+
+def test_many_frames_have_more_names_of_ghosts_than_one():
+    words = [[f"{frame}: {ghost}" for ghost in range(12_000)] for frame in range(3)]
+    names, numbers = lazy_maps._numbered(words)
+    assert len(names) == 36_000
+    for one, known in zip(words, numbers):
+        assert [names[number] for number in known[:-1]] == one and known[-1] == -1

@@ -9,6 +9,7 @@ from .. import _core
 from ..arguments.checks import refused
 from ..base.counts import counted
 from ..scene.materials import known_material, materials
+from .names import composed
 
 Meaning = _core.Material | str
 
@@ -62,18 +63,18 @@ _NAMES: dict[str, str] = {
 
 @functools.cache
 def _matcher(pattern: str):
-    letters = (_OF_GLOB.get(letter, re.escape(letter)) for letter in pattern.lower())
+    letters = (_OF_GLOB.get(letter, re.escape(letter)) for letter in composed(pattern).lower())
     return re.compile("".join(letters), re.DOTALL).fullmatch
 
 
 def _words(name: str) -> list[str]:
     """The words of a name in small letters: "M_RoadLine.001" -> ["m", "road", "line"]."""
-    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+", name)]
+    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+", composed(name))]
 
 
 def _takes(pattern: str, name: str, words: list[str]) -> bool:
     takes = _matcher(pattern)
-    return bool(takes(name.lower())) or any(takes(word) for word in words)
+    return bool(takes(composed(name).lower())) or any(takes(word) for word in words)
 
 
 def _pattern(argument: str, value) -> str:

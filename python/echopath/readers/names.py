@@ -2,14 +2,20 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 
 MAX_NAME = 64  # letters of a node's own name; a scene keeps those of all nodes above it, too
 _UNFIT = re.compile(r"[/*?'\"\x00-\x1f\x7f\ud800-\udfff]+")
 
 
+def composed(text: str) -> str:
+    """A name with each letter and its marks as one sign, as keyboards write it: files of macOS take them apart."""
+    return unicodedata.normalize("NFC", text)
+
+
 def fit_name(text: str, instead: str = "node") -> str:
     """A name that a scene takes: signs that it refuses become '_', long ones are cut; `instead` where nothing is left."""
-    return _UNFIT.sub("_", str(text)[:MAX_NAME]).strip() or instead
+    return _UNFIT.sub("_", composed(str(text))[:MAX_NAME]).strip() or instead
 
 
 def unique(name: str, taken: dict[str, int]) -> str:

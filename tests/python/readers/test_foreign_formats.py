@@ -87,6 +87,19 @@ def test_names_in_latin_1_are_those_of_the_mtl_file(tmp_path, end):
     assert scene.meshes[0].material_name == "wood"
 
 
+def test_letters_and_marks_that_a_file_has_apart_are_those_that_a_keyboard_writes(tmp_path):
+    """As names of macOS are; the parts of the letter look the same in every message."""
+    apart = "gru\u0308n", "Ha\u0308user"
+    text = f"v 5 0 0\nv 5 1 0\nv 5 1 1\no {apart[1]}\nusemtl {apart[0]}\nf 1 2 3\n"
+    (tmp_path / f"{apart[1]}.obj").write_text(text, encoding="utf-8")
+    model = ep.load_model(tmp_path / f"{apart[1]}.obj", materials={"gr\u00fcn": "wood"})
+    assert not model.notes
+    scene = ep.Scene()
+    scene.add(model, name="town")
+    ep.hits("town/H\u00e4user").check(scene)
+    assert [(mesh.name, mesh.material_name) for mesh in scene.meshes] == [("town/H\u00e4user", "wood")]
+
+
 @pytest.mark.parametrize("name, content", [("a.obj", b"v 0 0 \xca\n"), ("a.stl", b"solid a\nouter loop\nvertex 0 0 \xca\n"),
                                            ("a.off", b"OFF\n3 1 0\n0 0 \xca\n")])
 def test_words_that_are_no_text_are_written_out_in_messages(tmp_path, name, content):

@@ -81,6 +81,34 @@ parent = {parent}
         misspelt.scene_file(with_lamp)
 
 
+def test_objects_stand_apart_whatever_carries_them(tmp_path):
+    """Plates in a lane that a group turns and shifts, and plates of the scene where that lane leads: places in the world."""
+    lane = """[[objects]]
+name = "lane"
+group = true
+position = [3.0, -4.0, 0.0]
+yaw_deg = 90.0
+[[objects]]
+name = "carried"
+parent = "lane"
+count = 3
+apart = 0.5
+actor = "plate"
+parameters = {width = 0.2, height = 0.2}
+material = "metal"
+position = [{uniform = [0.0, 8.0]}, {uniform = [-0.5, 0.5]}, 1.0]
+"""
+    template = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", lane + "[trace]")))
+    near = 0
+    for number in range(20):
+        scene = template.scene_file(number).scene
+        middles = [scene.world_vertices(mesh.id, 0.0).mean(axis=0)[:2] for mesh in scene.meshes if mesh.name != "wall"]
+        apart = [np.hypot(*(one - other)) for index, one in enumerate(middles) for other in middles[:index]]
+        assert min(apart) >= 1.0 - 1e-9
+        near += min(apart) < 1.2
+    assert near > 0  # they are as close as they may
+
+
 def test_other_keys_and_more_scenes_change_no_draw(path, tmp_path):
     before = dataset.Template(path).draw(4)
     post = 'name = "post"\nactor = "plate"\nparameters = {width = 1, height = 1}\nposition = [{uniform = [1, 2]}, 9, 0]\n'

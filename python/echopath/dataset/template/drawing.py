@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from collections.abc import Callable
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...arguments.shown import shown
+from ...scene.placements import ORIGIN, placement
 from .distributions import REFERENCE, drawn, is_distribution, is_number, refuse_misspelt
 from .references import Source, changed, is_reference, refuse_wrong_reference
 
@@ -92,7 +94,8 @@ class DrawnObjects:
     def __init__(self, drawing: Drawing):
         self._drawing = drawing
         self._left_out: list[tuple[re.Pattern[str], int]] = []  # of full names, the number of a copy that follows, and the last
-        self._places: list[tuple[np.ndarray, float]] = []  # (x, y) and radius in m of what stands apart
+        self._frames: dict[str, np.ndarray] = {}  # world_from_object [4, 4] by full name, at time 0
+        self._places: list[tuple[np.ndarray, float]] = []  # (x, y) in the world and radius in m of what stands apart
 
     def of(self, entries: Any) -> list[Any]:
         if not isinstance(entries, list):
@@ -121,8 +124,8 @@ class DrawnObjects:
     def _leave_out(self, name: str, parent: Any, last: int, is_row: bool) -> None:
         """Notes that an entry has no copies behind the last; of an entry without copies, that it is not there."""
         if parent is None or isinstance(parent, str):
-            full_name = re.escape("/".join(filter(None, (parent, name))))
-            self._left_out.append((re.compile(full_name + (r"_(\d{1,9})" if is_row else "()") + "(/|$)"), last))
+            number = r"_(\d{1,9})" if is_row else "()"
+            self._left_out.append((re.compile(re.escape(_full_name(parent, name)) + number + "(/|$)"), last))
 
     def _is_left_out(self, carrier: Any) -> bool:
         """Whether an object, or what carries it, is one that chance or count leave out."""
@@ -137,28 +140,55 @@ class DrawnObjects:
 
     def _one(self, name: str, entry: dict[str, Any], place: str) -> dict[str, Any] | None:
         """The table of an object; None: what carries it is left out of the scene."""
-        if self._is_left_out(self._drawing.of(entry.get("parent"), f"{place}.parent")):
+        carrier = self._drawing.of(entry.get("parent"), f"{place}.parent")
+        if self._is_left_out(carrier):
             return None
+        frame = self._frame_of(carrier)
         apart, position = entry.pop("apart", None), entry.pop("position", None)
         made: dict[str, Any] = {"name": name} | self._drawing.of(entry, place)
         if apart is not None:
             radius = self._number(apart, f"{place}.apart", "a number of m, at least 0", lambda x: x >= 0.0)
-            made["position"] = self._free_place(position, radius, place)
+            made["position"] = self._free_place(position, radius, place, frame)
         elif position is not None:
             made["position"] = self._drawing.of(position, f"{place}.position")
+        self._frames[_full_name(carrier, name)] = frame @ _placement_of(made)
         return made
 
-    def _free_place(self, position: Any, radius: float, place: str) -> list[float]:
-        """A position of which no other that is to stand apart is nearer than both radii together, seen from above."""
+    def _frame_of(self, carrier: Any) -> np.ndarray:
+        """World_from_carrier [4, 4] at time 0; of a part of an object that of the object."""
+        path = carrier if isinstance(carrier, str) else ""
+        while path and path not in self._frames:
+            path = path.rpartition("/")[0]
+        return self._frames.get(path, np.eye(4))
+
+    def _free_place(self, position: Any, radius: float, place: str, frame: np.ndarray) -> list[float]:
+        """A position of which no other that is to stand apart is nearer than both radii together, seen from above.
+
+        frame: world_from_carrier [4, 4] of what carries the object
+        """
         for attempt in range(_MOST_PLACES):
             found: list[float] = self._drawing.of(position, f"{place}.position", f"/try {attempt}")
             try:
-                above = np.atleast_1d(np.array(found, float))[:2]
-                if above.shape != (2,) or not np.isfinite(above).all():
+                own = np.atleast_1d(np.array(found, float))[:3]
+                if len(own) < 2 or not np.isfinite(own[:2]).all():
                     raise ValueError
             except (TypeError, ValueError, OverflowError):
                 raise ValueError(f"{place}.position: must be [x, y, z] in m beside apart, got {shown(found)}") from None
-            if all(np.hypot(*(above - other)) >= radius + own for other, own in self._places):
+            above = frame[:2, :len(own)] @ own + frame[:2, 3]
+            if all(np.hypot(*(above - other)) >= radius + beside for other, beside in self._places):
                 self._places.append((above, radius))
                 return found
         raise ValueError(f"{place}.apart: must leave a free place within {_MOST_PLACES} tries, got {shown(radius)}")
+
+
+def _full_name(parent: Any, name: str) -> str:
+    return f"{parent}/{name}" if isinstance(parent, str) and parent else name
+
+
+def _placement_of(made: dict[str, Any]) -> np.ndarray:
+    """[4, 4], of a table of an object, carrier_from_object; of values that the schema of the scene refuses none."""
+    try:
+        yaw = math.radians(made.get("yaw_deg", 0.0))
+        return placement(tuple(made.get("position", ORIGIN)), yaw, made.get("transform"))
+    except (TypeError, ValueError, OverflowError):
+        return np.eye(4)

@@ -44,6 +44,14 @@ TEST(Passes, AreNothingToOtherExpressions) {
   for (const char* text : {"T .* 'pane' .* R", "T . R"}) EXPECT_FALSE(way.is_taken_by(text)) << text;
 }
 
+TEST(Passes, NoneOfThemIsNamedToo) {
+  const WayThroughPane way;
+  for (const char* text : {"T P{0} . . R", "T P'pane'{0} .{2} R", "T . . (P | 'pane'){0} R"}) {
+    EXPECT_TRUE(Automaton(parse_path_expression(text), kNames).sees_passes()) << text;
+    EXPECT_FALSE(way.is_taken_by(text)) << text;
+  }
+}
+
 TEST(Passes, ExpressionsThatNameThemReadOtherPathsAsEver) {
   const Automaton automaton(parse_path_expression("T P* D'ball' S'wall' P* R"), kNames);
   const WayThroughPane way;

@@ -17,6 +17,9 @@ def test_expressions_see_passes_only_where_they_name_them():
     for text in ("T P'pane' 'ball' P'pane' R", "T P . P R", "T 'pane' 'ball' P R", "T P S P R & T 'ball' R"):
         assert paths.select(text).num_paths == everything.num_paths, text
     assert paths.select("T P'ball' .* R").num_paths == 0
+    none = paths.select("T P{0} . R")  # which names them: its one hit is a bounce, and it goes through none
+    assert none.num_paths == np.count_nonzero((paths.num_bounces == 1) & (np.diff(paths.pass_offsets) == 0)) > 0
+    assert none.num_paths == paths.select("T . R & ~(T .* P .* R)").num_paths
     assert paths.select("T S'ball' R & T P . P R").num_paths == everything.num_paths
     assert (everything.num_bounces == 1).all() and paths.select(ep.passes("pane") & ep.hits("ball")).num_paths > 0
     parts = paths.partition({"seen": "T P'pane' 'ball' P'pane' R"})

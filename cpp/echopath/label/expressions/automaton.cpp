@@ -62,8 +62,10 @@ constexpr Event kEventOfSymbol[] = {Event::kSpecular, Event::kDiffuse, Event::kE
 
 bool takes_event(const HitPattern& pattern, Event event) { return pattern.event == Event::kAny || pattern.event == event; }
 
-bool names_passes(const Nfa& nfa) {
-  return std::ranges::any_of(nfa.patterns, [](const HitPattern* pattern) { return pattern->event == Event::kPass; });
+// P{0} names them too: what it is written for goes through none there.
+bool names_passes(const Syntax& syntax) {
+  if (syntax.kind == Syntax::Kind::kHit) return syntax.hit.event == Event::kPass;
+  return std::ranges::any_of(syntax.children, names_passes);
 }
 
 // Makes the automaton deterministic by subset construction (Rabin and Scott 1959).
@@ -141,7 +143,7 @@ class Determiniser {
 Automaton::Automaton(const PathExpression& expression, const std::vector<std::string>& mesh_names) {
   const Nfa nfa = make_nfa(expression);
   const MeshClasses classes = classify_meshes(nfa, expression, mesh_names);
-  num_events_ = names_passes(nfa) ? kPassSymbol + 1 : kPassSymbol;
+  num_events_ = names_passes(expression.body) ? kPassSymbol + 1 : kPassSymbol;
   const Determiniser dfa(nfa, classes, num_events_, expression.text);
   num_states_ = static_cast<int>(dfa.num_states());
   num_classes_ = static_cast<int>(classes.taken_by.size());

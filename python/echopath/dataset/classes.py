@@ -1,11 +1,14 @@
 """What kinds of road users the objects of a dataset are."""
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable
 from typing import Any, Literal, NamedTuple
 
 from .. import _core
+from ..arguments.names import first_names
 from ..arguments.objects import NamedGlobs
+from ..base.callers import warn_user
 
 ClassName = Literal["car", "van", "truck", "bus", "train", "cyclist", "motorcycle", "pedestrian", "pedestrian_group", "animal",
                     "other", "static"]
@@ -52,6 +55,21 @@ def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], name
         if name not in found:
             found[name] = _chosen_class(chosen, name, *globs) or _class_below(paths, globs)
     return found
+
+
+def warn_of_unused_globs(chosen: Iterable[str], names: Iterable[str], named: NamedGlobs) -> None:
+    """Warns (RuntimeWarning) of globs that were chosen and take no object, as those with a typo.
+
+    names: that objects may have; named: of the labels
+    """
+    unused = list(chosen)
+    for name in itertools.chain(*([name, *globs] for name, globs in named), names):
+        unused = [glob for glob in unused if not _core.glob_takes(glob, name)]
+        if not unused:
+            break
+    if unused:
+        told = first_names([repr(glob) for glob in unused])
+        warn_user(f"dataset.classes: {told} {'takes' if len(unused) == 1 else 'take'} no object of the template")
 
 
 def _chosen_class(chosen: dict[str, ClassName], *names: str) -> ClassName | None:

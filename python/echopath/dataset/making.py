@@ -154,11 +154,13 @@ def _chosen(plan: Template, shard: Shard | None, frames: tuple[int, int] | None)
 
 
 def _look_at(plan: Template, scenes: list[int]) -> None:
-    """Raises ValueError for faults of the template: some scenes are drawn, a few of them made ready."""
+    """Raises ValueError for faults of the template: some scenes are drawn, a few of them made ready. Warns of unused classes."""
     for scene in scenes[::-(-len(scenes) // _LOOKED_AT) or 1]:
         plan.check(scene)
     for scene in scenes[::-(-len(scenes) // _BUILT) or 1]:
         plan.sequence(scene)
+    for scene in scenes[:1]:
+        plan.warn_of_unused_classes(scene)
 
 
 def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], front: Callable[[list[int], str], Iterator[Done]],

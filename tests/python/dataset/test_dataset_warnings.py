@@ -37,3 +37,21 @@ def test_the_command_says_it_in_one_line(path, tmp_path, capfd, workers):
     assert main(["dataset", str(path), "--out", str(tmp_path / "out"), "--workers", workers]) == 0
     told = capfd.readouterr().err
     assert [line[:9] for line in told.splitlines() if WORDS in line] == ["warning: "] and "multiprocessing" not in told
+
+
+def test_globs_of_classes_that_take_no_object_are_told(tmp_path):
+    """Of an object that is there by chance, of a copy and of what labels name, nothing is said."""
+    def told(classes: str, more: str = "") -> list[str]:
+        head = HEAD.replace("scenes = 6", "scenes = 1") + f"[dataset.classes]\n{classes}\n"
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            dataset.make(written(tmp_path, head + SCENE + more), tmp_path / str(len(classes)))
+        assert all(one.filename == __file__ for one in said if "classes" in str(one.message))
+        return [str(one.message) for one in said if "classes" in str(one.message)]
+
+    assert told('"plate_3" = "car"\n"wal?" = "static"\n"*_9*" = "van"') == []
+    (of_set,) = told('"who" = "car"\n"plate_[1]" = "van"', 'objects = {who = ["plate_*"]}')  # no globs know sets of letters
+    assert of_set.startswith("dataset.classes: 'plate_[1]'")
+    assert told('"who" = "car"', 'objects = {who = ["plate_*"]}') == []
+    assert told('"plaet*" = "car"\nwall = "static"') == ["dataset.classes: 'plaet*' takes no object of the template"]
+    assert told('"plate" = "car"\n"x" = "van"') == ["dataset.classes: 'plate', 'x' take no object of the template"]

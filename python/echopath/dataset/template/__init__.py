@@ -9,21 +9,22 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from ...arguments.objects import NamedGlobs
+from ...arguments.objects import NamedGlobs, objects_rule
 from ...base.counts import counted
 from ...base.golden import golden_place
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
+from ...scene_file.tables.run_tables import FOUND
 from ...scene_file.tables.schema import SceneTable
 from ...scene_file.tables.table import Positive, Table
 from ...scene_file.traffic import TrafficFiles
 from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
-from ..classes import ClassName, classes_of
+from ..classes import ClassName, classes_of, warn_of_unused_globs
 from .distributions import is_distribution
-from .drawing import Drawing, DrawnObjects, random_at
+from .drawing import Drawing, DrawnObjects, possible_names, random_at
 from .faults import Faults
 from .references import Source, is_reference
 
@@ -130,6 +131,18 @@ class Template:
         named: objects as labels name them, which follow those of the scene
         """
         return classes_of(self.objects(number), self.settings.classes, named)
+
+    def warn_of_unused_classes(self, number: int) -> None:
+        """Warns (RuntimeWarning) of globs of `classes` that take no object, as those with a typo. Raises as `draw`.
+
+        number: of a scene, whose labels name objects, too. Where files of traffic, or what is found in a scene, have names of
+        their own, it says nothing.
+        """
+        table = self.draw(number).table
+        asked = [table[key].get("objects") for key in ("labels", "truth") if key in table]
+        if self.settings.classes and "traffic" not in table and FOUND not in asked:
+            named = tuple(pair for one in asked for pair in objects_rule("objects", one) or ())
+            warn_of_unused_globs(self.settings.classes, possible_names(self._objects), named)
 
     def split_of(self, number: int) -> str:
         """The name of the split that scene `number` (from 0) belongs to. Raises nothing.

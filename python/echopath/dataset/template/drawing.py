@@ -4,7 +4,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,13 @@ def random_at(seed: int, scene: int, place: str) -> np.random.Generator:
     """The random numbers of a dotted path in a scene."""
     digest = hashlib.sha256(f"{seed}/{scene}/{place}".encode("utf-8", "surrogatepass")).digest()
     return np.random.Generator(np.random.Philox(key=int.from_bytes(digest[:16], "little")))
+
+
+def possible_names(entries: list[dict[str, Any]]) -> Iterator[str]:
+    """Those that objects of some entries may have, with all copies that there may be."""
+    for entry in entries:
+        name = entry["name"]
+        yield from (f"{name}_{number}" for number in range(1, _MOST_COPIES + 1)) if "count" in entry else (name,)
 
 
 class Drawing:

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, MutableMapping
 from .. import _core
 from ..arguments.checks import refused
 from ..base.counts import counted
+from ..base.node_names import composed
 from ..scene.materials import known_material, materials
-from .names import composed
 
 Meaning = _core.Material | str
 

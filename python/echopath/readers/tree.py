@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.node_names import fit_name, unique
 from .itu import at_frequency, note_of_library_values
 from .material_names import material_of, note_of_unknown
 from .model import Model, ModelNode
-from .names import fit_name, unique
 from .options import ReadOptions
 
 MAX_NODES = 2_000_000  # of one model, with all copies and instances

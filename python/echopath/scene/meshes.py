@@ -5,6 +5,7 @@ import os
 
 from .. import _core
 from ..arguments.checks import checked, real
+from ..base.node_names import fit_paths
 
 UNIT = real(1e-12, 1e9, "m")
 
@@ -27,7 +28,9 @@ def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[s
     path: an OBJ file, whose groups (or objects, where there is no group) become meshes, an STL text, whose solids do, or a
         PLY, binary STL or OFF file. Groups of several materials stay whole (load_model takes them apart)
     unit: m per file unit, 1e-12 to 1e9
-    Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
-    out. Raises FileError naming the file, and the line where it is text; TypeError or ValueError naming the argument.
+    Returns a list of (name, Mesh); the name is the file's stem where the file gives none, '/' in it parts groups of groups, and
+    signs that a scene refuses become '_'. Groups without any area are left out. Raises FileError naming the file, and the line
+    where it is text; TypeError or ValueError naming the argument.
     """
-    return _core.load_meshes(path, unit)
+    meshes = _core.load_meshes(path, unit)
+    return list(zip(fit_paths(name for name, _ in meshes), (mesh for _, mesh in meshes)))

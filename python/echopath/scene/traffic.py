@@ -14,8 +14,8 @@ from ..arguments.objects import listed
 from ..arguments.shown import writable
 from ..base.counts import counted
 from ..base.made_by import made_by
+from ..base.node_names import fit_name, unique
 from ..readers.model import Model
-from ..readers.names import fit_name, unique
 from ..trajectories.arguments import optional_span
 from ..trajectories.kinds import of_kind, usual_kind, warn_of_unused_kinds
 from ..trajectories.files.track_file import W, on_the_way, warn_of_nobody

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..base.node_names import fit_name
 from ..readers import load_model
-from ..readers.names import fit_name
 from ..readers.options import ReadOptions
 from ..scene.scene import Scene
 

@@ -5,6 +5,7 @@ import functools
 from pathlib import Path
 
 from .. import _core
+from ..scene.meshes import load_meshes
 from ..scene.scene import Scene
 from ..weather import Weather
 from .actors import actor_keywords, named_actor
@@ -28,7 +29,7 @@ def motion_of(table, key: str):
 
 def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
     scene = Scene(weather=None if settings.weather is None else Weather(**settings.weather.model_dump()))
-    meshes_of_file = functools.cache(_core.load_meshes)  # objects that name one file share its meshes
+    meshes_of_file = functools.cache(load_meshes)  # objects that name one file share its meshes
     for index, table in enumerate(settings.objects):
         key = f"objects[{index}]"
         placement = {"transform": table.transform} if table.transform is not None else {

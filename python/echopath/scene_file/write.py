@@ -7,8 +7,8 @@ from pathlib import Path
 
 from .. import _core
 from ..base.files import written_whole
+from ..base.node_names import fit_name
 from ..readers import Model, load_model
-from ..readers.names import fit_name
 from ..scene.found_objects import find_objects, things_of
 from ..scene.scene import Scene
 from .vantage import vantage

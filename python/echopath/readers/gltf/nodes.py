@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.node_names import fit_name
 from ...base.rotations import matrices, quaternions
 from ..axes import Axes
-from ..names import fit_name
 from .document import Document
 from .item import Item
 

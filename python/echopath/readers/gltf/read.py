@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base.node_names import fit_name
 from ..axes import Axes
 from ..model import Model
-from ..names import fit_name
 from ..options import ReadOptions
 from ..tree import MAX_NODES, Tree
 from .accessors import Accessors

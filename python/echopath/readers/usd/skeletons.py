@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...base.node_names import fit_name, unique
 from ..axes import Axes
-from ..names import fit_name, unique
 from ..sampled import Clock, moved_rigidly, moved_with_scale
 from ..tree import Tree
 from .blend_shapes import blend_shapes_of

@@ -35,11 +35,11 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
         files are those of the interface, with time 0 of the scene.
     feature_data.radar_sensor has one sensor: header (measurement_time in the middle of the frame, cycle_counter the place of
     the frame, mounting_position in the world at that time: between transmitters and receivers, from where detections count
-    (`Detections.centre`), with the radar's axes) and detections: position (distance m, azimuth and elevation rad, in
-    the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
-    of the first antennas), snr (dB), object_id (place in `Dataset.classes`; 2^64 - 1: the surroundings or noise),
-    existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage, residue), 1 of echoes;
-    classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
+    (`Detections.centre`), with the radar's axes) and detections: position (distance m, azimuth and elevation rad, in the
+    sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains of
+    the first antennas, not finite for leakage at 0 m), snr (dB), object_id (place in `Dataset.classes`; 2^64 - 1: the
+    surroundings or noise), existence_probability 0 of noise and of what comes in beside the echoes (interference, rain,
+    leakage, residue), 1 of echoes; classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
     a folder traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.
     """

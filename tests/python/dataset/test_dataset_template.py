@@ -79,6 +79,9 @@ parent = {parent}
     misspelt = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", carried + "[trace]")))
     with pytest.raises(ValueError, match="objects.lamp: parent: must be the full name of a node .*, got 'wal'"):
         misspelt.scene_file(with_lamp)
+    fixed = (HEAD + SCENE.replace("[trace]", carried + "[trace]")).replace("count = {integer = [1, 3]}", "count = 2")
+    with pytest.raises(ValueError, match="objects.sign: parent: must be the full name of a node .*, got 'plate_3'"):
+        dataset.Template(written(tmp_path, fixed.replace('"wal', '"plate_1').replace('"plate_2"', '"plate_3"'))).scene_file(0)
 
 
 def test_objects_stand_apart_whatever_carries_them(tmp_path):

@@ -117,13 +117,13 @@ class DrawnObjects:
         name = entry.pop("name")
         place = f"objects.{name}"
         chance = self._number(entry.pop("chance", 1.0), f"{place}.chance", "a number from 0 to 1", lambda x: 0.0 <= x <= 1.0)
-        is_row = "count" in entry
+        is_row, is_fixed = "count" in entry, is_number(entry.get("count", 1))
         count = self._number(entry.pop("count", 1), f"{place}.count", f"a whole number from 0 to {_MOST_COPIES}",
                              lambda x: 0 <= x <= _MOST_COPIES and x == int(x))
         if self._drawing.random(f"{place}.presence").random() >= chance:
             count = 0
         names = [f"{name}_{number}" for number in range(1, int(count) + 1)] if is_row else [name] * int(count)
-        if is_row or not names:
+        if not is_fixed or not names:
             self._leave_out(name, entry.get("parent"), int(count), is_row)
         made = (self._one(one, dict(entry), f"objects.{one}") for one in names)
         return [one for one in made if one is not None]

@@ -16,7 +16,8 @@ def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *
     """The record of frame `number` of a sequence: the same bits whichever frames were recorded before.
 
     The scene is traced anew. Unless the settings say otherwise, rough surfaces scatter from points of their own, which are the
-    same in all frames, and what stands still has the same rays. All have the objects of frame 0: what surrounds the antenna there does so throughout.
+    same in all frames, and before a radar at rest what stands still has the same rays. All have the objects of frame 0: what
+    surrounds the antenna there does so throughout.
     settings: of the rays, with the start of frame 0; interval: s from start to start; still_rays: of the sequence
     progress: as in `trace`
     """

@@ -171,11 +171,11 @@ void give_rays(StratumPlan& plan) {
 
 }  // namespace
 
-double rounded_rays(double rays) {
+double rounded_rays(double rays, double up) {
   constexpr double kSteps = 64.0;  // of the mantissa, which is 1/2 to 1
   int exponent = 0;
   const double mantissa = std::frexp(rays, &exponent);
-  return std::ldexp(std::round(kSteps * mantissa) / kSteps, exponent);
+  return std::ldexp(std::floor(kSteps * mantissa + up) / kSteps, exponent);
 }
 
 void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints,

@@ -15,8 +15,8 @@ struct KnownEcho {
 
 // Returns the rays of a stratum rounded to six significant bits. Pilots on machines with other instructions differ in their
 // last bits, and one ray more would give all rays of its stratum other places, and rough surfaces other speckle: rounded,
-// the shares hardly ever differ.
-double rounded_rays(double rays);
+// the shares hardly ever differ. `up` of a step is added before the rest is cut off: 0.5 rounds to the nearest, 0 down.
+double rounded_rays(double rays, double up = 0.5);
 
 // Sets foci about the glints of each stratum that its rays would be too far apart for, and takes their rays from its share
 // in `guide.shares`, which counts in rays. Foci get at most half of it, by the part of the stratum's field that they hold,

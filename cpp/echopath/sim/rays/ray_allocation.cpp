@@ -215,7 +215,9 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   const std::vector<Glint> glints = find_glints(paths, job);
   if (!still.any()) raise_field_of_view(paths.frame, needs, glints, guide.shares);
   const double rays_per_share = left / sum_of(guide.shares);
-  for (auto& [name, share] : guide.shares) share = rounded_rays(rays_per_share * share);
+  // Shares that persist count rays (LaunchSettings::by_name), of which there are not to be more than num_rays.
+  const double up = paths.frame.scatterers == Scatterers::kSurface ? 0.0 : 0.5;
+  for (auto& [name, share] : guide.shares) share = rounded_rays(rays_per_share * share, up);
   put_in(still, guide);
   set_foci(paths.frame, echoes_of(paths.frame, needs), glints, guide);
   put_in(still, guide);  // without the foci that this frame would have set

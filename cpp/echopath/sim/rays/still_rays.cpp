@@ -33,6 +33,12 @@ StillRays::StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, con
   for (const LaunchFocus& focus : guide.foci) guide.still_rays += focus.share;
 }
 
+LaunchGuide StillRays::taken_from(LaunchGuide whole) const {
+  for (const auto& [name, rays] : guide.shares) whole.shares[name] = 0.0;
+  std::erase_if(whole.foci, [&](const LaunchFocus& focus) { return holds(focus.of); });
+  return whole;
+}
+
 std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
   if (settings.scatterers != Scatterers::kSurface || !settings.guide.shares.empty() || radar.motion) return std::nullopt;
   if (!ever_moves(scene)) return std::nullopt;

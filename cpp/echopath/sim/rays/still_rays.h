@@ -28,6 +28,7 @@ struct StillRays {
   bool any() const { return !guide.shares.empty(); }
   bool holds(const std::string& stratum) const { return guide.shares.contains(stratum); }
   double num_rays() const { return guide.still_rays; }
+  LaunchGuide taken_from(LaunchGuide whole) const;  // leaves the rays of what moves alone
 };
 
 // Returns the scene without what moves or has a lifetime; nothing where the rays of a trace need not persist: scatterers are

@@ -18,13 +18,25 @@ Paths with_error_of_lot(Paths paths, const WantedError& wanted, const StillRays&
   return paths;
 }
 
-// What stands still has the rays of `still`. The first trace, which has no guide, tells the needs of all else alone.
+// Returns how many rays the next trace has. Where what moves may need as many as there are beside those of `still`, it gets
+// these at once: a trace of what moves alone would hardly save rays.
+int64_t rays_to_come(const StillRays& still, const RayNeeds& needs, int64_t before, int64_t most) {
+  const double margin = still.any() ? 2.0 : 1.0, all = still.num_rays() + needs.num_rays(),
+               limit = static_cast<double>(most);
+  if (still.num_rays() + margin * needs.num_rays() >= limit) return most;
+  return std::clamp<int64_t>(std::llround(all), std::min(2 * before, most), most);
+}
+
+// Traces what moves with ever more rays, and at the end beside what stands still, which has the rays of `still`. Without any,
+// all count as what moves.
 Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, const Radar& radar,
                             const TraceSettings& settings, const ErrorTarget& target, Job* job, KeptGeometry* kept) {
   KeptGeometry own;
   if (!kept) kept = &own;
   FittedStrata fitted;
   TraceSettings launch = settings;
+  LaunchGuide guide;
+  bool is_whole = !still.any();
   const WantedError wanted{
       .db = target.error_db, .floor = target.floor, .least_power = target.least_power, .least_growth = 1.0};
   for (;;) {
@@ -32,13 +44,16 @@ Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, 
     const RayNeeds needs = ray_needs(paths, wanted, still, job);
     paths.frame.target_error_db = target.error_db;
     paths.frame.error_db = std::max(needs.worst_db, still.error_db);
-    const bool is_met = needs.worst_db <= target.error_db, is_complete = !still.any() || !launch.guide.shares.empty();
-    if ((is_complete && (is_met || launch.num_rays == target.max_rays)) || paths.frame.statistics.num_hits == 0)
+    const bool is_met = needs.worst_db <= target.error_db, has_most = launch.num_rays == target.max_rays,
+               is_first = launch.guide.shares.empty();
+    if ((is_whole && (still.any() || is_met || has_most)) || (is_first && paths.frame.statistics.num_hits == 0))
       return with_error_of_lot(thinned(std::move(paths), job), wanted, still, job);
-    const double rays = std::min(still.num_rays() + needs.num_rays(), static_cast<double>(target.max_rays));
-    launch.num_rays = std::clamp(std::llround(rays), std::min<long long>(2 * launch.num_rays, target.max_rays),
-                                 static_cast<long long>(target.max_rays));
-    launch.guide = guide_rays(paths, needs, launch.num_rays, still, job);
+    if (is_first || !is_met) {
+      launch.num_rays = rays_to_come(still, needs, launch.num_rays, target.max_rays);
+      guide = guide_rays(paths, needs, launch.num_rays, still, job);
+    }
+    is_whole = !still.any() || is_met || launch.num_rays == target.max_rays;
+    launch.guide = is_whole ? guide : still.taken_from(guide);
   }
 }
 

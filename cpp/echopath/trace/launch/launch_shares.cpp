@@ -114,9 +114,10 @@ std::vector<int64_t> LaunchShares::rays(const std::vector<FocusOfTarget>& foci, 
   if (is_by_object()) return rays_by_object(scene_, found_.targets, field_owns_any_, kFieldShare, settings_.num_rays);
   std::vector<double> shares = is_guided() ? named_shares(found_.targets, foci, field, settings_.guide.shares) : of_rule();
   if (!settings_.by_name) return whole_rays(shares, settings_.num_rays);
-  if (!is_guided()) std::ranges::for_each(shares, [&](double& share) { share *= static_cast<double>(settings_.num_rays); });
+  if (is_guided()) return rounded_one_by_one(shares);
+  std::ranges::for_each(shares, [&](double& share) { share *= static_cast<double>(settings_.num_rays); });
   std::vector<int64_t> rays = rounded_one_by_one(shares);
-  add_remainder(found_.targets, !is_guided() && !is_steady_, settings_.num_rays, rays);
+  add_remainder(found_.targets, !is_steady_, settings_.num_rays, rays);
   return rays;
 }
 

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.frame.maps import maps_of
 from echopath_viewer.model import Session, from_frame
+from echopath_viewer.model.frames.maps_input import from_maps
 from echopath_viewer.model.maps.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
 from echopath_viewer.model.maps.attribution import Attribution
 from echopath_viewer.model.maps.beams import beam_values, paths_in_beam
@@ -113,3 +115,19 @@ def test_differences_are_of_the_same_place_and_of_signal_alone():
     other = KeptMap("coarse", first[::2, 1::2], axis[1::2], axis[::2])  # ranges 1, 3, ..., velocities 0, 2, ...
     change = difference(other, KeptMap("b", second, axis, axis))
     assert change[4, 5] == pytest.approx(7.0) and np.isnan(change[:, 0]).all() == (abs(axis[0] - 1.0) > 1.0)
+
+
+def test_labels_of_azimuths_do_not_lie_over_velocities(stored_run):
+    """The plate drives at the radar with 4 m/s, 5 degrees aside; its azimuth was shown as its velocity."""
+    frame = stored_run[0]
+    frame.labels = ep.annotate_frame(frame, plane="range_azimuth", objects=["plate"])
+    shown = Session(from_frame(frame))
+    shown.set_layer("objects and ghosts", True)
+    image, _, markers = shown.map_layers()
+    assert image.shape[:2] == shown.parts.whole.level(0, 0).shape
+    plate = next(marker for marker in markers if marker.text == "plate")
+    step = frame.spectrum.velocity[1] - frame.spectrum.velocity[0]
+    assert plate.velocity == pytest.approx(-4.0, rel=0, abs=step)
+    maps = maps_of(frame, with_power=True)
+    with pytest.raises(ValueError, match="labels: this file keeps those of its range-azimuth map alone"):
+        Session(from_maps(maps, stored_run)).set_layer("labels", True)

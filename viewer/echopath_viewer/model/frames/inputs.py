@@ -13,7 +13,7 @@ from echopath.scene.lifetimes import scene_in_frame
 from echopath.signals.same_radar import difference
 
 from .kept_orders import KeptOrders, read_kept
-from ..maps.layers import Known
+from ..maps.layers import Known, are_of_map
 from ..maps.part_set import WHOLE, Part, PartSet
 from ..maps.signals import Signals, all_paths, selections_of
 
@@ -71,9 +71,16 @@ def from_frame(frame, title: str = "") -> ViewInput:
 
 def _known(frame) -> Known:
     """Taken from the frame where it has it, else made when it is asked for."""
-    return Known(labels=lambda progress: frame.labels or ep.annotate_frame(frame, progress=progress),
+    return Known(labels=lambda progress: _map_labels(frame, progress),
                  detections=lambda progress: frame.detections or ep.detect_frame(frame, progress=progress),
                  truth=lambda progress: frame.truth)
+
+
+def _map_labels(frame, progress) -> dict:
+    """{partition: Labels} of the range-Doppler map: those of its range-azimuth map lie on other axes."""
+    if frame.labels and are_of_map(frame.labels):
+        return frame.labels
+    return ep.annotate_frame(frame, progress=progress)
 
 
 def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate="interpolated", retrace="never",

@@ -9,7 +9,7 @@ from echopath.frame_file.frame import without_lists
 from echopath.scene.lifetimes import scene_in_frame
 
 from .inputs import ViewInput, whole_part
-from ..maps.layers import Known
+from ..maps.layers import Known, are_of_map
 from ..maps.part_set import PartSet
 from ..maps.signals import Signals
 
@@ -28,10 +28,17 @@ def from_maps(maps, stored, title: str = "") -> ViewInput:
     signals = Signals(paths, spectrum_settings)
     cube = signals.whole()
     parts = PartSet(whole_part(_with_power(signals.map_of(cube), maps)))
-    known = Known(labels=lambda progress: _there(maps.labels, "labels"),
+    known = Known(labels=lambda progress: _map_labels(maps),
                   detections=lambda progress: _there(maps.detections, "detections"),
                   truth=lambda progress: _there(maps.kept_truth, "truth"))
     return ViewInput(paths, parts, signals, cube, title, known, NO_PATHS if maps.power is not None else NO_MAP, maps)
+
+
+def _map_labels(maps) -> dict:
+    labels = _there(maps.labels, "labels")
+    if not are_of_map(labels):
+        raise ValueError("labels: this file keeps those of its range-azimuth map alone")
+    return labels
 
 
 def _with_power(spectrum, maps):

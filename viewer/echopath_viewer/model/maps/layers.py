@@ -47,6 +47,11 @@ class Marker:
     detection: int | None = None
 
 
+def are_of_map(labels: Mapping) -> bool:
+    """Whether {partition: ep.Labels} are of the range-Doppler map, over which they are shown."""
+    return all(one.plane == "range_doppler" for one in labels.values())
+
+
 def label_image(labels, layer: str) -> tuple:
     """(RGBA u8 [V, R, 4] of the cells, transparent where they have no label; legend rows ((name, rgb), ...)).
 

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import MESH_GROUP, WHOLE, CellBox, Filters
-from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
+from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, click_cell, panel_of, project, settle, strongest_cell
 
 EDGE = 0.01          # of a cell: paths that close to its edge may fall to either side
@@ -163,3 +163,35 @@ def test_the_table_is_sorted_and_copied(qtbot, window):
     qtbot.keyClick(window.table.view, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
     heading, row = QtWidgets.QApplication.clipboard().text().split("\n")
     assert heading.split("\t")[0] == "Bounces" and row.split("\t")[1] == f"{ranges[1]:.3f}"
+
+
+def test_the_row_that_is_selected_keeps_its_ray_in_another_order(qtbot, window):
+    view, model = window.table.view, window.table.model
+    view.selectRow(4)
+    ray = window.session.ray
+    for column in (1, 4, 2):
+        view.sortByColumn(column, Qt.SortOrder.AscendingOrder)
+        assert [model.rays[index.row()] for index in view.selectionModel().selectedRows()] == [ray]
+        assert model.rays[view.currentIndex().row()] == window.session.ray == ray
+
+
+def test_a_ray_that_was_chosen_behind_another_panel_is_in_sight_when_its_table_is(qtbot, window):
+    window.docks["What makes the cell"].raise_()
+    settle(qtbot)
+    rays = window.table.model.rays
+    window.session.select_ray(int(rays[-1]))
+    settle(qtbot)
+    window.docks["Rays"].raise_()
+    settle(qtbot)
+    view = window.table.view
+    assert view.viewport().rect().contains(view.visualRect(window.table.model.index(len(rays) - 1, 0)).center())
+
+
+def test_headings_of_the_table_have_room(window):
+    header, style = window.table.view.horizontalHeader(), window.style()
+    beside = style.pixelMetric(style.PixelMetric.PM_HeaderMarkSize) + 2 * style.pixelMetric(style.PixelMetric.PM_HeaderMargin)
+    font = header.font()
+    font.setBold(header.highlightSections())  # of the column with a selected row
+    for column in range(window.table.model.columnCount() - 1):
+        text = window.table.model.headerData(column, Qt.Orientation.Horizontal)
+        assert header.sectionSize(column) >= QtGui.QFontMetrics(font).horizontalAdvance(text) + beside

@@ -11,7 +11,7 @@ COLUMNS = ("Bounces", "Range in m", "Speed in m/s", "Power in dBm", "Hits")
 DECIMALS = {1: "{:.3f}", 2: "{:+z.3f}", 3: "{:.1f}"}
 POWER = 3
 STRONGEST_FIRST = (POWER, Qt.SortOrder.DescendingOrder)
-WIDTHS = (60, 78, 90, 96)  # pixels; the last column has the rest
+BESIDE_HEADING = 26  # pixels, of margins and the arrow of the order
 HITS = len(COLUMNS) - 1
 
 
@@ -69,8 +69,16 @@ class RayTableModel(QtCore.QAbstractTableModel):
         if self.session is None:
             return
         self.layoutAboutToBeChanged.emit()
+        before = self.rays
         self._sort(column, order)
+        self._move_selected(before)
         self.layoutChanged.emit()
+
+    def _move_selected(self, before) -> None:
+        """Rows that are selected go with their rays; before: [N] the rays as they stood."""
+        selected, by_path = self.persistentIndexList(), np.argsort(self.rays)
+        rows = by_path[np.searchsorted(self.rays, before[[index.row() for index in selected]], sorter=by_path)]
+        self.changePersistentIndexList(selected, [self.index(int(row), index.column()) for row, index in zip(rows, selected)])
 
     def _sort(self, column: int, order) -> None:
         self.rays = self._strongest_first
@@ -101,9 +109,11 @@ class RayTable(QtWidgets.QWidget):
         self.view.verticalHeader().hide()
         self.view.setWordWrap(False)
         self.view.setTextElideMode(Qt.TextElideMode.ElideMiddle)
-        self.view.horizontalHeader().setStretchLastSection(True)
-        for column, width in enumerate(WIDTHS):
-            self.view.setColumnWidth(column, width)
+        header = self.view.horizontalHeader()
+        header.setStretchLastSection(True)
+        header.setHighlightSections(False)  # bold headings would need more room
+        for column in range(HITS):
+            self.view.setColumnWidth(column, header.fontMetrics().horizontalAdvance(COLUMNS[column]) + BESIDE_HEADING)
         self.view.selectionModel().currentRowChanged.connect(self._row_changed)
         self.title = QtWidgets.QLabel()
         self.details = QtWidgets.QLabel("Click a ray or a row: its hits and its cell.", wordWrap=True)
@@ -112,6 +122,7 @@ class RayTable(QtWidgets.QWidget):
         column.setContentsMargins(2, 2, 2, 2)
         for widget in (self.title, self.view, self.details):
             column.addWidget(widget)
+        self.view.installEventFilter(self)
         copy = QtGui.QShortcut(QtGui.QKeySequence.StandardKey.Copy, self.view, self.copy_rows)
         copy.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
 
@@ -138,11 +149,21 @@ class RayTable(QtWidgets.QWidget):
             if len(rows):
                 self.view.selectRow(int(rows[0]))
         self.view.viewport().update()
-        if len(rows):
-            self.view.scrollTo(self.model.index(int(rows[0]), 0))
+        self._scroll_to_chosen()
         lines = [] if session.ray is None else session.explain(session.ray)
         self.details.setText("   ".join(f"<b>{label}</b> {text}" for label, text in lines) or
                              "Click a ray or a row: its hits and its cell.")
+
+    def _scroll_to_chosen(self) -> None:
+        chosen = self.view.selectionModel().selectedRows()
+        if len(chosen) == 1:
+            self.view.scrollTo(chosen[0])
+
+    def eventFilter(self, watched, event):
+        """The rows get another height with the text below them, or when their panel comes to the front."""
+        if event.type() == QtCore.QEvent.Type.Resize:
+            QtCore.QTimer.singleShot(0, self._scroll_to_chosen)
+        return super().eventFilter(watched, event)
 
     def _row_changed(self, current, _previous) -> None:
         if current.isValid():

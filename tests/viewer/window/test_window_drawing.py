@@ -164,6 +164,21 @@ def test_space_on_a_check_box_checks_it(qtbot, window):
     window.time_bar.play_button.setChecked(False)
 
 
+def test_the_tree_is_opened_and_its_meshes_are_chosen_by_keys(qtbot, window):
+    tree, chirp = window.tree, window.session.chirp
+    walker = tree.topLevelItem(0)
+    tree.setFocus()
+    tree.setCurrentItem(walker)
+    for key, is_open in ((Qt.Key.Key_Left, False), (Qt.Key.Key_Right, True)):
+        qtbot.keyClick(tree, key)
+        assert walker.isExpanded() == is_open and window.session.chirp == chirp
+    qtbot.keyClick(tree, Qt.Key.Key_Down)
+    qtbot.keyClick(tree, Qt.Key.Key_Return)
+    assert window.session.node == "walker/head"
+    window.session.select_node(None)
+    window.view3d.setFocus()
+
+
 def test_messages_of_the_path_field_are_shown_whole(qtbot):
     label = ErrorLabel()
     qtbot.addWidget(label)

@@ -51,7 +51,7 @@ MOUSE = (
     ("Scene: drag, wheel, middle button", "turn, zoom, move"), ("Scene: click", "a ray, or the body under the cursor"),
     ("Scene: Ctrl + click", "the mesh under the cursor, walls too"),
     ("Scene: Shift + drag", "moves an object, where the panel Live is started"),
-    ("Tree: click, right button", "map of a mesh, more"),
+    ("Tree: click or Enter, right button", "map of a mesh, more"),
     ("Table: click a heading, Ctrl+C", "sort, copy rows"),
 )
 
@@ -60,6 +60,7 @@ _KEYS_OF_WIDGETS = (
     (QtWidgets.QAbstractButton, frozenset({Qt.Key.Key_Space})),
     (QtWidgets.QComboBox, frozenset({Qt.Key.Key_Space})),
     (QtWidgets.QAbstractItemView, frozenset({Qt.Key.Key_Space})),
+    (QtWidgets.QTreeView, frozenset({Qt.Key.Key_Left, Qt.Key.Key_Right})),
     (QtWidgets.QAbstractSlider, frozenset({Qt.Key.Key_Left, Qt.Key.Key_Right})),
 )
 

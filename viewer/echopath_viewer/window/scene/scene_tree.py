@@ -25,7 +25,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         self.customContextMenuRequested.connect(self._menu)
         self.itemChanged.connect(self._checked)
         self.itemClicked.connect(self._clicked)
-        self.setToolTip("Check box: show or hide. Click: map of the paths that hit it. Right button: more.")
+        self.setToolTip("Check box: show or hide. Click, Enter: map of the paths that hit it. Right button: more.")
 
     def show_session(self, session) -> None:
         self.session = None
@@ -84,6 +84,13 @@ class SceneTree(QtWidgets.QTreeWidget):
     def _clicked(self, item, _column: int) -> None:
         if self.session is not None and not self._is_on_check_box(item):
             self.node_clicked.emit(item.data(NAME, NODE_ROLE))
+
+    def keyPressEvent(self, event):
+        item = self.currentItem()
+        if item is not None and event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.node_clicked.emit(item.data(NAME, NODE_ROLE))
+        else:
+            super().keyPressEvent(event)
 
     def _is_on_check_box(self, item) -> bool:
         at = self.viewport().mapFromGlobal(QtGui.QCursor.pos())

@@ -269,3 +269,10 @@ def test_tracks_that_share_a_colour_differ_in_their_lines(ax):
     tracks.plot(ax=ax)
     looks = [(line.get_color(), line.get_linestyle()) for line in ax.lines if line.get_marker() == "."]
     assert len(looks) == count == len(set(looks))
+
+
+def test_the_velocity_of_one_chirp_has_no_other_tick_than_its_own(ax):
+    radar = build_radar(num_samples=16, num_chirps=1)
+    ep.range_doppler(np.ones((1, 1, 1, 16), complex), radar).plot(ax=ax)
+    ax.figure.canvas.draw()
+    assert ax.get_yticks().tolist() == [0.0] and len(ax.get_xticks()) > 1

@@ -6,6 +6,7 @@ import pytest
 
 from echopath.signals.measures import for_pictures
 from echopath_viewer.model import WHOLE, CellBox, from_paths
+from echopath_viewer.window.maps.ticks import axis_ticks
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
 
@@ -72,6 +73,43 @@ def test_the_wheel_zooms_about_the_cursor_and_a_double_click_resets(qtbot, windo
     time = window.session.paths.frame.trace_time
     walker = window.session.scene.world_vertices(0, time).mean(axis=0)
     assert moving.left() < np.linalg.norm(walker) < moving.right()
+
+
+def turn_wheel(panel, at, steps: int) -> None:
+    turn = QtGui.QWheelEvent(at, panel.mapToGlobal(at), QtCore.QPoint(), QtCore.QPoint(0, 120 * steps), Qt.MouseButton.NoButton,
+                             Qt.KeyboardModifier.NoModifier, Qt.ScrollPhase.NoScrollPhase, False)
+    QtWidgets.QApplication.sendEvent(panel, turn)
+
+
+def test_the_wheel_stops_at_a_cell_and_at_the_whole_map(qtbot, window):
+    area, panel, spectrum = window.map_area, panel_of(window, WHOLE, WHOLE), window.session.parts.whole.spectrum
+    cell = spectrum.range[1] - spectrum.range[0], spectrum.velocity[1] - spectrum.velocity[0]
+    at = QtCore.QPointF(panel.plot_rect().center())
+    for steps, cells in ((1, (1, 1)), (-1, (len(spectrum.range), len(spectrum.velocity)))):
+        for _ in range(50):
+            turn_wheel(panel, at, steps)
+        seen = area.view.width() / cell[0], area.view.height() / cell[1]
+        assert seen == pytest.approx(cells, rel=1e-6)
+
+
+def test_beyond_the_map_nothing_is_read_or_selected(qtbot, window):
+    area, panel, spectrum = window.map_area, panel_of(window, WHOLE, WHOLE), window.session.parts.whole.spectrum
+    area.set_view(QtCore.QRectF(float(spectrum.range[-1]) - 1.0, -1.0, 2.0, 2.0))
+    inside, beyond = (panel.to_pixel(float(spectrum.range[-1]) + way, 0.0) for way in (-0.5, 0.5))
+    told = []
+    panel.hovered.connect(lambda *cell: told.append(cell))
+    for at in (beyond, inside):
+        move = QtGui.QMouseEvent(QtCore.QEvent.Type.MouseMove, at, panel.mapToGlobal(at), Qt.MouseButton.NoButton,
+                                 Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier)
+        QtWidgets.QApplication.sendEvent(panel, move)
+        assert len(told) == (at is inside)
+        qtbot.mouseClick(panel, LEFT, pos=at.toPoint())
+        assert (window.session.box is not None) == (at is inside)
+
+
+def test_an_axis_of_a_single_cell_has_its_value_alone():
+    assert axis_ticks(np.zeros(1), -0.5, 0.5, 10.0) == [0.0] and axis_ticks(np.zeros(1), 0.1, 0.5, 10.0) == []
+    assert axis_ticks(np.arange(3.0), 0.0, 2.0, 3.0) == [0.0, 1.0, 2.0]
 
 
 def test_a_press_on_title_or_axes_selects_no_cell(qtbot, window):

@@ -12,9 +12,10 @@ from ...model import CellBox, Session, from_file
 from ...model.maps.comparison import difference, kept_map
 from .colour_bar import ColourBar
 from .map_area import title_of
-from .map_panel import MapPanel, step_of
+from .map_panel import MapPanel
 from ..qt import Qt, QtCore, QtWidgets
 from .side_panels import SeenPanel
+from .ticks import step_of
 
 DIFFERENCE_COLOURS, DIFFERENCE_SPAN_DB = "coolwarm", 20.0
 NO_CHANGE = 127  # the colour of it

@@ -8,8 +8,9 @@ from ...model import CellBox
 from ...model.maps.layers import TWINS
 from ...model.maps.part_set import NOTHING_DBM, WHOLE
 from .colour_bar import ColourBar
-from .map_panel import MapPanel, step_of
+from .map_panel import MapPanel
 from ..qt import Qt, QtCore, QtGui, QtWidgets
+from .ticks import step_of
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
 MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",

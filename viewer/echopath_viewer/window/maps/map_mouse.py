@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from ...model.maps.cell_index import CellBox
 from ..qt import Qt, QtCore
+from .ticks import step_of
 
 CLICK_REACH = 4  # pixels that a click may move
 ZOOM_STEP = 1.25
@@ -28,7 +29,7 @@ class MapMouse:
         elif self._press is not None and self._is_drag(event.position()):
             self._drag = event.position()
             self.update()
-        if not self.plot_rect().contains(event.position()):
+        if not self._is_over_cell(event.position()):
             self.left.emit()
             return
         marker = self.marker_at(event.position())
@@ -46,7 +47,7 @@ class MapMouse:
             marker = self.marker_at(press, "detection")  # whatever stands over it
             if marker is not None:
                 self.detection_clicked.emit(marker.detection)
-            else:
+            elif self._is_over_cell(press):
                 self.cell_clicked.emit(*self.cell_at(press))
             return
         first, last = self.cell_at(press), self.cell_at(event.position())
@@ -68,10 +69,18 @@ class MapMouse:
         if self.image is None:
             return
         factor = ZOOM_STEP ** (-event.angleDelta().y() / 120.0)
+        across = _limited(factor, self.view.width(), self.range_axis)
+        along = _limited(factor, self.view.height(), self.velocity_axis)
         distance, velocity = self.to_value(event.position())
-        self.view_changed.emit(QtCore.QRectF(distance - factor * (distance - self.view.left()),
-                                             velocity - factor * (velocity - self.view.top()),
-                                             factor * self.view.width(), factor * self.view.height()))
+        self.view_changed.emit(QtCore.QRectF(distance - across * (distance - self.view.left()),
+                                             velocity - along * (velocity - self.view.top()),
+                                             across * self.view.width(), along * self.view.height()))
+
+    def _is_over_cell(self, at) -> bool:
+        """Whether a pixel shows the map and not what lies beyond its ends."""
+        return self.plot_rect().contains(at) and all(
+            axis[0] - 0.5 * step_of(axis) <= value <= axis[-1] + 0.5 * step_of(axis)
+            for value, axis in zip(self.to_value(at), (self.range_axis, self.velocity_axis)))
 
     def _is_drag(self, at) -> bool:
         return self._drag is not None or (at - self._press).manhattanLength() > CLICK_REACH
@@ -81,3 +90,9 @@ class MapMouse:
         rect = self.plot_rect()
         self.view_changed.emit(view.translated((start.x() - at.x()) / rect.width() * view.width(),
                                                (at.y() - start.y()) / rect.height() * view.height()))
+
+
+def _limited(factor: float, length: float, axis) -> float:
+    """A factor of the length that is seen of an axis: from a cell to all of it, where its ticks can be told apart."""
+    cell = step_of(axis)
+    return min(max(factor, min(cell / length, 1.0)), max(len(axis) * cell / length, 1.0))

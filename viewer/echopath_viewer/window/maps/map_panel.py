@@ -9,7 +9,7 @@ from ...model.maps.cell_index import CellBox
 from ...model.colours import colour_table, levels_of
 from .map_mouse import MapMouse
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
-from .ticks import nice_ticks, tick_text
+from .ticks import axis_ticks, step_of, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 8, 20, 32  # pixels around the map
 MARKER_REACH, MARKER_RADIUS = 8, 4.0     # pixels
@@ -226,12 +226,13 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         font.setPointSizeF(max(font.pointSizeF() - 1.5, 6.5))
         painter.setFont(font)
         painter.setPen(self.palette().windowText().color())
-        for value in nice_ticks(self.view.left(), self.view.right(), rect.width() / 42):
+        for value in axis_ticks(self.range_axis, self.view.left(), self.view.right(), rect.width() / 42):
             x = self.to_pixel(value, 0.0).x()
             painter.drawLine(QtCore.QPointF(x, rect.bottom()), QtCore.QPointF(x, rect.bottom() + 4))
             box = QtCore.QRectF(x - 30, rect.bottom() + 3, 60, 14)
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, tick_text(value))
-        for value in nice_ticks(self.view.top(), self.view.bottom(), max(rect.height() / 32, min(3.0, rect.height() / 12))):
+        most = max(rect.height() / 32, min(3.0, rect.height() / 12))
+        for value in axis_ticks(self.velocity_axis, self.view.top(), self.view.bottom(), most):
             y = self.to_pixel(0.0, value).y()
             painter.drawLine(QtCore.QPointF(rect.left() - 4, y), QtCore.QPointF(rect.left(), y))
             box = QtCore.QRectF(12, y - 8, rect.left() - 18, 16)
@@ -253,10 +254,6 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)
-
-
-def step_of(axis) -> float:
-    return float(axis[1] - axis[0]) if len(axis) > 1 else 1.0
 
 
 def nearest_index(axis, value: float) -> int:

@@ -16,8 +16,9 @@ from ..banner import ThinBar
 from .colour_bar import ColourBar
 from .curve import CurveView
 from .map_area import title_of
-from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index, step_of
+from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index
 from ..qt import QtCore, QtWidgets
+from .ticks import step_of
 
 AZIMUTH_LABEL, ELEVATION_LABEL, TIME_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees", "Time in ms"
 

@@ -20,6 +20,13 @@ def nice_ticks(low: float, high: float, max_count: float) -> list[float]:
     return [step * number for number in range(first, math.floor(high / step + 1e-9) + 1)]
 
 
+def axis_ticks(axis, low: float, high: float, max_count: float) -> list[float]:
+    """Of what is seen of an axis; a single cell, as the velocity of one chirp, tells nothing apart and has its value alone."""
+    if len(axis) > 1:
+        return nice_ticks(low, high, max_count)
+    return [float(axis[0])] if low <= axis[0] <= high else []
+
+
 def nice_below(value: float) -> float:
     """The largest of 1, 2 or 5 times a power of ten that is no larger than `value`, above 0."""
     power = 10.0 ** math.floor(math.log10(value) + 1e-9)
@@ -35,3 +42,7 @@ def scientific_text(value: float) -> str:
 def tick_text(value: float) -> str:
     """Without the noise of binary fractions."""
     return for_pictures(f"{round(value, 9) + 0.0:g}")
+
+
+def step_of(axis) -> float:
+    return float(axis[1] - axis[0]) if len(axis) > 1 else 1.0

@@ -106,6 +106,16 @@ def test_noise_is_the_rest(frame, frame_attribution):
     assert cell.contributions[-1].value == pytest.approx(noise[3, 100], rel=1e-3, abs=0)
 
 
+def test_without_a_path_all_of_a_cell_is_the_rest(frame):
+    with pytest.warns(RuntimeWarning, match="no mesh that takes part"):
+        session = Session(from_frame(ep.simulate(ep.Scene(), frame.radar, num_rays=100, noise_seed=3)))
+    session.attribution = Attribution(session.signals)
+    session.select_cells(CellBox.around(7, 9), (7, 9))
+    cell = session.cell_attribution()
+    assert [one.name for one in cell.contributions] == [REST] and cell.without == ()
+    assert cell.value == cell.strongest.value == session.parts.whole.spectrum.values[0, 0, 9, 7] != 0.0
+
+
 def test_too_many_families_are_refused(frame, monkeypatch):
     monkeypatch.setattr("echopath_viewer.model.maps.attribution.MAX_BYTES", 1 << 20)
     with pytest.raises(ValueError, match="families: the signals of .* would take more than"):

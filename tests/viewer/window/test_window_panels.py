@@ -57,6 +57,13 @@ def test_the_beat_signal_is_that_of_the_chirp(qtbot, window, panels):
     assert not panel.grab().isNull()
 
 
+def test_a_mixer_without_quadrature_gives_no_imaginary_part(qtbot, window, panels, frame):
+    radar = frame.radar.replace(waveform=frame.radar.waveform.replace(real=True))
+    window.show_input(from_frame(ep.simulate(frame.scene, radar, num_rays=500)))
+    window.open_panel("Beat signal")
+    assert list(window.side_panels["Beat signal"].curves.curves) == ["real"]
+
+
 def test_maps_are_compared_over_channels_and_files(qtbot, window, panels, stored_run):
     window.open_panel("Compare")
     panel = window.side_panels["Compare"]
@@ -129,6 +136,16 @@ def test_maps_that_are_compared_show_all_of_the_new_axes(qtbot, window, panels, 
     assert max(beyond.red(), beyond.blue()) - min(beyond.red(), beyond.blue()) < 10
     panel.panels["now"].view_reset.emit()
     assert panel.panels["now"].view == view
+
+
+def test_of_no_echo_it_is_said_that_there_is_no_signal(qtbot, window, panels, frame):
+    with pytest.warns(RuntimeWarning, match="no mesh that takes part"):
+        empty = ep.simulate(ep.Scene(), frame.radar, num_rays=100, noise_seed=3)
+    window.show_input(from_frame(empty))
+    assert window.time_bar.strip._text() == "Power by chirp, all echoes: no signal"
+    made = opened(qtbot, window, "Spectrogram")
+    assert made.words_of(1.0, 0.0, float(made.map.level.max())).endswith("no signal")
+    assert made.colour_bar.limits[1] == 0.0  # and not -2970 dBm, the smallest power there is
 
 
 def test_twins_of_ghosts_stand_in_the_scene(qtbot, window):

@@ -212,7 +212,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
     def _show_slow_time(self) -> None:
         session = self.session
         self._signal_of = session.lit, session.channel
-        title = f"Power by chirp, {'everything' if session.box is None else 'the selected rays'}"
+        title = f"Power by chirp, {'all echoes' if session.box is None else 'the selected rays'}"
         try:
             power = run_with_progress(self, "Signal of the selected rays", session.slow_time_power)
         except ValueError as error:

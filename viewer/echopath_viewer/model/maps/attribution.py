@@ -87,10 +87,10 @@ class Attribution:
         if size * (len(families) + len(mirrors)) > MAX_BYTES:
             raise ValueError(f"families: the signals of {len(families)} would take more than {MAX_BYTES >> 30} GiB")
         cubes = self._decomposed(families, mirrors, signals.settings, progress)
-        num_tx, num_rx, num_chirps, _ = next(iter(cubes.values())).shape
         self._num_ranges = signals.num_ranges
         # What a click needs of a channel and a range is one piece.
-        self._profiles = np.zeros((num_tx, num_rx, self._num_ranges, len(cubes), num_chirps), np.complex64)
+        self._profiles = np.zeros((len(radar.transmitters), len(radar.receivers), self._num_ranges, len(cubes),
+                                   waveform.num_chirps), np.complex64)
         self._families, self._mirror_names = families, mirrors
         self.groups = tuple(self._group(row, key, mirrors, cube) for row, (key, cube) in enumerate(cubes.items()))
 

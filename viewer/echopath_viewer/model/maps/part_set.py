@@ -17,6 +17,16 @@ NOTHING_DBM = -1000.0  # dB re 1 mW: no echo is that weak
 MESH_GROUP = "mesh"  # the spectrum of the mesh that is selected
 
 
+def level_text(dbm: float) -> str:
+    """A level in dB re 1 mW, as it is read out."""
+    return f"{dbm:.1f} dBm" if dbm > NOTHING_DBM else "no signal"
+
+
+def upper_end(peak_dbm: float) -> float:
+    """Of a colour scale in dBm, the next multiple of 5; without any signal so high that the map is dark."""
+    return NO_SIGNAL_DBM if peak_dbm <= NOTHING_DBM else 5.0 * math.ceil(peak_dbm / 5.0)
+
+
 @dataclasses.dataclass
 class Part:
     """One map and the paths behind it.
@@ -110,8 +120,7 @@ class PartSet:
         if not level[rows, columns].size:
             columns = rows = slice(None)
         seen = None if leaked is None else leaked.level(tx, rx)[rows, columns]
-        peak = float(cells_of_scene(level[rows, columns], seen).max())
-        return NO_SIGNAL_DBM if peak <= NOTHING_DBM else 5.0 * math.ceil(peak / 5.0)
+        return upper_end(float(cells_of_scene(level[rows, columns], seen).max()))
 
 
 def _within(axis, ends) -> slice:

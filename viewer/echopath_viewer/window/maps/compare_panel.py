@@ -10,6 +10,7 @@ from echopath.signals.measures import for_pictures
 
 from ...model import CellBox, Session, from_file
 from ...model.maps.comparison import difference, kept_map
+from ...model.maps.part_set import level_text
 from .colour_bar import ColourBar
 from .map_area import title_of
 from .map_panel import MapPanel
@@ -146,8 +147,8 @@ class ComparePanel(SeenPanel):
         self.session.select_cells(CellBox.around(range_index, velocity_index), (range_index, velocity_index))
 
     def _read(self, distance: float, velocity: float, level: float) -> None:
-        unit = "dB" if self.sender() is self.panels["difference"] else "dBm"
-        self.note.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {level:.1f} {unit}"))
+        told = f"{level:+z.1f} dB" if self.sender() is self.panels["difference"] else level_text(level)
+        self.note.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {told}"))
 
     def stop(self) -> None:
         """There is nothing to end."""

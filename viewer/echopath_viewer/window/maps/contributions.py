@@ -7,6 +7,7 @@ from echopath.base.decibels import SMALLEST_POWER, in_dbm
 from echopath.signals.measures import for_pictures
 
 from ...model.maps.attribution import Attribution
+from ...model.maps.part_set import level_text
 from ..background_work import BackgroundWork
 from ..banner import ThinBar
 from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
@@ -17,6 +18,7 @@ PLAYING_HINT = "Pause the frames to see what makes the cell."
 MOVING_HINT = "What makes the cell is told when nothing moves any more."
 COLUMNS = ("Echoes (ghost type/order)", "dBm", "Without", "Own peak at")
 SHOWN_BELOW_DB = 60.0   # the strongest: weaker rows are told as one
+NOTHING_LEFT_DB = -290.0  # what rounding leaves of a level
 LEAST_CHANGE_DB = 0.05  # of a level, that is told
 MOST_ROWS = 40
 WIDE = 540              # pixels, from which on there is room for the last column, whose text the tool tips have, too
@@ -160,9 +162,10 @@ class ContributionsPanel(QtWidgets.QWidget):
         place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+z.2f} m/s"
         if self.session.beam is not None:
             place += ", beam at {:+z.1f}\u00b0, {:+z.1f}\u00b0".format(*np.degrees(self.session.beam))
-        self._cell_told = (for_pictures(f"{place}: {cell.level_dbm:.1f} dBm"), for_pictures(f"mostly {kind_of(cell.strongest)}"))
+        level = level_text(cell.level_dbm)
+        self._cell_told = (for_pictures(f"{place}: {level}"), for_pictures(f"mostly {kind_of(cell.strongest)}"))
         self._break_title()
-        self._told = [for_pictures(f"without {name} {change:+z.1f} dB") for name, change in cell.without
+        self._told = [for_pictures(f"without {name} {change_text(change)}") for name, change in cell.without
                       if abs(change) >= LEAST_CHANGE_DB]
         self._break_lines()
         self._cell = self.session.cell, self.session.beam
@@ -185,7 +188,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         for number, (one, phase) in enumerate(rows):
             level = float(in_dbm(abs(one.value) ** 2, SMALLEST_POWER))
             peak = "" if one.group is None else f"{one.group.peak_range:.1f} m, {one.group.peak_velocity:+z.1f} m/s"
-            texts = (one.name, f"{level:.1f}", f"{one.without_db:+z.1f} dB", peak)
+            texts = (one.name, f"{level:.1f}", change_text(one.without_db), peak)
             for column, text in enumerate(texts):
                 item = QtWidgets.QTableWidgetItem(text if column == 0 else for_pictures(text))
                 item.setToolTip(item.text())
@@ -200,6 +203,11 @@ class ContributionsPanel(QtWidgets.QWidget):
         rows = {index.row() for index in self.table.selectedIndexes()}
         if self.session is not None and len(rows) == 1:
             self.session.select_family(self._rows[rows.pop()].group)
+
+
+def change_text(change_db: float) -> str:
+    """How a level changes without something."""
+    return f"{change_db:+z.1f} dB" if change_db > NOTHING_LEFT_DB else "-\u221e dB"
 
 
 def kind_of(contribution) -> str:

@@ -6,7 +6,7 @@ from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
 from ...model.maps.layers import TWINS
-from ...model.maps.part_set import NOTHING_DBM, WHOLE
+from ...model.maps.part_set import WHOLE, level_text
 from .colour_bar import ColourBar
 from .map_panel import MapPanel
 from ..qt import Qt, QtCore, QtGui, QtWidgets
@@ -223,8 +223,7 @@ class MapArea(QtWidgets.QWidget):
 
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
         title = title_of(self.session.parts[key]) if self.session.has_map else NO_MAP
-        told = f"{level:.1f} dBm" if level > NOTHING_DBM else "no signal"
-        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {told}   ({title})"))
+        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {level_text(level)}   ({title})"))
 
     def set_view(self, view: QtCore.QRectF) -> None:
         """What all maps show: a rectangle of range in m and velocity in m/s."""

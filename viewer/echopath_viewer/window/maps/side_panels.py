@@ -11,6 +11,7 @@ from echopath.signals.measures import for_pictures
 from ...model import CellBox
 from ...model.maps.angle_maps import (beat_signal, kept_azimuth_map, range_azimuth_map, range_elevation_map, require_signals,
                                       spectrogram_map)
+from ...model.maps.part_set import level_text, upper_end
 from ..background_work import BackgroundWork
 from ..banner import ThinBar
 from .colour_bar import ColourBar
@@ -130,7 +131,7 @@ class SidePanel(SeenPanel):
         self.note.setText("")
         is_same = self.map is not None and np.array_equal(self.map.x, found.x) and np.array_equal(self.map.y, found.y)
         self.map = found
-        highest = 5.0 * np.ceil(float(found.level.max()) / 5.0)
+        highest = upper_end(float(found.level.max()))
         axes = SimpleNamespace(range=found.x, velocity=found.y)
         view = self.panel.view if is_same else self._whole_view()
         limits = highest - self.session.dynamic_range_db, highest
@@ -179,7 +180,7 @@ class _AnglePanel(SidePanel):
         self.session.select_beam(x_index, *angles)
 
     def words_of(self, x: float, y: float, level: float) -> str:
-        return for_pictures(f"{x:.2f} m   {y:+z.1f}\u00b0   {level:.1f} dBm")
+        return for_pictures(f"{x:.2f} m   {y:+z.1f}\u00b0   {level_text(level)}")
 
 
 class AzimuthPanel(_AnglePanel):
@@ -239,11 +240,11 @@ class SpectrogramPanel(SidePanel):
         session.set_chirp(round(1e-3 * float(self.map.x[x_index]) / period))
 
     def words_of(self, x: float, y: float, level: float) -> str:
-        return for_pictures(f"{x:.2f} ms   {y:+z.2f} m/s   {level:.1f} dBm")
+        return for_pictures(f"{x:.2f} ms   {y:+z.2f} m/s   {level_text(level)}")
 
 
 class BeatPanel(SeenPanel):
-    """The beat signal of the chirp on display: real and imaginary part over its samples."""
+    """The beat signal of the chirp on display: real and, of complex samples, imaginary part over its samples."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -266,7 +267,8 @@ class BeatPanel(SeenPanel):
             return
         times, samples = beat_signal(session.cube, session.radar, session.channel, session.chirp)
         title = "beat signal of chirp {}, TX {}, RX {}".format(session.chirp + 1, *session.channel)
-        self.curves.show_curves(title, 1e6 * times, {"real": samples.real, "imaginary": samples.imag})
+        quadrature = {} if session.radar.waveform.real else {"imaginary": samples.imag}
+        self.curves.show_curves(title, 1e6 * times, {"real": samples.real} | quadrature)
 
     def stop(self) -> None:
         """There is nothing to end."""

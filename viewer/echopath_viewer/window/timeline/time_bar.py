@@ -5,6 +5,7 @@ import numpy as np
 
 from echopath.signals.measures import for_pictures
 
+from ...model.maps.part_set import level_text
 from ..qt import Qt, QtCore, QtGui, QtWidgets
 
 TICK_MS = 50
@@ -130,5 +131,5 @@ class SlowTimeStrip(QtWidgets.QWidget):
         painter.drawLine(QtCore.QLineF(self.x_of(self._chirp), rect.top(), self.x_of(self._chirp), rect.bottom()))
 
     def _text(self) -> str:
-        value = f": {self._power[self._chirp]:.1f} dBm" if self._chirp < len(self._power) else ""
+        value = f": {level_text(self._power[self._chirp])}" if self._chirp < len(self._power) else ""
         return for_pictures(f"{self._title}{value}")

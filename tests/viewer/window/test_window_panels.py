@@ -38,6 +38,16 @@ def test_a_click_in_a_map_of_angles_selects_its_beam(qtbot, window, panels, name
     assert window.session.beam is None and panel.panel.box is None
 
 
+@pytest.mark.filterwarnings("ignore:.*several pairs of polarisations")
+def test_beams_over_several_pairs_of_polarisations_are_cautioned_of(qtbot, window, panels, frame):
+    assert opened(qtbot, window, "Range-azimuth").note.text() == ""
+    crossed = [frame.radar.receivers[0].replace(polarization=(0, 1, 0)), *frame.radar.receivers[1:]]
+    window.show_input(from_frame(ep.simulate(frame.scene, frame.radar.replace(receivers=crossed), num_rays=500)))
+    panel = window.side_panels["Range-azimuth"]
+    qtbot.waitUntil(lambda: not panel.work.is_running, timeout=PATIENCE_MS)
+    assert "several pairs of polarisations" in panel.note.text()
+
+
 def test_a_click_in_the_spectrogram_goes_to_its_chirp(qtbot, window, panels):
     panel = opened(qtbot, window, "Spectrogram")
     panel.pick(len(panel.map.x) - 1, len(panel.map.y) // 2)
@@ -87,6 +97,7 @@ def test_why_there_is_no_map_is_told_of_that_frame_alone(qtbot, window, panels, 
     one = frame.radar.replace(transmitters=frame.radar.transmitters[:1], receivers=frame.radar.receivers[:1])
     window.show_input(from_frame(ep.simulate(frame.paths.scene, one, num_rays=300, guard=False)))
     qtbot.waitUntil(lambda: panel.map is None, timeout=PATIENCE_MS)
+    panel.panel.left.emit()  # the mouse has crossed the panel
     assert panel.note.text() == "There is no map to show: the antennas of this radar tell no azimuths apart."
     window.show_input(from_frame(frame))
     qtbot.waitUntil(lambda: panel.map is not None, timeout=PATIENCE_MS)

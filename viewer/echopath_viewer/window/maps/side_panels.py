@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import echopath as ep
+from echopath.base.antennas import mixes_polarisations
 from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
@@ -21,6 +22,8 @@ from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index
 from ..qt import QtCore, QtWidgets
 from .ticks import step_of
 
+SEVERAL_PAIRS = ("The channels have several pairs of polarisations, which beams add as if they had one: echoes may cancel, as VV and "
+                 "HH of a dihedral do.")
 AZIMUTH_LABEL, ELEVATION_LABEL, TIME_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees", "Time in ms"
 
 
@@ -76,7 +79,7 @@ class SidePanel(SeenPanel):
         self.panel.view_changed.connect(self.panel.set_view)
         self.panel.view_reset.connect(lambda: self.panel.set_view(self._whole_view()))
         self.panel.hovered.connect(lambda *at: self.note.setText(self.words_of(*at)))
-        self.panel.left.connect(lambda: self.note.setText(""))
+        self.panel.left.connect(lambda: self.map is not None and self.note.setText(self.caution()))
 
     # --- of each kind ---
 
@@ -99,6 +102,10 @@ class SidePanel(SeenPanel):
     def words_of(self, x: float, y: float, level: float) -> str:
         """Of the cell under the mouse."""
         raise NotImplementedError
+
+    def caution(self) -> str:
+        """What whoever reads the map should know of it, in words."""
+        return ""
 
     # --- session ---
 
@@ -128,7 +135,7 @@ class SidePanel(SeenPanel):
 
     def _take(self, found) -> None:
         self.bar.hide()
-        self.note.setText("")
+        self.note.setText(self.caution())
         is_same = self.map is not None and np.array_equal(self.map.x, found.x) and np.array_equal(self.map.y, found.y)
         self.map = found
         highest = upper_end(float(found.level.max()))
@@ -164,6 +171,9 @@ class SidePanel(SeenPanel):
 
 class _AnglePanel(SidePanel):
     """Range and an angle: a click selects the strongest velocity of the beam there."""
+
+    def caution(self) -> str:
+        return SEVERAL_PAIRS if mixes_polarisations(self.session.radar) else ""
 
     def marks(self) -> tuple:
         session = self.session

@@ -65,6 +65,17 @@ def test_opened_frames_are_remembered_latest_first(qtbot, window, frame, tmp_pat
     assert recent_files() == [str((tmp_path / "b.h5").resolve())]
 
 
+def test_an_ampersand_in_the_name_of_a_recent_file_is_no_key(qtbot, window, frame, tmp_path):
+    path = tmp_path / "R&D.h5"
+    ep.save_frame(frame, path)
+    window.open_file(path)
+    window._fill_recent()
+    action = window.recent_menu.actions()[0]
+    assert action.text().endswith("R&&D.h5")  # Qt shows two as one
+    action.trigger()
+    assert window.windowTitle().startswith(str(path))
+
+
 def test_sizes_and_places_of_panels_are_remembered(qtbot, frame):
     first = MainWindow()
     first.resize(1250, 640)

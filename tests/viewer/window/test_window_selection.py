@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import MESH_GROUP, WHOLE, CellBox, Filters
+from echopath_viewer.model import MESH_GROUP, WHOLE, CellBox, Filters, from_frame
+from echopath_viewer.scene_builder.web_page import ScenePage
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
+from support import shapes
 from support.window import LEFT, PATIENCE_MS, click_cell, panel_of, project, settle, strongest_cell
 
 EDGE = 0.01          # of a cell: paths that close to its edge may fall to either side
@@ -195,3 +197,30 @@ def test_headings_of_the_table_have_room(window):
     for column in range(window.table.model.columnCount() - 1):
         text = window.table.model.headerData(column, Qt.Orientation.Horizontal)
         assert header.sectionSize(column) >= QtGui.QFontMetrics(font).horizontalAdvance(text) + beside
+
+
+def test_names_with_signs_of_markup_are_told_as_they_are(qtbot, window, frame):
+    scene = ep.Scene()
+    scene.add(shapes.plate((6.0, 0.0, 0.0), (-1.0, 0.0, 0.0), 2.0), name="wall<left> & b", material=shapes.lambert(0.8))
+    shown = ep.simulate(scene, frame.radar, num_rays=500, parts={"<i>": "T 'wall*' R"})
+    window.show_input(from_frame(shown))
+    window.session.select_ray(int(window.table.model.rays[0]))
+    window.layer_actions["labels"].setChecked(True)
+    settle(qtbot)
+    told = QtGui.QTextDocument()
+    told.setHtml(window.table.details.text())
+    assert "wall<left> & b (diffuse)" in told.toPlainText()
+    told.setHtml(window.map_area.layer_legend.text())
+    assert "<i>" in told.toPlainText()
+    assert "wall&lt;left&gt; &amp; b" in ScenePage(window.session)._text_of(window.session.ray)
+    window.layer_actions["labels"].setChecked(False)
+
+
+def test_where_no_ray_is_drawn_it_is_said_why(qtbot, window):
+    everything = range(len(window.session.mesh_names))
+    window.session.set_mesh_visible(everything, False)
+    settle(qtbot)
+    assert window.filter_box.count_label.text().endswith("paths; these rays go over hidden meshes or have no power")
+    window.session.set_mesh_visible(everything, True)
+    settle(qtbot)
+    assert window.filter_box.count_label.text().endswith("are drawn")

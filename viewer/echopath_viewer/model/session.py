@@ -20,7 +20,7 @@ from .rays.columns import Columns, read_columns
 from .rays.filters import Filters
 from .frames.kept_orders import KEPT_CHANNEL
 from .palette import mesh_palette
-from .maps.part_set import WHOLE, Part
+from .maps.part_set import WHOLE, Part, level_text
 from .rays.ray_sample import SAMPLINGS
 from .rays.segments import RayBundle
 from .session_layers import SessionLayers
@@ -30,6 +30,7 @@ from .session_paths import SessionPaths
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
 DYNAMIC_RANGE_DB = 60.0
 _EVENTS = {"S": "specular", "D": "diffuse", "E": "on an edge"}
+NOT_DRAWN = "{} go over hidden meshes or have no power"
 MAX_KEPT_BUNDLES = 3     # of rays: those that are shown, lit and chosen
 
 
@@ -242,11 +243,13 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         return None if found is None else Part(WHOLE, LEAKAGE, found, is_known=False)
 
     def why_no_rays(self) -> str:
-        """Why no ray is lit in the selected cells; "" where some are or none are selected."""
-        if self.lit is None or self.lit_rays(1).size:
+        """Why no ray is drawn, or lit where cells are selected; "" where some are, or where filters take none."""
+        if self.lit is None:
+            return NOT_DRAWN.format("these rays") if self.visible.any() and not self.shown_rays().size else ""
+        if self.lit_rays(1).size:
             return ""
         if self.lit.any():
-            return "the rays of these cells go over hidden meshes or have no power"
+            return NOT_DRAWN.format("the rays of these cells")
         if self.note:
             return self.note
         if self.lit_by:
@@ -279,4 +282,4 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
                 for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]
         return [("path", f"{path:,}"), *hits, ("range", f"{columns.range[path]:.3f} m"),
-                ("speed", f"{columns.velocity[path]:+z.3f} m/s"), ("power", f"{columns.power_dbm(path):.1f} dBm")]
+                ("speed", f"{columns.velocity[path]:+z.3f} m/s"), ("power", level_text(columns.power_dbm(path)))]

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+from html import escape
 
 import numpy as np
 
@@ -80,10 +81,10 @@ class ScenePage:
             faces.append(triangles + sum(map(len, points)))
             points.append(np.asarray(session.scene.world_vertices(int(mesh), session.time), np.float32))
             colours += [_css(session.palette[mesh])] * len(triangles)
-            texts += [session.mesh_names[mesh]] * len(points[-1])
+            texts += [escape(session.mesh_names[mesh])] * len(points[-1])
         (x, y, z), (i, j, k) = np.concatenate(points).T, np.concatenate(faces).T
         is_plane = all(session.scene.meshes[mesh].material.mirror for mesh in meshes)
-        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text", name=name,
+        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text", name=escape(name),
                                    opacity=MIRROR_OPACITY if is_plane else MESH_OPACITY, flatshading=True, showlegend=True,
                                    showscale=False, color=_css(session.palette[meshes[0]]))
 
@@ -103,7 +104,7 @@ class ScenePage:
             return [self._plotly.Scatter3d(x=[None] * 2, y=[None] * 2, z=[None] * 2, mode="markers", marker=scale,
                                            showlegend=False, hoverinfo="skip")]
         words = "rays to" if legend.title.startswith("Object") else f"rays, {legend.title.lower()}:"
-        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name=f"{words} {label}",
+        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name=f"{words} {escape(label)}",
                                        line={"color": _css(rgb), "width": 4}) for label, rgb in legend.rows]
 
     def _drawn(self):
@@ -131,7 +132,7 @@ class ScenePage:
         return np.array([texts[int(ray)] for ray in segments.rays[segments.ray]], object)
 
     def _text_of(self, path: int) -> str:
-        return "<br>".join(f"{label}: {text}" for label, text in self._session.explain(path))
+        return "<br>".join(f"{label}: {escape(text)}" for label, text in self._session.explain(path))
 
     def _chosen(self):
         return self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name="chosen ray", hoverinfo="skip",
@@ -144,7 +145,7 @@ class ScenePage:
                 for row, name in enumerate("xyz")}
         note = {"text": "", "xref": "paper", "yref": "paper", "x": 0.01, "y": 0.98, "xanchor": "left", "yanchor": "top",
                 "align": "left", "showarrow": False, "bgcolor": "rgba(255,255,255,.8)", "font": {"color": "black"}}
-        title = {"text": f"{self._session.title or 'Rays'}<br><sub>{HINT}</sub>", "font": {"size": 16}}
+        title = {"text": f"{escape(self._session.title or 'Rays')}<br><sub>{HINT}</sub>", "font": {"size": 16}}
         return {"scene": axes | {"aspectmode": "manual"} | self._camera(low, high), "title": title, "annotations": [note],
                 "margin": {"l": 0, "r": 0, "b": 0, "t": 60}, "legend": {"itemsizing": "constant"}, "paper_bgcolor": "white"}
 

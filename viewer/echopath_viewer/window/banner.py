@@ -1,7 +1,7 @@
 """A line that says what is wrong, and what else stands around the views."""
 from __future__ import annotations
 
-from .qt import QtWidgets
+from .qt import Qt, QtWidgets
 
 BAR_STEPS = 1000
 
@@ -27,7 +27,7 @@ class Banner(QtWidgets.QLabel):
     """A line that says what is wrong, until it is clicked."""
 
     def __init__(self):
-        super().__init__(visible=False, wordWrap=True)
+        super().__init__(visible=False, wordWrap=True, textFormat=Qt.TextFormat.PlainText)
         self.setStyleSheet("background: #fdecea; color: #7a1f14; padding: 8px; border-bottom: 1px solid #c0392b")
         self.setToolTip("Click to close")
 

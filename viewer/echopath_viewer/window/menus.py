@@ -51,7 +51,7 @@ class Menus:
     def _fill_recent(self) -> None:
         self.recent_menu.clear()
         for name in recent_files():
-            self.recent_menu.addAction(name, lambda name=name: self.open_file(name))
+            self.recent_menu.addAction(name.replace("&", "&&"), lambda name=name: self.open_file(name))
 
     def _add_layers(self) -> None:
         """A toggle for each layer, in a menu of its own."""

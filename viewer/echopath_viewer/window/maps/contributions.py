@@ -1,6 +1,8 @@
 """What makes the selected cell: a table of families, their phasors, and the level without each thing."""
 from __future__ import annotations
 
+from html import escape
+
 import numpy as np
 
 from echopath.base.decibels import SMALLEST_POWER, in_dbm
@@ -120,7 +122,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         bold = self.title.font()
         bold.setBold(True)
         width = QtGui.QFontMetrics(bold).horizontalAdvance(f"{level}, {kind}")
-        self.title.setText(f"<b>{level}</b>,{' ' if width < self.width() - 16 else '<br>'}{kind}")
+        self.title.setText(f"<b>{level}</b>,{' ' if width < self.width() - 16 else '<br>'}{escape(kind)}")
 
     def _break_lines(self) -> None:
         """What is told of the level, in lines as wide as the panel: a layout gives a label that wraps by itself too few."""

@@ -1,6 +1,8 @@
 """The rays of a selection as a table."""
 from __future__ import annotations
 
+from html import escape
+
 import numpy as np
 
 from echopath.signals.measures import for_pictures
@@ -151,7 +153,7 @@ class RayTable(QtWidgets.QWidget):
         self.view.viewport().update()
         self._scroll_to_chosen()
         lines = [] if session.ray is None else session.explain(session.ray)
-        self.details.setText("   ".join(f"<b>{label}</b> {text}" for label, text in lines) or
+        self.details.setText("   ".join(f"<b>{label}</b> {escape(text)}" for label, text in lines) or
                              "Click a ray or a row: its hits and its cell.")
 
     def _scroll_to_chosen(self) -> None:

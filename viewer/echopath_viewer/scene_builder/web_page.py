@@ -84,9 +84,9 @@ class ScenePage:
             texts += [escape(session.mesh_names[mesh])] * len(points[-1])
         (x, y, z), (i, j, k) = np.concatenate(points).T, np.concatenate(faces).T
         is_plane = all(session.scene.meshes[mesh].material.mirror for mesh in meshes)
-        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text", name=escape(name),
+        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text",
                                    opacity=MIRROR_OPACITY if is_plane else MESH_OPACITY, flatshading=True, showlegend=True,
-                                   showscale=False, color=_css(session.palette[meshes[0]]))
+                                   name=escape(name), showscale=False, color=_css(session.palette[meshes[0]]))
 
     def _antennas(self):
         x, y, z = np.array(self._session.antennas_at(self._session.time)).T

@@ -159,7 +159,8 @@ class MapArea(QtWidgets.QWidget):
         for key, panel in self.panels.items():
             has_layers = key == (WHOLE, WHOLE) or len(self.panels) == 1
             panel.show_layers(image if has_layers else None, markers if has_layers else [])
-        words = [f"<span style='color:{QtGui.QColor(*map(int, rgb)).name()}'>&#9632;</span>&nbsp;{escape(name)}" for name, rgb in rows]
+        words = [f"<span style='color:{QtGui.QColor(*map(int, rgb)).name()}'>&#9632;</span>&nbsp;{escape(name)}"
+                 for name, rgb in rows]
         kinds = [text for kind, text in MARKER_WORDS.items() if any(marker.kind == kind for marker in markers)]
         kinds += [TWIN_WORDS] if TWINS in self.session.layers else []
         self.layer_legend.setText(" &nbsp; ".join(words + kinds))

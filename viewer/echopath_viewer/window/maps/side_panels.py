@@ -22,8 +22,8 @@ from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index
 from ..qt import QtCore, QtWidgets
 from .ticks import step_of
 
-SEVERAL_PAIRS = ("The channels have several pairs of polarisations, which beams add as if they had one: echoes may cancel, as VV and "
-                 "HH of a dihedral do.")
+SEVERAL_PAIRS = ("The channels have several pairs of polarisations, which beams add as if they had one: echoes may cancel, as VV "
+                 "and HH of a dihedral do.")
 AZIMUTH_LABEL, ELEVATION_LABEL, TIME_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees", "Time in ms"
 
 

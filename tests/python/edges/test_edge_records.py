@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.paths.edge_hits import edge_hits
 from support.scenes.edge_scenes import FREQUENCY, box, fields, on_edges, radar_at, scene_of, sheet, trace
 
 
@@ -43,6 +44,12 @@ def test_expressions_and_partitions_know_them(of_a_box):
     parts = ep.decompose(of_a_box, radar, {"edges": "T E R"})
     assert parts["edges"] == pytest.approx(ep.synthesize(edges, radar, tolerance=1e-9), abs=1e-6 * np.abs(parts["edges"]).max())
     assert list(of_a_box.to_dataframe()["events"]).count("E") == edges.num_paths
+
+
+def test_hits_on_edges_of_one_path_are_those_of_its_expression(of_a_box):
+    is_single = np.asarray(ep.Selection("T E R").matches(of_a_box))
+    for path in (int(np.flatnonzero(is_single)[0]), int(np.flatnonzero(~is_single)[0])):
+        assert (edge_hits(of_a_box, slice(path, path + 1)).tolist() == [1]) == is_single[path]
 
 
 def test_files_and_pickles_keep_them(of_a_box, tmp_path):

@@ -38,6 +38,19 @@ def test_a_view_is_saved_and_loaded(frame, tmp_path):
     assert np.array_equal(second.visible, first.visible) and np.array_equal(second.lit, first.lit)
 
 
+def test_colours_of_meshes_are_told_once_where_some_are_others(session):
+    told = []
+    session.listen(lambda topics: told.append(topics))
+    state = state_of(session)
+    for rgb, times in ((None, 0), ((1, 2, 3), 1)):
+        if rgb is not None:
+            state["mesh_colours"] = dict.fromkeys(state["mesh_colours"], rgb)
+        told.clear()
+        apply_state(session, state)
+        assert told.count({"meshes", "colours"}) == times
+    assert session.palette.tolist() == [[1, 2, 3]] * len(session.mesh_names)
+
+
 def test_a_view_of_another_frame_says_what_does_not_fit(session):
     state = state_of(session) | {"hidden_meshes": ["car"], "part": ["route", "lost"], "channel": [5, 0]}
     misfits = apply_state(session, json.loads(json.dumps(state)))

@@ -58,6 +58,15 @@ def test_a_channel_is_chosen(qtbot, window, frame):
     assert panel_of(window, WHOLE, WHOLE).level == pytest.approx(level, abs=1e-3)
 
 
+def test_the_mouse_shows_that_a_channel_is_read(qtbot, window, monkeypatch):
+    shown, read = [], window.session.set_channel
+    monkeypatch.setattr(window.session, "set_channel",
+                        lambda *channel: (shown.append(QtWidgets.QApplication.overrideCursor().shape()), read(*channel)))
+    window.map_area.channel_box.setCurrentIndex(2)
+    window.map_area.channel_box.activated.emit(2)
+    assert shown == [Qt.CursorShape.WaitCursor] and QtWidgets.QApplication.overrideCursor() is None
+
+
 def test_the_wheel_zooms_about_the_cursor_and_a_double_click_resets(qtbot, window):
     panel, before = panel_of(window, WHOLE, WHOLE), QtCore.QRectF(window.map_area.view)
     at = QtCore.QPointF(panel.plot_rect().center())

@@ -137,8 +137,15 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self._tell("colours")
 
     def set_mesh_colour(self, mesh: int, rgb) -> None:
-        self.palette[mesh] = rgb
-        self._tell("meshes", "colours")
+        self.set_mesh_colours({mesh: rgb})
+
+    def set_mesh_colours(self, rgb_of_mesh: dict) -> None:
+        """Of some meshes {ID: (r, g, b)}, told once."""
+        others = {mesh: rgb for mesh, rgb in rgb_of_mesh.items() if tuple(self.palette[mesh]) != tuple(rgb)}
+        for mesh, rgb in others.items():
+            self.palette[mesh] = rgb
+        if others:
+            self._tell("meshes", "colours")
 
     def set_mesh_visible(self, meshes, is_visible: bool) -> None:
         """meshes: IDs; rays over meshes that are hidden are not drawn."""
@@ -277,7 +284,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
     def explain(self, path: int) -> list[tuple]:
         """What a path is, in (label, text) lines."""
         columns = self.columns
-        diffuse, edges = int(self.paths.diffuse[path]), int(edge_hits(self.paths)[path])
+        diffuse, edges = int(self.paths.diffuse[path]), int(edge_hits(self.paths, slice(path, path + 1))[0])
         events = [_EVENTS[event(diffuse, edges, hit)] for hit in range(int(columns.num_bounces[path]))]
         hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
                 for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]

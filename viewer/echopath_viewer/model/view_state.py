@@ -153,6 +153,5 @@ def _apply_looks(session, state: dict, misfits: list) -> None:
     misfits += [f"hidden mesh: there is no '{name}'" for name in unknown]
     session.set_mesh_visible(list(number_of.values()), True)
     session.set_mesh_visible([number_of[name] for name in state.get("hidden_meshes", []) if name in number_of], False)
-    for name, rgb in state.get("mesh_colours", {}).items():
-        if name in number_of:
-            session.set_mesh_colour(number_of[name], rgb)
+    colours = state.get("mesh_colours", {})
+    session.set_mesh_colours({number_of[name]: rgb for name, rgb in colours.items() if name in number_of})

@@ -1,6 +1,8 @@
 """Long work with a progress bar that can be cancelled."""
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from .ctrl_c import is_heard, long_work
 from .qt import Qt, QtWidgets
 
@@ -9,6 +11,16 @@ PATIENCE_MS = 400  # before a bar appears
 
 class Cancelled(Exception):
     """The user has had enough."""
+
+
+@contextmanager
+def waiting_cursor():
+    """The mouse shows meanwhile that the window is at work: for what takes a second where there are many paths."""
+    QtWidgets.QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
+    try:
+        yield
+    finally:
+        QtWidgets.QApplication.restoreOverrideCursor()
 
 
 def run_with_progress(parent, title: str, work):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from ..model import COLOUR_MODES
 from ..model.view_state import apply_state
+from .busy import waiting_cursor
 from .command_palette import CommandPalette
 from .keys import help_dialog
 
@@ -72,7 +73,8 @@ class ViewActions:
         if state is None:
             return
         try:
-            misfits = apply_state(self.session, state)
+            with waiting_cursor():
+                misfits = apply_state(self.session, state)
         except ValueError as error:
             misfits = [str(error)]
         self.filter_box.read(self.session)

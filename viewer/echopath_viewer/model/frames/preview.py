@@ -16,7 +16,7 @@ from .maps_input import no_paths, with_values
 from ..maps.part_set import PartSet
 from ..maps.signals import Signals
 
-LARGE = 64 << 20  # bytes of a file: what is smaller is read in less than a second
+LARGE = 32 << 20  # bytes of a file: what is smaller is read in about a second
 READING = "the rays of this file are being read"
 
 

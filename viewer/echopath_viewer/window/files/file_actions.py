@@ -7,7 +7,7 @@ import echopath as ep
 
 from ...model.view_state import apply_state, load_state, save_state, state_of
 from ...scene_builder import export_meshes, export_rays
-from ..busy import run_with_progress
+from ..busy import run_with_progress, waiting_cursor
 from .exporting import export
 from ..qt import QtCore, QtWidgets
 
@@ -46,7 +46,8 @@ class FileActions:
         suffix, scale = PICTURES.get(kind, (".png", 1))
         path = path if Path(path).suffix else path + suffix
         try:
-            run_with_progress(self, "Export", lambda progress: export(self, path, scale, progress))
+            with waiting_cursor():
+                run_with_progress(self, "Export", lambda progress: export(self, path, scale, progress))
         except (ep.FileError, ValueError, ModuleNotFoundError) as error:
             self.show_message(str(error))
 

@@ -12,7 +12,7 @@ from ...model.frames.kept_orders import keep_orders
 from ...model.frames.preview import preview_of
 from ...model.frames.time_line import time_line_of
 from ...model.view_state import apply_state, state_of
-from ..busy import run_with_progress
+from ..busy import run_with_progress, waiting_cursor
 from .demo import simulate_demo
 from ..qt import QtCore
 from .remembered import remember_file
@@ -35,9 +35,10 @@ class Opening:
         """Shows a frame file, or the time line of a folder, a pattern or a list of files, or says above what was shown before
         what is wrong with it."""
         try:
-            line = time_line_of(path)
-            early = preview_of(path) if line is None else None
-            view_input = early or (from_file(path) if line is None else line.read(0))
+            with waiting_cursor():
+                line = time_line_of(path)
+                early = preview_of(path) if line is None else None
+                view_input = early or (from_file(path) if line is None else line.read(0))
         except (ep.FileError, ValueError) as error:
             self.show_message(str(error))
             return False

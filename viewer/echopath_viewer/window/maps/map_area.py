@@ -9,6 +9,7 @@ from echopath.signals.measures import for_pictures
 from ...model import CellBox
 from ...model.maps.layers import TWINS
 from ...model.maps.part_set import WHOLE, level_text
+from ..busy import waiting_cursor
 from .colour_bar import ColourBar
 from .map_panel import MapPanel
 from ..qt import Qt, QtCore, QtGui, QtWidgets
@@ -82,8 +83,12 @@ class MapArea(QtWidgets.QWidget):
         self.layout_box.currentIndexChanged.connect(lambda _: self.rebuild())
         self.part_box.activated.connect(lambda _: self.session.set_part(self.part_box.currentData()))
         self.partition_box.activated.connect(lambda _: self.session.set_partition(self.partition_box.currentText()))
-        self.channel_box.activated.connect(lambda _: self.session.set_channel(*self.channel_box.currentData()))
+        self.channel_box.activated.connect(self._choose_channel)
         self.range_slider.valueChanged.connect(self._range_moved)
+
+    def _choose_channel(self, _index: int) -> None:
+        with waiting_cursor():
+            self.session.set_channel(*self.channel_box.currentData())
 
     # --- session ---
 

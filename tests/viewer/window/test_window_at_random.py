@@ -43,9 +43,10 @@ def actions(qtbot, window, frame, tmp_path):
         data = QtCore.QMimeData()
         name = ("good.h5", "bad.h5", "none.h5")[rng.integers(3)]
         data.setUrls([QtCore.QUrl.fromLocalFile(str(tmp_path / name))])
-        event = QtGui.QDropEvent(QtCore.QPointF(spot(window, rng)), Qt.DropAction.CopyAction, data, LEFT,
-                                 Qt.KeyboardModifier.NoModifier)
-        QtWidgets.QApplication.sendEvent(window, event)
+        at = spot(window, rng)
+        for kind, place in ((QtGui.QDragEnterEvent, at), (QtGui.QDropEvent, QtCore.QPointF(at))):  # Qt drops where a drag entered
+            event = kind(place, Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier)
+            QtWidgets.QApplication.sendEvent(window, event)
 
     def choose_row(rng):
         table = window.contributions.table
@@ -66,6 +67,7 @@ def actions(qtbot, window, frame, tmp_path):
     }
 
 
+@pytest.mark.filterwarnings("ignore:.*QDragEnterEvent:DeprecationWarning")
 def test_nothing_raises_and_what_is_shown_is_what_is_selected(qtbot, window, actions):
     rng, names = np.random.default_rng(11), sorted(actions)  # pytest-qt fails the test for what callbacks raise
     for _ in range(NUM_ACTIONS):

@@ -73,7 +73,8 @@ class ContributionsPanel(QtWidgets.QWidget):
     def show_session(self, session) -> None:
         self.work.stop()
         self.bar.hide()
-        self.session, self._cell, self._is_passing = session, None, False
+        self.session, self._is_passing = session, False
+        self._show_nothing(HINT)  # whoever looks or not: rows of another frame have no paths in this one
         self.refresh()
 
     def follow_session(self, session, is_passing: bool = False) -> None:

@@ -13,6 +13,7 @@ from echopath_viewer.model.maps.attribution import Attribution
 from echopath_viewer.model.maps.beams import beam_values, paths_in_beam
 from echopath_viewer.model.maps.comparison import KeptMap, difference
 from echopath_viewer.model.maps.ghost_twins import ghost_twins
+from support import shapes
 
 SUM_TOLERANCE = 1e-6  # of what makes a cell, of its value: what is promised
 
@@ -131,3 +132,20 @@ def test_labels_of_azimuths_do_not_lie_over_velocities(stored_run):
     maps = maps_of(frame, with_power=True)
     with pytest.raises(ValueError, match="labels: this file keeps those of its range-azimuth map alone"):
         Session(from_maps(maps, stored_run)).set_layer("labels", True)
+
+
+def test_true_centres_that_are_too_fast_for_the_map_are_where_their_echo_is(frame):
+    """A plate that comes straight at the radar with 1.4 of the velocities of the map: its echo is folded to 0.6 of them away."""
+    waveform = frame.radar.waveform.replace(num_chirps=32)
+    radar = frame.radar.replace(waveform=waveform, transmitters=frame.radar.transmitters[:1])
+    fastest = waveform.wavelength / (4.0 * waveform.chirp_interval)  # m/s
+    scene = ep.Scene()
+    scene.add(shapes.plate((8.0, 0.0, 0.0), (-1.0, 0.0, 0.0), 0.3), name="plate", material=shapes.lambert(0.8),
+              motion=ep.LinearMotion(velocity=(-1.4 * fastest, 0.0, 0.0)))
+    session = Session(from_frame(ep.simulate(scene, radar, num_rays=500, noise_seed=None, truth=True)))
+    session.set_layer("truth", True)
+    (marker,) = session.map_layers()[2]
+    assert marker.velocity == pytest.approx(0.6 * fastest, rel=0.01) and "beyond the velocities of the map" in marker.text
+    spectrum, level = session.parts.whole.spectrum, session.parts.whole.level(0, 0)
+    row = np.unravel_index(level.argmax(), level.shape)[0]
+    assert marker.velocity == pytest.approx(spectrum.velocity[row], rel=0, abs=spectrum.velocity[1] - spectrum.velocity[0])

@@ -69,7 +69,7 @@ class SessionLayers:
         if OBJECTS in self.layers:
             markers += label_markers(self.known_data(OBJECTS))
         if TRUTH in self.layers:
-            markers += truth_markers(self.known_data(TRUTH))
+            markers += truth_markers(self.known_data(TRUTH), spectrum)
         if DETECTIONS in self.layers:
             markers += detection_markers(self.known_data(DETECTIONS), spectrum, self.object_colours())
         if TWINS in self.layers:

@@ -9,6 +9,7 @@ import numpy as np
 from echopath.base.colours import colours_of
 from echopath.labels.ghost_names import ghost_name
 from echopath.plots.labels import CLASSES
+from echopath.signals.measures import for_pictures
 
 from ..palette import rgb_of
 
@@ -99,10 +100,25 @@ def detection_rgb(detections, index: int, object_rgb: Mapping) -> tuple:
     return tuple(object_rgb.get(str(detections.object[index]), BACKGROUND_RGB))
 
 
-def truth_markers(truth) -> list[Marker]:
-    """A ring for each object at the range and radial velocity of the centre of its box."""
-    return [Marker("truth", float(distance), float(velocity), f"{name}: true centre", (255, 255, 255))
-            for name, distance, velocity in zip(truth.name, truth.range, truth.radial_velocity)]
+def truth_markers(truth, spectrum) -> list[Marker]:
+    """A ring for each object at the range and radial velocity of the centre of its box; what is too fast for the velocities of
+    the map (spectrum: for its axes) is where its echo is: turns of the phase from chirp to chirp are not told apart."""
+    folded = _folded(truth.radial_velocity, np.asarray(spectrum.velocity))
+    return [Marker("truth", float(distance), float(seen), f"{name}: true centre" + _true_speed(velocity, seen), (255, 255, 255))
+            for name, distance, velocity, seen in zip(truth.name, truth.range, truth.radial_velocity, folded)]
+
+
+def _folded(velocities, axis):
+    """Velocities in m/s within the cells of an axis [V], by whole lengths of it; a single cell holds them all."""
+    if len(axis) < 2:
+        return np.full(len(velocities), axis[0])
+    step = axis[1] - axis[0]
+    span, lowest = step * len(axis), axis[0] - 0.5 * step
+    return np.asarray(velocities) - span * np.floor((np.asarray(velocities) - lowest) / span)
+
+
+def _true_speed(velocity: float, seen: float) -> str:
+    return "" if velocity == seen else for_pictures(f", {velocity:+z.1f} m/s, beyond the velocities of the map")
 
 
 def box_corners(truth):

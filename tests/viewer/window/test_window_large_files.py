@@ -1,6 +1,9 @@
 """Files whose map is shown before their rays are read."""
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import h5py
 import numpy as np
 import pytest
@@ -88,3 +91,20 @@ def test_a_picture_after_the_window_was_closed_is_no_error(shared_window, frame,
     monkeypatch.undo()
     assert view.builder is builder
     view.look("fit")
+
+
+CLOSED_AT_WORK = """
+import time
+from echopath_viewer.window.background_work import BackgroundWork
+from echopath_viewer.window.qt import QtCore
+
+application, work = QtCore.QCoreApplication([]), BackgroundWork()
+work.start(lambda progress: (time.sleep(0.3), print("read", flush=True)))
+work.stop()
+"""
+
+
+def test_a_program_that_ends_waits_for_what_is_read():
+    """Python stops daemons wherever they are, and hangs or crashes where that is in the middle of a file."""
+    ended = subprocess.run([sys.executable, "-c", CLOSED_AT_WORK], capture_output=True, text=True, timeout=60, check=True)
+    assert ended.stdout == "read\n" and ended.stderr == ""

@@ -11,25 +11,27 @@ class _Stopped(Exception):
 
 
 class BackgroundWork(QtCore.QObject):
-    """One piece of work at a time; a new one, or `stop`, makes the one before end without a word."""
+    """One piece of work at a time; a new one, or `stop`, makes the one before end without a word.
+
+    The program waits at its end for work that is running: threads that Python stops in the middle of a file or of the core may
+    hold what its end needs, and it would hang or crash.
+    """
 
     done = Signal(object)
     failed = Signal(str)
     advanced = Signal(float)  # share of the work, 0 to 1
     _ended = Signal(int, object, str)
 
-    def __init__(self, parent=None, *, ends_first: bool = False):
-        """ends_first: whether the program waits at its end for work that is running."""
+    def __init__(self, parent=None):
         super().__init__(parent)
-        self._number, self._is_daemon = 0, not ends_first
-        self.is_running = False
+        self._number, self.is_running = 0, False
         self._ended.connect(self._tell)  # in the thread of the window, as this object lives there
 
     def start(self, work) -> None:
         """work: callable (progress) -> result, which may raise ValueError or OSError; progress: callable (stage, fraction)."""
         self._number += 1
         self.is_running = True
-        threading.Thread(target=self._run, args=(self._number, work), daemon=self._is_daemon).start()
+        threading.Thread(target=self._run, args=(self._number, work)).start()
 
     def stop(self) -> None:
         self._number += 1

@@ -65,7 +65,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.live_panel = LivePanel(self.live)
         self.frame_bar.hide()
         self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), ThinBar()
-        self.loading, self.keeping, self.file_watch = BackgroundWork(self), BackgroundWork(self, ends_first=True), FileWatch(self)
+        self.loading, self.keeping, self.file_watch = BackgroundWork(self), BackgroundWork(self), FileWatch(self)
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
         self._stale, self._signal_of, self.is_to_load, self._is_passing = set(), None, False, False

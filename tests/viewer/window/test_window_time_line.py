@@ -4,11 +4,13 @@ from __future__ import annotations
 import shutil
 import threading
 
+import h5py
+import numpy as np
 import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox
-from echopath_viewer.model.frames.overview import glance_at
+from echopath_viewer.model.frames.overview import glance_at, level_image
 from echopath_viewer.window.qt import Qt
 from support.window import PATIENCE_MS, open_on_screen, settle
 
@@ -116,6 +118,22 @@ def test_a_window_is_at_rest_when_the_strip_has_all_frames(qtbot, shared_window,
     shared_window.settle()
     strip = shared_window.frame_bar.strip
     assert [glance.time for glance in strip._glances] == list(stored_run.times) and strip.tracks.num_tracks >= 1
+    shared_window.time_line.show(None)
+
+
+def test_a_file_without_a_map_leaves_a_gap_in_the_strip(qtbot, shared_window, stored_run, tmp_path):
+    """A file of paths alone, and one whose map is damaged, take no column from the others."""
+    for number in range(3):
+        shutil.copy(stored_run.paths_of_files[number], tmp_path / f"{number}.h5")
+    stored_run[0].paths.save(tmp_path / "0.h5")
+    with h5py.File(tmp_path / "1.h5", "r+") as file:
+        del file["spectra/values"]
+    shared_window.open_file(tmp_path)
+    shared_window.settle()
+    strip = shared_window.frame_bar.strip
+    level, _ = level_image(strip._glances, "range")
+    assert np.isfinite(level).all(axis=0).tolist() == [False, False, True] and strip._image is not None
+    assert "1.h5" in shared_window.banner.text() and not strip.grab().isNull()
     shared_window.time_line.show(None)
 
 

@@ -22,7 +22,8 @@ AXES = ("velocity", "range")
 class Glance:
     """What is kept of one frame: kilobytes.
 
-    time: s, its start; velocity [V] m/s and range [R] m: axes; by_velocity [V], by_range [R]: W, f32, summed over the other
+    time: s, its start; velocity [V] m/s and range [R] m: axes; by_velocity [V], by_range [R]: W, f32, summed over the other;
+        all empty where the file has no map
     detections: ep.Detections without their paths, None: the file has none; radar: of the frame, None: the file has none
     """
 
@@ -35,11 +36,17 @@ class Glance:
     radar: object = None
 
 
+def no_glance(moment) -> Glance:
+    """Of a frame whose file has no map, or cannot be read."""
+    nothing = np.zeros(0, np.float32)
+    return Glance(moment.start_time, nothing, nothing, nothing, nothing)
+
+
 def glance_at(moment) -> Glance:
     """Reads the map and the detections of a frame of a time line, not its paths. Raises ep.FileError."""
     with our_file(moment.path) as file:
         if "maps" not in file and "spectra" not in file:
-            raise ep.FileError("holds paths alone, no map")
+            return no_glance(moment)
         axes = axes_in_file(file)
         shape = len(axes["velocity"]), len(axes["range"])
         power = power_in_file(file, shape) if has_power(file) else np.zeros(shape, np.float32)
@@ -49,12 +56,17 @@ def glance_at(moment) -> Glance:
     return Glance(moment.start_time, axes["velocity"], axes["range"], power.sum(axis=1), power.sum(axis=0), found, radar)
 
 
+def has_map(glance: Glance) -> bool:
+    """Whether there is a column to show of it."""
+    return len(glance.velocity) > 0
+
+
 def level_image(glances, axis: str):
     """(dBm, f32 [X, T], a column for each frame; axis values [X]) of glances of one radar; axis: a name of AXES.
 
-    Frames with another axis than the first have NaN.
+    Frames with another axis than the first that has one have NaN.
     """
-    values = getattr(glances[0], axis)
+    values = next((getattr(one, axis) for one in glances if has_map(one)), np.zeros(0))
     columns = [in_dbm(getattr(one, f"by_{axis}").astype(float), SMALLEST_POWER) if len(getattr(one, axis)) == len(values)
                else np.full(len(values), np.nan) for one in glances]
     return np.stack(columns, axis=1).astype(np.float32), values

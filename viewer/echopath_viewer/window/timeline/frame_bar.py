@@ -6,7 +6,7 @@ import numpy as np
 from echopath.plots.style import CURVE_COLOURS, MAP_COLOURS
 
 from ...model.colours import colour_table, levels_of
-from ...model.frames.overview import AXES, level_image, track_values, tracks_of
+from ...model.frames.overview import AXES, has_map, level_image, track_values, tracks_of
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 from ..maps.ticks import nice_ticks, tick_text
 
@@ -105,7 +105,7 @@ class TimeStrip(QtWidgets.QWidget):
 
     def _make_image(self) -> None:
         self._image = None
-        if self._glances:
+        if any(map(has_map, self._glances)):
             level, self._values = level_image(self._glances, self.axis)
             highest, noise = float(np.nanmax(level)), float(np.nanmedian(level))
             self._rows = _rows_with_signal(level, noise + OVER_NOISE_DB)
@@ -141,7 +141,8 @@ class TimeStrip(QtWidgets.QWidget):
         rect, ink = self._rect(), self.palette().windowText().color()
         painter.setPen(ink)
         if self._image is None:
-            painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, "the frames are read ...")
+            text = "the frames hold no maps" if self._glances else "the frames are read ..."
+            painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, text)
             return
         painter.drawImage(rect, self._image)
         self._paint_axes(painter, rect)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import echopath as ep
 
 from ...model.frames.carried import make_ready, session_like
-from ...model.frames.overview import glance_at
+from ...model.frames.overview import glance_at, no_glance
 from ..background_work import BackgroundWork
 from ..qt import QtCore, Signal
 
@@ -202,10 +202,13 @@ class TimeControl(QtCore.QObject):
     def _read_glances(self) -> None:
         missing = [moment for moment in self.line.moments if moment not in self._glances][:MOST_GLANCES]
         if missing and not self.is_glancing:
-            self._glancing.start(lambda progress: {moment: glance_at(moment) for moment in missing})
+            self._glancing.start(lambda progress: _glances_at(missing))
 
-    def _take_glances(self, found: dict) -> None:
+    def _take_glances(self, taken: tuple) -> None:
+        found, trouble = taken
         self._glances |= found
+        if trouble:
+            self.failed.emit(trouble)
         there = []
         for moment in self.line.moments:
             if moment not in self._glances:
@@ -214,3 +217,14 @@ class TimeControl(QtCore.QObject):
         self.bar.strip.show_glances(there)
         self.glanced.emit()
         self._read_glances()
+
+
+def _glances_at(moments) -> tuple:
+    """({Moment: Glance}, what was wrong with the first that could not be read, "": nothing); the others are shown without it."""
+    found, trouble = {}, ""
+    for moment in moments:
+        try:
+            found[moment] = glance_at(moment)
+        except (ep.FileError, OSError) as error:
+            found[moment], trouble = no_glance(moment), trouble or str(error)
+    return found, trouble

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import CellBox, Legend
+from echopath_viewer.model import CellBox, Filters, Legend
 from echopath_viewer.window.scene.filter_box import ErrorLabel
 from echopath_viewer.window.scene.legend_box import LegendBox
 from echopath_viewer.window.scene.pace import Smoothing
@@ -243,6 +243,21 @@ def test_a_click_on_a_row_of_the_legend_shows_that_object_alone(qtbot, window):
     for shown in ({0, 1}, {0, 1, 2, 3}):
         qtbot.mouseClick(legend, Qt.MouseButton.LeftButton, pos=QtCore.QPoint(20, 8 + line + line // 2))
         assert set(range(4)) - session.hidden_meshes == shown
+
+
+@pytest.mark.parametrize("mode", ["power", "range", "speed"])
+def test_no_ray_has_no_scale(qtbot, window, mode):
+    """One from 0 to 1, in colours of speeds towards and away, had stood beside rays without a colour."""
+    window.session.set_color_by(mode)
+    settle(qtbot)
+    legend = window.view3d.legend_box
+    assert legend.isVisible() and legend.legend.clim is not None
+    window.session.set_filters(Filters(min_bounces=60))
+    settle(qtbot)
+    assert not legend.isVisible()
+    window.session.set_filters(Filters())
+    settle(qtbot)
+    assert legend.isVisible()
 
 
 def test_edges_are_smooth_on_a_quick_machine(qtbot, window, monkeypatch):

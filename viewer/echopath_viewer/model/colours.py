@@ -57,6 +57,8 @@ def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None,
         raise ValueError(f"color_by: must be one of {', '.join(COLOUR_MODES)}, got {mode!r}")
     title, usual_cmap = _SCALES[mode]
     values = _values(mode, columns, segments.rays)
+    if not len(values) and clim is None:  # there is no scale of nothing
+        return Colouring(np.zeros((0, 3), np.uint8), Legend(title))
     clim = _limits(mode, values) if clim is None else clim
     legend = Legend(title=title, clim=clim, cmap=cmap or usual_cmap)
     return Colouring(np.take(scale_colours(values, clim, legend.cmap), segments.ray, axis=0), legend)
@@ -88,8 +90,6 @@ def _values(mode: str, columns, rays):
 
 
 def _limits(mode: str, values) -> tuple:
-    if not len(values):
-        return (0.0, 1.0)
     if mode == "power":
         return float(values.max()) - POWER_SPAN_DB, float(values.max())
     if mode == "speed":

@@ -6,6 +6,7 @@ import pytest
 
 from echopath.signals.measures import for_pictures
 from echopath_viewer.model import WHOLE, CellBox, from_paths
+from echopath_viewer.window.maps.map_area import HINT
 from echopath_viewer.window.maps.ticks import axis_ticks
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
@@ -137,6 +138,13 @@ def test_a_double_click_leaves_part_and_selection_as_they_were(qtbot, window):
     assert window.session.part_key == ("route", "ghost")
     qtbot.mouseDClick(panel, LEFT, pos=at)
     assert window.session.part_key == (WHOLE, WHOLE) and window.session.box == CellBox(3, 4, 5, 6)
+
+
+def test_the_hint_below_the_maps_has_room_in_the_smallest_window(window):
+    label, wrap = window.map_area.read_out, Qt.TextFlag.TextWordWrap
+    width = window.docks["Range-Doppler"].minimumSizeHint().width() - 8
+    needed = label.fontMetrics().boundingRect(QtCore.QRect(0, 0, width, 1000), wrap, HINT).height()
+    assert needed <= label.height()
 
 
 def test_without_partitions_there_is_no_choice_of_one_and_room_for_the_names_of_parts(window, frame):

@@ -20,8 +20,7 @@ MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", 
                 "detection": "detections: &#9679;&nbsp;echo, &#9675;&nbsp;ghost, by object"}
 NO_MAP = "no map: the file keeps labels alone"
 TWIN_WORDS = "ghosts in the scene by object, way and (type/order)"
-HINT = ("Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what "
-        "moves or everything.")
+HINT = "Click or drag: the rays of cells. Wheel: zoom, right button: move, double click: what moves or all."
 
 
 class MapArea(QtWidgets.QWidget):

@@ -1,12 +1,13 @@
 """Beams, maps beside range-Doppler, twins of ghosts and differences of maps, without a window."""
 from __future__ import annotations
 
+import h5py
 import numpy as np
 import pytest
 
 import echopath as ep
 from echopath.frame.maps import maps_of
-from echopath_viewer.model import Session, from_frame
+from echopath_viewer.model import Session, from_file, from_frame
 from echopath_viewer.model.frames.maps_input import from_maps
 from echopath_viewer.model.maps.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
 from echopath_viewer.model.maps.attribution import Attribution
@@ -149,3 +150,15 @@ def test_true_centres_that_are_too_fast_for_the_map_are_where_their_echo_is(fram
     spectrum, level = session.parts.whole.spectrum, session.parts.whole.level(0, 0)
     row = np.unravel_index(level.argmax(), level.shape)[0]
     assert marker.velocity == pytest.approx(spectrum.velocity[row], rel=0, abs=spectrum.velocity[1] - spectrum.velocity[0])
+
+
+def test_the_range_azimuth_map_is_that_which_the_frame_was_asked_for(moving_sequence, tmp_path):
+    angles = {"method": "capon", "azimuth": np.radians([-40.0, -20.0, 0.0, 20.0, 40.0]), "range_neighbours": 1}
+    frame = ep.simulate(moving_sequence.scene, moving_sequence.radar, num_rays=500, angles=angles)
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    session = Session(from_file(tmp_path / "frame.h5"))
+    found = range_azimuth_map(session.part.spectrum, session.radar, "everything", angles=session.angles)
+    with h5py.File(tmp_path / "frame.h5") as file:
+        kept = file["range_azimuth/power"][:]
+    assert found.title.endswith("everything, capon") and found.y.tolist() == pytest.approx([-40.0, -20.0, 0.0, 20.0, 40.0])
+    assert found.level == pytest.approx(10.0 * np.log10(1e3 * kept), rel=0, abs=1e-3)

@@ -26,6 +26,7 @@ class ViewInput:
     kept_maps: ep.FrameMaps of a file without rays and signals, None: both are there
     kept: what an earlier view has kept in the file, None: nothing
     file_state: of the file from before it was read, None: there is no file
+    angles: keywords of `range_azimuth` that the frame was asked for, None: there is no frame
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
     """
 
@@ -39,6 +40,7 @@ class ViewInput:
     kept_maps: object = None
     kept: KeptOrders | None = None
     file_state: tuple | None = None
+    angles: dict | None = None
 
 
 def from_file(path, meshes: KeptMeshes | None = None) -> ViewInput:
@@ -66,7 +68,8 @@ def from_frame(frame, title: str = "") -> ViewInput:
              for index, (name, selection) in enumerate(zip(cubes, selections_of(frame.selections[partition])))]
     signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
                       getattr(frame, "keyframes", 0))
-    return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title, _known(frame))
+    return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title, _known(frame),
+                     angles=dict(frame.angle_settings))
 
 
 def _known(frame) -> Known:

@@ -7,6 +7,7 @@ import numpy as np
 
 import echopath as ep
 from echopath.base.decibels import SMALLEST_POWER, in_dbm
+from echopath.signals.measures import for_pictures
 
 SPECTROGRAM_COLUMNS = 48
 SHORTEST_WINDOW = 16  # chirps
@@ -24,11 +25,19 @@ class SideMap:
     y: np.ndarray
 
 
-def range_azimuth_map(spectrum, radar, name: str, progress=None) -> SideMap:
-    """The strongest velocity at each range and azimuth. Raises ValueError where the antennas tell no azimuths apart."""
+def range_azimuth_map(spectrum, radar, name: str, progress=None, *, angles: dict | None = None) -> SideMap:
+    """The strongest velocity at each range and azimuth, or what the frame was asked for. Raises ValueError where the antennas
+    tell no azimuths apart.
+
+    angles: keywords of `range_azimuth`, None: of the strongest velocity
+    """
     if not ep.virtual_array(radar).tells_azimuths:
         raise ValueError(NO_AZIMUTHS)
-    found = ep.range_azimuth(spectrum, radar, combine="peak", progress=progress)
+    asked = {"combine": "peak"} if angles is None else angles
+    found = ep.range_azimuth(spectrum, radar, **asked, progress=progress)
+    method, velocity = asked.get("method", "bartlett"), asked.get("velocity")
+    name += f", {method}" if method != "bartlett" else ""
+    name += for_pictures(f", {velocity:+z.2f} m/s") if velocity is not None else ""
     return SideMap(f"range-azimuth, {name}", _level(found.power), np.asarray(found.range), np.degrees(found.azimuth))
 
 

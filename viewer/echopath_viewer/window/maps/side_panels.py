@@ -202,8 +202,8 @@ class AzimuthPanel(_AnglePanel):
         maps, note = session.kept_maps, session.note
         if maps is not None:
             return lambda progress: kept_azimuth_map(maps, note)
-        spectrum, radar, name = session.part.spectrum, session.radar, title_of(session.part)
-        return lambda progress: range_azimuth_map(spectrum, radar, name, progress)
+        spectrum, radar, name, angles = session.part.spectrum, session.radar, title_of(session.part), session.angles
+        return lambda progress: range_azimuth_map(spectrum, radar, name, progress, angles=angles)
 
 
 class ElevationPanel(_AnglePanel):

@@ -48,6 +48,14 @@ def test_beams_over_several_pairs_of_polarisations_are_cautioned_of(qtbot, windo
     assert "several pairs of polarisations" in panel.note.text()
 
 
+def test_the_dynamic_range_is_that_of_maps_that_are_there_already(qtbot, window, panels):
+    panel = opened(qtbot, window, "Range-azimuth")
+    high = panel.colour_bar.limits[1]
+    for decibels in (35, 60):
+        window.map_area.range_slider.setValue(decibels)
+        assert panel.colour_bar.limits == panel.panel.limits == (high - decibels, high)
+
+
 def test_a_click_in_the_spectrogram_goes_to_its_chirp(qtbot, window, panels):
     panel = opened(qtbot, window, "Spectrogram")
     panel.pick(len(panel.map.x) - 1, len(panel.map.y) // 2)

@@ -121,6 +121,8 @@ class SidePanel(SeenPanel):
             return
         made_of = self.made_of(self.session)
         if self._made_of is not None and all(one is other for one, other in zip(made_of, self._made_of)):
+            if self.map is not None and self.colour_bar.limits != self._limits():
+                self._show_map(self.panel.view)
             self.show_marks()
             return
         self._made_of = made_of
@@ -138,14 +140,19 @@ class SidePanel(SeenPanel):
         self.note.setText(self.caution())
         is_same = self.map is not None and np.array_equal(self.map.x, found.x) and np.array_equal(self.map.y, found.y)
         self.map = found
-        highest = upper_end(float(found.level.max()))
-        axes = SimpleNamespace(range=found.x, velocity=found.y)
-        view = self.panel.view if is_same else self._whole_view()
-        limits = highest - self.session.dynamic_range_db, highest
-        self.panel.show_map(found.title, found.level, axes, limits, view, is_current=False)
+        self._show_map(self.panel.view if is_same else self._whole_view())
+        self.show_marks()
+
+    def _show_map(self, view: QtCore.QRectF) -> None:
+        axes, limits = SimpleNamespace(range=self.map.x, velocity=self.map.y), self._limits()
+        self.panel.show_map(self.map.title, self.map.level, axes, limits, view, is_current=False)
         self.colour_bar.show_limits(*limits)
         self.colour_bar.show()
-        self.show_marks()
+
+    def _limits(self) -> tuple:
+        """Of the colours in dBm."""
+        highest = upper_end(float(self.map.level.max()))
+        return highest - self.session.dynamic_range_db, highest
 
     def _fail(self, text: str) -> None:
         self.bar.hide()

@@ -140,6 +140,18 @@ def test_a_double_click_leaves_part_and_selection_as_they_were(qtbot, window):
     assert window.session.part_key == (WHOLE, WHOLE) and window.session.box == CellBox(3, 4, 5, 6)
 
 
+def test_a_double_click_keeps_a_beam_and_its_paths(qtbot, window):
+    session = window.session
+    session.select_beam(45, 0.1, 0.0)
+    before = session.beam, session.cell, session.box, session.lit.copy()
+    panel = panel_of(window, WHOLE, WHOLE)
+    at = panel.plot_rect().center().toPoint()
+    qtbot.mouseClick(panel, LEFT, pos=at)
+    assert session.beam is None
+    qtbot.mouseDClick(panel, LEFT, pos=at)
+    assert (session.beam, session.cell, session.box) == before[:3] and np.array_equal(session.lit, before[3])
+
+
 def test_the_hint_below_the_maps_has_room_in_the_smallest_window(window):
     label, wrap = window.map_area.read_out, Qt.TextFlag.TextWordWrap
     width = window.docks["Range-Doppler"].minimumSizeHint().width() - 8

@@ -81,6 +81,16 @@ class SessionPaths:
             self._lit = self.visible & is_there
         return self._lit
 
+    def selection(self) -> tuple:
+        """What is selected, to be brought back by `select_again`."""
+        return self.box, self.cell, self.beam, self.lit_by, self._lit_mask, self.ray
+
+    def select_again(self, selection: tuple) -> None:
+        """selection: of `selection` of this session."""
+        self.box, self.cell, self.beam, name, mask, ray = selection
+        self._light(name, mask)
+        self.select_ray(ray)
+
     def shown_rays(self, limit: int | None = None):
         """The visible paths that are drawn: indices [N]; by `sampling` spread over the objects or the strongest.
 

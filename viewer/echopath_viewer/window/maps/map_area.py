@@ -209,24 +209,23 @@ class MapArea(QtWidgets.QWidget):
         return panel
 
     def _pick(self, key: tuple, box: CellBox, cell: tuple | None = None) -> None:
-        self._before_pick = self.session, self.session.part_key, self.session.box, self.session.ray
+        self._before_pick = self.session, self.session.part_key, self.session.selection()
         if key != self.session.part_key:
             self.session.set_part(key)
         self.session.select_cells(box, cell)
 
     def _pick_detection(self, key: tuple, index: int) -> None:
-        self._before_pick = self.session, self.session.part_key, self.session.box, self.session.ray
+        self._before_pick = self.session, self.session.part_key, self.session.selection()
         if key != self.session.part_key:
             self.session.set_part(key)
         self.session.select_detection(index, self.reach_box.value())
 
     def _undo_pick(self) -> None:
-        session, key, box, ray = self._before_pick
+        session, key, selection = self._before_pick
         if session is not self.session or key not in session.parts:
             return
         session.set_part(key)
-        session.select_cells(box)
-        session.select_ray(ray)
+        session.select_again(selection)
 
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
         title = title_of(self.session.parts[key]) if self.session.has_map else NO_MAP

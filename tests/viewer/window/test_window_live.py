@@ -11,6 +11,7 @@ import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.frames.live_session import input_of_view, live_of
 from echopath_viewer.model.session import Session
+from echopath_viewer.window.live.live_panel import ALONE
 from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
 from support import shapes
 from support.window import LEFT, open_on_screen, project
@@ -270,3 +271,15 @@ def test_what_is_chosen_while_the_full_view_is_traced_stays(qtbot, preview_windo
     settled(qtbot, window)
     assert window.session.box == CellBox(3, 9, 2, 9) and window.session.color_by == "mesh"
     assert window.session.dynamic_range_db == 35.0 and window.filter_box.colour_box.currentText() == "mesh"
+
+
+def test_boxes_of_numbers_are_as_high_as_their_text(qtbot, live_window):
+    """What is told of a view takes lines of its own."""
+    window, panel = live_window, live_window.live_panel
+    before = window.size()
+    window.resize(1232, 630)
+    window.docks["Live"].raise_()
+    panel.state_label.setText(f"preview, full quality follows: 48,498 rays, 48,498 shot anew, 286 ms; {ALONE}")
+    qtbot.wait(60)
+    assert all(box.height() >= box.minimumSizeHint().height() for box in (*panel.place_boxes, panel.yaw_box))
+    window.resize(before)

@@ -14,6 +14,7 @@ STEP, FARTHEST = 0.1, 1e4    # m
 ROUGHEST, NUM_STEPS = 5e-3, 100  # m, of the slider, and its steps
 ALONE = "echoes of the scene alone, without noise, rain and other radars"
 FIRST = "as at the start"  # of the materials
+STATE_LINES = 4      # of what is told of a view: numbers above it keep their height
 HINT = "Start, then drag an object in the scene with Shift held, or change the numbers."
 
 
@@ -34,6 +35,7 @@ class LivePanel(QtWidgets.QWidget):
         self.yaw_box = TypedBox(minimum=-360.0, maximum=360.0, singleStep=1.0, prefix="yaw ", suffix="\u00b0")
         self.rough_slider = QtWidgets.QSlider(Qt.Orientation.Horizontal, maximum=NUM_STEPS)
         self.rough_label, self.state_label = QtWidgets.QLabel(), QtWidgets.QLabel(HINT, wordWrap=True)
+        self.state_label.setMinimumHeight(STATE_LINES * self.fontMetrics().lineSpacing())
         self._arrange()
         self._connect()
         self._enable(False)

@@ -93,6 +93,21 @@ def test_sizes_and_places_of_panels_are_remembered(qtbot, frame):
     settings().clear()
 
 
+def test_panels_that_float_close_with_the_window_and_float_the_next_time(qtbot, frame):
+    first = MainWindow()
+    first.show_input(from_frame(frame))
+    first.docks["Rays"].setFloating(True)
+    qtbot.wait(20)
+    assert first.docks["Rays"].isVisible()
+    first.close()
+    assert not first.docks["Rays"].isVisible()
+    second = MainWindow()
+    second.show_input(from_frame(frame))
+    assert second.docks["Rays"].isFloating() and second.docks["Rays"].isVisible()
+    second.close()
+    settings().clear()
+
+
 def test_every_control_says_what_it_does(window):
     kinds = (QtWidgets.QAbstractButton, QtWidgets.QComboBox, QtWidgets.QAbstractSpinBox, QtWidgets.QAbstractSlider,
              QtWidgets.QLineEdit)

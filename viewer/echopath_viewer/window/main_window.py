@@ -270,6 +270,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self._collector.end()
         if self._remembers and self._had_content:
             remember_layout(self)
+        for dock in filter(QtWidgets.QDockWidget.isFloating, self.docks.values()):  # they are windows of their own
+            dock.hide()
         self.time_bar.stop()
         self.file_watch.watch(None)
         self._is_passing = False

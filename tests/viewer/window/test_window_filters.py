@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from echopath_viewer.model import WHOLE, CellBox, from_paths
+import echopath as ep
+from echopath_viewer.model import WHOLE, CellBox, from_frame, from_paths
 from echopath_viewer.model.maps import signals
 from echopath_viewer.window.scene.filter_box import UNKNOWN_PATHS, around_caret
 from echopath_viewer.window.main_window import SIGNAL_PAUSE_MS
@@ -97,3 +98,15 @@ def test_of_a_signal_without_selections_it_is_said_that_its_rays_are_not_known(q
     window.session.set_part((WHOLE, WHOLE))
     settle(qtbot)
     assert f"{frame.paths.num_paths:,} paths" in window.filter_box.count_label.text()
+
+
+@pytest.mark.filterwarnings("ignore:.*chirps of transmitter")
+def test_of_a_radar_that_hops_it_is_said_that_cells_tell_no_rays(qtbot, window, frame):
+    hopping = frame.radar.replace(waveform=frame.radar.waveform.replace(frequency_steps=(0.0, 40e6, -25e6)))
+    for radar, is_said in ((hopping, True), (frame.radar, False)):
+        window.show_input(from_frame(ep.simulate(frame.scene, radar, num_rays=1000)))
+        cell = window.session.cell_of(int(window.session.shown_rays(1)[0]))
+        for velocity in (cell[1], (cell[1] + 16) % 32):
+            window.session.select_cells(CellBox.around(cell[0], velocity))
+            settle(qtbot)
+            assert ("echoes are in cells of all velocities" in window.filter_box.count_label.text()) == is_said

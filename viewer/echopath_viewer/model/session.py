@@ -11,6 +11,7 @@ from echopath.arguments.part_names import LEAKAGE
 from echopath.paths.edge_hits import edge_hits
 from echopath.presentation.tables import event
 from echopath.signals.beside import leakage_map
+from echopath.transmit.signals import chirp_of
 
 from .antennas import world_from_antenna
 from .maps.beams import beam_values, beam_weights, paths_in_beam
@@ -30,6 +31,7 @@ from .session_paths import SessionPaths
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
 DYNAMIC_RANGE_DB = 60.0
 _EVENTS = {"S": "specular", "D": "diffuse", "E": "on an edge"}
+ALL_VELOCITIES = "the chirps of the transmitter differ: echoes are in cells of all velocities, and detections tell their rays"
 NOT_DRAWN = "{} go over hidden meshes or have no power"
 MAX_KEPT_BUNDLES = 3     # of rays: those that are shown, lit and chosen
 
@@ -264,7 +266,13 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         num_there = int(np.count_nonzero(self.index.mask_of(self.box)))
         if num_there:
             return f"{num_there:,} rays lie there, but filters or the part on display leave them out"
+        if self.has_echoes_at_all_velocities():
+            return ALL_VELOCITIES
         return "no ray lies there: the level is side lobes and Doppler spread of echoes in other cells, or noise"
+
+    def has_echoes_at_all_velocities(self) -> bool:
+        """Whether the chirps of the transmitter differ, as of a radar that hops: cells then tell no rays by their velocity."""
+        return chirp_of(self.radar, self.columns.tx) is None
 
     def cell_of(self, path: int) -> tuple | None:
         """(range index, velocity index) of a path; None for one outside the map."""

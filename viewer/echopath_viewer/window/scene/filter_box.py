@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from ...model import COLOUR_MODES, SAMPLINGS, FilterError, Filters
 from ...model.rays.filters import MAX_BOUNCES
+from ...model.session import ALL_VELOCITIES
 from ..qt import QtCore, QtGui, QtWidgets, Signal
 
 TYPING_PAUSE_MS = 350
@@ -172,7 +173,10 @@ class FilterBox(QtWidgets.QWidget):
             text += f", {int(session.lit.sum()):,} of them {where}"
         drawn = len(session.shown_rays() if session.box is None else session.lit_rays())
         why = session.why_no_rays()
-        self.count_label.setText(f"{text}; {why}" if why else f"{text}; {drawn:,} are drawn")
+        told = why or f"{drawn:,} are drawn"
+        if session.box is not None and not session.lit_by and why != ALL_VELOCITIES and session.has_echoes_at_all_velocities():
+            told += f"; {ALL_VELOCITIES}"
+        self.count_label.setText(f"{text}; {told}")
 
     def _show_all(self) -> None:
         self.session.set_filters(Filters())

@@ -179,6 +179,10 @@ def test_the_tree_is_opened_and_its_meshes_are_chosen_by_keys(qtbot, window):
     window.view3d.setFocus()
 
 
+def test_the_mouse_tells_the_whole_name_of_a_row_of_the_tree(window):
+    assert window.tree.topLevelItem(0).child(0).toolTip(0).startswith("walker/head\n")
+
+
 def test_messages_of_the_path_field_are_shown_whole(qtbot):
     label = ErrorLabel()
     qtbot.addWidget(label)
@@ -327,3 +331,14 @@ def test_the_legend_over_the_rays_is_dark_in_a_dark_theme(qtbot):
         levels = {grey.pixelColor(x, y).red() for x in range(grey.width()) for y in range(grey.height())}
         assert abs(grey.pixelColor(1, 1).red() - QtGui.QColor(paper).red()) < 8
         assert min(abs(level - QtGui.QColor(ink).red()) for level in levels) < 8
+
+
+def test_long_names_leave_room_beside_the_legend(qtbot):
+    parent = QtWidgets.QWidget()
+    qtbot.addWidget(parent)
+    parent.resize(600, 400)
+    legend = LegendBox(parent)
+    names = [f"Basic Wall:Interior - 135mm Partition (2-hr):{number}:IfcWallStandardCase:long" * 2 for number in range(3)]
+    legend.show(Legend("Object that the ray goes to", rows=tuple((name, (9, 99, 199)) for name in names)))
+    assert legend.width() <= 0.5 * parent.width() and legend.geometry().right() <= parent.width()
+    assert not legend.grab().isNull()

@@ -14,7 +14,7 @@ from ...model.maps.part_set import level_text
 from .colour_bar import ColourBar
 from .map_area import title_of
 from .map_panel import MapPanel
-from ..qt import Qt, QtCore, QtWidgets
+from ..qt import QtCore, QtWidgets
 from .side_panels import SeenPanel
 from .ticks import step_of
 
@@ -38,7 +38,6 @@ class ComparePanel(SeenPanel):
         self.keep_button.clicked.connect(self.keep)
         self.file_button.clicked.connect(self._ask)
         for panel in self.panels.values():
-            panel.elide = Qt.TextElideMode.ElideMiddle  # what differs stands at the ends
             panel.view_changed.connect(self._set_view)
             panel.view_reset.connect(self._reset_view)
             panel.cell_clicked.connect(self._pick)

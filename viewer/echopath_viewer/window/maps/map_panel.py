@@ -28,7 +28,6 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
     view_changed = Signal(object)        # QRectF: range, velocity
     view_reset = Signal()
     detection_clicked = Signal(int)
-    elide = Qt.TextElideMode.ElideRight  # of a title for which there is no room
 
     def __init__(self, parent=None, *, x_label=RANGE_LABEL, y_label=VELOCITY_LABEL, colours=MAP_COLOURS,
                  outside: int = 0):
@@ -250,7 +249,8 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         font.setPointSizeF(font.pointSizeF() + 1.0)
         font.setBold(self.is_current)
         painter.setFont(font)
-        title = painter.fontMetrics().elidedText(self.title, self.elide, int(rect.width()))
+        # Names of parts and frames differ at their ends.
+        title = painter.fontMetrics().elidedText(self.title, Qt.TextElideMode.ElideMiddle, int(rect.width()))
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)

@@ -7,6 +7,7 @@ from ..maps.ticks import nice_ticks, tick_text
 
 EDGE, MARGIN, SWATCH = 10, 8, 12   # pixels
 SCALE_WIDTH, BAR_HEIGHT = 240, 12
+MOST_SHARE = 0.45                  # of the width of the view: longer names are cut in their middle
 PAPER_ALPHA = 225                  # of 255: rays behind it are seen a little
 HINT = "Click an object: show it alone, again: show all"
 
@@ -46,7 +47,8 @@ class LegendBox(QtWidgets.QWidget):
             height = 2 * MARGIN + 2 * self._line() + BAR_HEIGHT
             return QtCore.QSize(max(SCALE_WIDTH, width(self.legend.title)) + 4 * MARGIN, height)
         widest = max([width(self.legend.title), *(width(text) + SWATCH + 6 for text in self.legend.texts())])
-        return QtCore.QSize(widest + 2 * MARGIN, 2 * MARGIN + self._line() * (1 + len(self.legend.texts())))
+        most = max(int(MOST_SHARE * self.parent().width()), width(self.legend.title) + 2 * MARGIN)
+        return QtCore.QSize(min(widest + 2 * MARGIN, most), 2 * MARGIN + self._line() * (1 + len(self.legend.texts())))
 
     def mousePressEvent(self, event):
         row = (int(event.position().y()) - MARGIN) // self._line() - 1
@@ -73,7 +75,9 @@ class LegendBox(QtWidgets.QWidget):
                 square = QtCore.QRect(left, top + (line - SWATCH) // 2 - 1, SWATCH, SWATCH)
                 painter.fillRect(square, QtGui.QColor(*self.legend.rows[number][1]))
                 painter.drawRect(square)
-            painter.drawText(QtCore.QRect(left + SWATCH + 6, top, self.width(), line), Qt.AlignmentFlag.AlignLeft, text)
+            room = QtCore.QRect(left + SWATCH + 6, top, self.width() - 2 * MARGIN - SWATCH - 6, line)
+            shown = self.fontMetrics().elidedText(text, Qt.TextElideMode.ElideMiddle, room.width())  # names differ at their ends
+            painter.drawText(room, Qt.AlignmentFlag.AlignLeft, shown)
 
     def _paint_scale(self, painter) -> None:
         low, high = self.legend.clim

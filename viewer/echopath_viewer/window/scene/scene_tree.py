@@ -5,6 +5,7 @@ from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 NAME, COUNT = 0, 1
 MOST_OPEN = 24  # rows: more objects than that show their own alone
+HINT = "Check box: show or hide. Click, Enter: map of the paths that hit it. Right button: more."
 NODE_ROLE = Qt.ItemDataRole.UserRole
 
 
@@ -18,6 +19,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         super().__init__(parent)
         self.session = None
         self.setHeaderLabels(["Mesh", "Paths"])
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names differ at their ends
         self.header().setStretchLastSection(False)
         self.header().setSectionResizeMode(NAME, QtWidgets.QHeaderView.ResizeMode.Stretch)
         self.header().setSectionResizeMode(COUNT, QtWidgets.QHeaderView.ResizeMode.ResizeToContents)
@@ -25,7 +27,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         self.customContextMenuRequested.connect(self._menu)
         self.itemChanged.connect(self._checked)
         self.itemClicked.connect(self._clicked)
-        self.setToolTip("Check box: show or hide. Click, Enter: map of the paths that hit it. Right button: more.")
+        self.setToolTip(HINT)
 
     def show_session(self, session) -> None:
         self.session = None
@@ -35,6 +37,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         for number, node in enumerate(session.scene.nodes):
             item = QtWidgets.QTreeWidgetItem(self if node.parent < 0 else items[node.parent], [node.name.rpartition("/")[2]])
             item.setData(NAME, NODE_ROLE, node.name)
+            item.setToolTip(NAME, f"{node.name}\n{HINT}")  # there may be no room for all of its name
             item.setTextAlignment(COUNT, Qt.AlignmentFlag.AlignRight)
             item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
             if number in mesh_of_node:

@@ -23,7 +23,7 @@ def load_scene(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     unit, up, materials, animation, loop, offset, smooth, frequency: of a foreign scene, as of load_model
     Returns a SceneFile; that of a foreign scene has its content below one object, named after the file, the settings of an
     empty scene file, and no radar. `[[objects]]` with `model` put it into a scene file.
-    Raises ep.FileError when the file cannot be read; ValueError naming the file, the dotted path of the key, the rule
+    Raises ep.FileError when the file cannot be read; ValueError naming the file, the line, the dotted path of the key, the rule
     and the value for each fault of its content, or the line of a fault of its syntax, and for arguments beside the path of a
     scene file, whose objects have these as keys.
     """

@@ -25,6 +25,7 @@ from ..spectra.azimuth_map import checked_settings
 from ..trajectories.files.rows import KeptRows
 from .errors import blamed, validated
 from .foreign import foreign_scene
+from .lines import with_lines
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
 from .tables.radar_tables import RadarTable
@@ -46,7 +47,12 @@ def read_scene(path: Path, options: ReadOptions) -> SceneFile:
     if "dataset" in table:
         raise ValueError(f"{path}: a template of a dataset, where a scene file is asked for; `echopath dataset {path} --out DIR` "
                          "makes its frames")
-    return scene_file_of(table, path)
+    try:
+        return scene_file_of(table, path)
+    except _core.FileError as error:
+        raise _core.FileError(with_lines(error, path)) from None
+    except ValueError as error:
+        raise ValueError(with_lines(error, path)) from None
 
 
 def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: KeptRows | None = None) -> SceneFile:

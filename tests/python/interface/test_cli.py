@@ -277,9 +277,11 @@ def test_bad_input_gives_one_clear_line_and_code_2(name):
 
 def test_a_fault_of_a_scene_file_is_one_line(scene_path, tmp_path):
     scene_path.write_text(SCENE.replace("bandwidth", "bandwith"))
+    line = next(number for number, text in enumerate(SCENE.split("\n"), 1) if text.startswith("bandwidth"))
     done = call("run", scene_path, "--out", tmp_path / "out")
     assert done.returncode == 2
-    assert done.stderr == f"echopath: {scene_path}: radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?\n"
+    assert done.stderr == (f"echopath: {scene_path}: line {line}: radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?"
+                           "\n")
     assert not (tmp_path / "out").exists()
 
 

@@ -1,6 +1,8 @@
 """Scene files of a radar and what is tested."""
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import echopath as ep
@@ -23,3 +25,8 @@ def fault_of(path) -> str:
     with pytest.raises(ValueError) as fault:
         ep.load_scene(path)
     return str(fault.value)
+
+
+def without_line(fault: str) -> str:
+    """What is said of a scene file, without the line in it."""
+    return re.sub(r": line \d+: ", ": ", fault, count=1)

@@ -2,18 +2,16 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from ... import _core
+from ...scene_file.lines import line_of, lines_of_file
 from .distributions import with_kinds
 
-_HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")    # [radar.waveform] or [[objects]]
-_ASSIGNED = re.compile(r"\s*([\w.-]+)\s*=")             # num_chirps = 128
-_PLACE = re.compile(r"objects\[(\d+)\]")                # of an object among those that were drawn
+_PLACE = re.compile(r"objects\[(\d+)\]")  # of an object among those that were drawn
 
 
 class Faults:
@@ -23,7 +21,7 @@ class Faults:
         self._path = path
         objects = table.get("objects")
         self._names = [one.get("name") if isinstance(one, dict) else None for one in objects] if isinstance(objects, list) else []
-        self._lines = key_lines(path.read_text(encoding="utf-8-sig"))
+        self._lines = lines_of_file(path)
 
     @contextmanager
     def of(self, number: int, drawn: dict[str, Any]) -> Iterator[None]:
@@ -47,7 +45,7 @@ class Faults:
                 lines[len(lines), text] = text
                 continue
             key, colon, rule = self._named(text.removeprefix(f"{self._path}: "), drawn).partition(": ")
-            line = self._line_of(key)
+            line = line_of(f"{self._written(key)}: {rule}", self._lines)
             where = f"{self._path}: " if line is None else f"{self._path}: line {line}: "
             lines.setdefault((line, rule or key), where + scene + with_kinds(key + colon + rule))
         return ValueError("\n".join(lines.values()))
@@ -61,13 +59,6 @@ class Faults:
         name = named[0].get("name") if named and isinstance(named[0], dict) else None
         return f"objects.{name}{text[place.end():]}" if isinstance(name, str) else text
 
-    def _line_of(self, key: str) -> int | None:
-        """The line of a key, or of the nearest table or value that it is in; None where nothing is known of it."""
-        key = self._written(key)
-        while key and key not in self._lines:
-            key = key[:max(key.rfind("."), key.rfind("["), 0)]
-        return self._lines.get(key)
-
     def _written(self, key: str) -> str:
         """The key as the template has it: objects.car_2.yaw stands at objects[1].yaw, if the second entry is that of cars."""
         for index, name in enumerate(self._names):
@@ -75,30 +66,3 @@ class Faults:
             if found:
                 return f"objects[{index}]{key[found.end():]}"
         return f"dataset.{key}" if key in ("frames", "interval") else key
-
-
-def key_lines(text: str) -> dict[str, int]:
-    """{dotted path: line, from 1} of the tables and keys of a TOML file, entries of arrays of tables as objects[0]."""
-    lines: dict[str, int] = {}
-    counts: Counter[str] = Counter()
-    table = ""
-    for number, line in enumerate(text.splitlines(), 1):
-        if header := _HEADER.match(line):
-            table = _with_places(header[2], counts, header[1] == "[[")
-            lines.setdefault(table, number)
-        elif assigned := _ASSIGNED.match(line):
-            lines.setdefault(f"{table}.{assigned[1]}" if table else assigned[1], number)
-    return lines
-
-
-def _with_places(name: str, counts: Counter[str], is_entry: bool) -> str:
-    """The path of a header; counts: of the entries of arrays before, to which one is added where the header is an entry."""
-    path = ""
-    words = name.split(".")
-    for index, word in enumerate(words):
-        path = f"{path}.{word}" if path else word
-        if is_entry and index == len(words) - 1:
-            counts[path] += 1
-        if counts[path]:
-            path += f"[{counts[path] - 1}]"
-    return path

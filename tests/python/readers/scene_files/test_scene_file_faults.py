@@ -7,7 +7,7 @@ import re
 import pytest
 
 import echopath as ep
-from support.files.scene_files import RADAR, fault_of, mesh_object
+from support.files.scene_files import RADAR, fault_of, mesh_object, without_line
 
 CIRCLE = "".join(f"[[radar.receivers]]\nposition = [0.0, {0.01 * math.cos(0.7 * i)}, {1.0 + 0.01 * math.sin(0.7 * i)}]\n"
                  for i in range(9))
@@ -85,12 +85,45 @@ FAULTS = [
 @pytest.mark.parametrize("text, message", FAULTS, ids=[message[:40] for _, message in FAULTS])
 def test_faults_name_the_file_the_dotted_path_and_the_rule(write, text, message):
     path = write(text, radar="")
-    assert fault_of(path).startswith(f"{path}: {message}")
+    assert without_line(fault_of(path)).startswith(f"{path}: {message}")
 
 
 def test_every_fault_is_named_at_once(write):
     path = write(RADAR.replace("bandwidth", "bandwith") + "[trace]\nseed = -1", radar="")
-    assert [line.split(": ")[1] for line in fault_of(path).splitlines()] == ["radar.waveform.bandwith", "trace.seed"]
+    assert [line.split(": ")[2] for line in fault_of(path).splitlines()] == ["radar.waveform.bandwith", "trace.seed"]
+
+
+# Faults in lines that are counted by hand: the text begins with an empty line, which is line 1.
+LINES = {
+    "an unknown key": ("\n[trace]\nmax_bounces = 3\nnum_ray = 5\n", 4),
+    "a key behind arrays and texts of several lines": (
+        "\ntitle = \"\"\"a\nb\"\"\"\n[angle]\nelevation_deg = [\n 1, # one\n 2,\n]\nwindow = 'han'\n", 9),
+    "a key of the second object": (
+        "\n[[objects]]\nname = 'a'\ngroup = true\n[[objects]]\nname = 'b'\ngroup = true\nspeed = 'fast'\n", 8),
+    "what the core refuses of a key": ("\n[[objects]]\ngroup = true\nparent = 'nobody'\nname = 'a'\n", 4),
+    "a table below an object": (
+        "\n[[objects]]\nname = 'a'\ngroup = true\n[objects.motion]\nkind = 'linear'\nvelocity = [1, 2]\n", 7),
+    "within a value": ("\n[[objects]]\nname = 'a'\ngroup = true\nmotion = {kind = 'linear', velocity = [1, 2]}\n", 5),
+    "a key that is missing, at its table": ("\n[parts]\n[sequence]\nframes = 3\n", 3),
+    "a part in quotes": ("\n[parts]\na = 'T . R'\n\"my part\" = 'T R R'\n", 4),
+    "a dotted key": ("\ntrace.num_rays = 5\ntrace.seed = -1\n", 3)}
+
+
+@pytest.mark.parametrize("text, line", LINES.values(), ids=LINES)
+def test_faults_are_told_with_the_line(write, text, line):
+    path = write("", radar=text + RADAR)
+    assert fault_of(path).startswith(f"{path}: line {line}: ")
+
+
+def test_lines_that_windows_ends_are_counted_alike(write):
+    path = write("", radar="\n[trace]\nnum_ray = 5\n" + RADAR)
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    assert fault_of(path).startswith(f"{path}: line 3: trace.num_ray: ")
+
+
+def test_a_table_that_is_nowhere_has_no_line(write):
+    path = write("title = 'no radar'\n", radar="")
+    assert fault_of(path) == f"{path}: radar: is missing"
 
 
 def test_syntax_errors_name_the_file_and_the_line(write):
@@ -133,6 +166,10 @@ def test_a_missing_scene_file_is_a_file_error(tmp_path):
         ep.load_scene(tmp_path / "nowhere.toml")
 
 
+def told_with(path, message: str) -> str:
+    return rf"^{re.escape(str(path))}: line \d+: {re.escape(message)}"
+
+
 @pytest.mark.parametrize("text, key", [
     (mesh_object('material = "metal"').replace("quad.obj", "gone.obj"), "objects[0].mesh"),
     ('[[objects]]\nname = "a"\nmodel = "gone.glb"\n', "objects[0].model"),
@@ -142,7 +179,7 @@ def test_a_missing_scene_file_is_a_file_error(tmp_path):
     ('[[interferers]]\nsensor = "gone.cfg"\n', "interferers[0].sensor")])
 def test_a_file_that_is_missing_is_told_with_the_key_that_names_it(write, text, key):
     path = write(text)
-    with pytest.raises(ep.FileError, match="^" + re.escape(f"{path}: {key}: {path.parent}") + ".gone"):
+    with pytest.raises(ep.FileError, match=told_with(path, f"{key}: {path.parent}") + ".gone"):
         ep.load_scene(path)
 
 
@@ -152,7 +189,7 @@ def test_a_missing_pattern_is_told_with_the_radar_or_the_antenna_that_has_it(wri
     head = "[radar]\n" if place == "radar" else "[[radar.transmitters]]\n"
     text = path.read_text()
     path.write_text(text.replace(head, head + pattern, 1) if head in text else f"{head}{pattern}{text}")
-    with pytest.raises(ep.FileError, match="^" + re.escape(f"{path}: {key}: {path.parent}") + ".gone"):
+    with pytest.raises(ep.FileError, match=told_with(path, f"{key}: {path.parent}") + ".gone"):
         ep.load_scene(path)
 
 

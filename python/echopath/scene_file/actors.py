@@ -36,6 +36,11 @@ def actor_keywords(name: str, key: str) -> dict:
     return _parameters(_actor_factory(name, key))
 
 
+def has_parameter(name: object, parameter: str) -> bool:
+    """Whether an actor of that name is known and has such a parameter."""
+    return name in actor_names() and parameter in _parameters(getattr(actors, str(name)))
+
+
 def actor_names() -> list[str]:
     """Names of the ready-made objects: the public functions of echopath.actors."""
     return [name for name in actors.__all__ if inspect.isfunction(getattr(actors, name))]

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from .. import _core
 from ..arguments.shown import shown
+from .tables.homes import headers
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -32,6 +33,16 @@ _RULES = {
     "union_tag_invalid": "has an unknown kind; known: {expected_tags}",
     "union_tag_not_found": "must be a table with a known kind",
 }
+
+
+# Kinds of values whose header has too few or too many brackets, [objects] in the place of [[objects]].
+_BRACKETS = {("list_type", dict), ("dict_type", list), ("model_type", list)}
+
+
+def _header(location: tuple) -> str:
+    """What to say of the header of the table at a place, "" where it has none."""
+    name = ".".join(item for item in location if isinstance(item, str))
+    return next((f", under {header}" for header in (f"[[{name}]]", f"[{name}]") if header in headers()), "")
 
 
 def dotted(location) -> str:
@@ -60,6 +71,8 @@ def one_line(error: dict, prefix: tuple = ()) -> str:
     rule = _RULES.get(error["type"], error["msg"]).format(**context).replace("'<", "'").replace(">'", "'")
     if error["type"] == "missing":
         return f"{dotted(location)}: {rule}"
+    if (error["type"], type(error["input"])) in _BRACKETS:
+        rule += _header(location)
     return f"{dotted(location)}: {rule}, got {shown(error['input'])}"
 
 

@@ -33,9 +33,9 @@ def line_of(fault: str, lines: dict[str, int]) -> int | None:
     """The line of the key that a fault, "key: rule" or "key: argument: rule", is about, or of the nearest table or value that it
     is in; None where nothing is known of it."""
     key = ".".join(fault.split(": ", 2)[:2])
-    while key and key not in lines:
+    while key and key not in lines and f"{key}[0]" not in lines:
         key = key[:max(key.rfind("."), key.rfind("["), 0)]
-    return lines.get(key)
+    return lines.get(key, lines.get(f"{key}[0]"))
 
 
 def with_lines(error: Exception, path: Path) -> str:

@@ -97,6 +97,14 @@ class ObjectTable(ModelKeys):
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
     visible: bool = Field(True, description="false: it takes no part in anything until it is shown")
 
+    @classmethod
+    def _advice(cls, key: str, data: dict) -> str:
+        from ..actors import has_parameter  # which makes tables of its own
+
+        if has_parameter(data.get("actor"), key):
+            return f"actors have it in parameters = {{{key} = ...}}"
+        return super()._advice(key, data)
+
     @model_validator(mode="after")
     def _one_shape(self):
         if [self.mesh, self.model, self.actor, self.group or None].count(None) != 3:

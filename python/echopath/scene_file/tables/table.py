@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from ... import _core
 from ...arguments.checks import Rule
 from ...arguments.shown import writable
+from .homes import homes_of
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -61,12 +62,17 @@ class Table(BaseModel):
     @classmethod
     def _know_every_key(cls, data):
         if isinstance(data, dict):
-            known = cls.model_fields
             for key in data:
-                if key not in known:
-                    advice = nearest_key(key, known)
+                if key not in cls.model_fields:
+                    advice = cls._advice(key, data)
                     raise PydanticCustomError("unknown_key", "unknown key; {advice}", {"key": key, "advice": advice})
         return data
+
+    @classmethod
+    def _advice(cls, key: str, data: dict) -> str:
+        """What to say about an unknown key: the tables that have it, or else keys of this one."""
+        homes = homes_of(key, cls)
+        return f"it belongs to {homes}" if homes else nearest_key(key, cls.model_fields)
 
 
 def broken_rule(key: str, rule: str, value=None) -> PydanticCustomError:

@@ -200,3 +200,22 @@ def test_a_mirror_of_layers_without_a_whole_material_of_its_name_gets_no_name_in
         assert "objects[0].material: " in told and "instead" not in told
     scene = ep.load_scene(write(mesh_object("material = {base = 'plasterboard', mirror = true}"))).scene
     assert scene.meshes[0].material.mirror
+
+
+@pytest.mark.parametrize("text, told", [
+    ("num_rays = 5\n" + RADAR, "num_rays: unknown key; it belongs to [trace]"),
+    ("seed = 5\n" + RADAR, "seed: unknown key; it belongs to [trace] or [noise]"),
+    (RADAR.replace("num_samples", "transmit_power = 1.0\nnum_samples"),
+     "radar.waveform.transmit_power: unknown key; it belongs to [radar]"),
+    (RADAR + mesh_object("material = 'metal'\nvelocity = [1, 0, 0]"),
+     "objects[0].velocity: unknown key; it belongs to [objects.motion] or [angle]"),
+    (RADAR + mesh_object("conductor = true"), "objects[0].conductor: unknown key; it belongs to [objects.material]"),
+    (RADAR + "[[objects]]\nname = 'a'\nactor = 'sphere'\nradius = 1\n",
+     "objects[0].radius: unknown key; actors have it in parameters = {radius = ...}"),
+    (RADAR + "[[objects]]\nname = 'a'\nactor = 'sphere'\nparameters = {radius = 1, visible = false}\n",
+     "objects[0].parameters.visible: unknown key; it belongs to [[objects]]"),
+    (RADAR + "[objects]\nname = 'a'\n", "objects: must be an array, under [[objects]], got {'name': 'a'}"),
+    ("[[radar]]\ntransmit_power = 1.0\n", "radar: must be a table, under [radar], got [{'transmit_power': 1.0}]"),
+    ("position = [0, 0, 0]\n" + RADAR, "position: unknown key; known keys: title, ")])
+def test_a_key_that_belongs_to_another_table_is_told_with_that(write, text, told):
+    assert f": {told}" in fault_of(write("", radar=text))

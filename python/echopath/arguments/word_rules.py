@@ -1,7 +1,6 @@
 """Rules of arguments that are words, names of files and windows (see `checks`)."""
 from __future__ import annotations
 
-import math
 import os
 from typing import Literal, get_args
 
@@ -106,7 +105,7 @@ def file(argument: str, value) -> str:
 def window(argument: str, value):
     """A window by its name, or ("chebyshev", sidelobe level in dB)."""
     names = get_args(WindowName)
-    rule = ", ".join(f"'{name}'" for name in names) + " or ('chebyshev', sidelobe level in dB)"
+    rule = ", ".join(f"'{name}'" for name in names) + " or ('chebyshev', sidelobe level in dB, 20 to 300)"
     if isinstance(value, str):
         if value not in (*names, "chebyshev"):
             known = (*names, "chebyshev")
@@ -115,7 +114,7 @@ def window(argument: str, value):
         return str(value)
     if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and is_number(value[1])):
         raise refused(TypeError, argument, rule, value)
-    if value[0] != "chebyshev" or not (math.isfinite(value[1]) and value[1] > 0.0):
+    if value[0] != "chebyshev" or not 20.0 <= value[1] <= 300.0:
         raise refused(ValueError, argument, rule, value)
     return str(value[0]), float(value[1])
 

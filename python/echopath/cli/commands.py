@@ -40,6 +40,7 @@ def run(options) -> None:
     from .resumable import print_resumable
     from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, run_sequence
+    from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
     from ..scene_file import load_scene
 
     out = Path(options.out)
@@ -54,7 +55,10 @@ def run(options) -> None:
     if is_sequence(scene_file, options):
         print_resumable(run_sequence(scene_file, options, chosen), options.out)
         return
-    require_writable(out, "--out")  # a file could have been that of frames in time: the scene had to say
+    if out.suffix.lower() in FRAME_SUFFIXES and not out.is_dir():  # of a file of frames in time: the scene had to say
+        raise ValueError(f"--out: must be a folder for one frame and its pictures, got '{out}'; frames in time (--frames) go to "
+                         "one file")
+    require_writable(out, "--out")
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)

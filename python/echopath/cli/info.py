@@ -73,6 +73,8 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return [*_describe_meshes(meshes), *_describe_foreign(path, unit, up, with_overlaps=False)]
     if is_foreign(path):
         return _describe_foreign(path, unit, up)
+    if not path.exists():
+        raise ep.FileError(f"{path}: no such file or folder")
     raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}; trajectories are read by "
                      "ep.read_trajectories")
 

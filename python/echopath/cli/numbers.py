@@ -1,4 +1,4 @@
-"""Numbers on the command line: what argparse takes as type=."""
+"""Numbers and names on the command line: what argparse takes as type=."""
 from __future__ import annotations
 
 import argparse
@@ -14,6 +14,13 @@ def positive(text: str) -> int:
 def natural(text: str) -> int:
     """A seed."""
     return _whole_number(text, 0)
+
+
+def named(text: str) -> str:
+    """A file or folder. An empty name, as of a variable of the shell that is not set, would be the folder in which one is."""
+    if not text:
+        raise argparse.ArgumentTypeError("must be the name of a file or folder, got ''")
+    return text
 
 
 def seconds(text: str) -> float:

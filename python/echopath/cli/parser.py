@@ -14,7 +14,7 @@ from ..spectra.range_doppler import CfarMethod, cfar
 from ..viewing.viewer import view as open_viewer
 from . import commands as work
 from .demo import run_demo
-from .numbers import natural, number_range, positive, seconds, shard
+from .numbers import named, natural, number_range, positive, seconds, shard
 
 # What `echopath bench` measures, and what it tells of it.
 BENCHES = {
@@ -68,7 +68,7 @@ def command_parser() -> argparse.ArgumentParser:
 
 def _add_demo(commands) -> None:
     demo = commands.add_parser("demo", help="simulate a pedestrian in a street and show what every ray touched")
-    demo.add_argument("--out", default=default_of(run_demo, "out"), metavar="DIR",
+    demo.add_argument("--out", type=named, default=default_of(run_demo, "out"), metavar="DIR",
                       help="folder of the results (default: %(default)s)")
     _add_trace_options(demo, default_rays=default_of(run_demo, "num_rays"))
     demo.add_argument("--view", action="store_true", help="then open it in the viewer")
@@ -78,7 +78,7 @@ def _add_demo(commands) -> None:
 def _add_run(commands) -> None:
     run = commands.add_parser("run", help="simulate a scene file")
     run.add_argument("scene", metavar="SCENE.toml", help=f"scene file (keys: {data_folder('README.md')})")
-    run.add_argument("--out", required=True, metavar="DIR",
+    run.add_argument("--out", type=named, required=True, metavar="DIR",
                      help="folder of the results; of frames in time also one file (.h5) of all")
     _add_trace_options(run, default_rays=None)
     _add_part_option(run)
@@ -117,7 +117,7 @@ def _add_info(commands) -> None:
 def _add_scene(commands) -> None:
     scene = commands.add_parser("scene", help="write a scene file for a foreign scene, ready to run and to be edited")
     scene.add_argument("file", metavar="FILE", help="what load_model reads (.usd, .xml, .obj ...)")
-    scene.add_argument("--out", required=True, metavar="SCENE.toml", help="scene file to be written")
+    scene.add_argument("--out", type=named, required=True, metavar="SCENE.toml", help="scene file to be written")
     _add_unit_and_up(scene)
     scene.set_defaults(command=work.scene)
 
@@ -125,7 +125,8 @@ def _add_scene(commands) -> None:
 def _add_labels(commands) -> None:
     labels = commands.add_parser("labels", help="say which part, object or ghost made each cell and detection of a frame")
     labels.add_argument("frame", metavar="FRAME.h5", help="frame file")
-    labels.add_argument("--out", required=True, metavar="DIR", help="folder of labels.h5, detections.csv, maps and pictures")
+    labels.add_argument("--out", type=named, required=True, metavar="DIR",
+                        help="folder of labels.h5, detections.csv, maps and pictures")
     _add_part_option(labels)
     labels.add_argument("--object", action="append", default=[], metavar="NAME=GLOB",
                         help="an object to report on, instead of the children of the scene's root; may be repeated, the "
@@ -147,7 +148,7 @@ def _add_labels(commands) -> None:
 def _add_dataset(commands) -> None:
     dataset = commands.add_parser("dataset", help="make the labelled frames of a template, each scene drawn anew")
     dataset.add_argument("template", metavar="DATASET.toml", help=f"template (keys: {data_folder('README.md')})")
-    dataset.add_argument("--out", required=True, metavar="DIR",
+    dataset.add_argument("--out", type=named, required=True, metavar="DIR",
                          help="folder of the dataset; the same command goes on where it was stopped")
     dataset.add_argument("--workers", type=positive, default=1, metavar="N",
                          help="processes, which share the processors (default: %(default)s)")
@@ -165,14 +166,14 @@ def _add_dataset(commands) -> None:
 def _add_dataset_report(commands) -> None:
     report = commands.add_parser("dataset-report", help="write a page about what a dataset holds")
     report.add_argument("folder", metavar="DIR", help="folder of the dataset")
-    report.add_argument("--out", default=None, metavar="PAGE.html", help="(default: DIR/report.html)")
+    report.add_argument("--out", type=named, default=None, metavar="PAGE.html", help="(default: DIR/report.html)")
     report.set_defaults(command=work.dataset_report)
 
 
 def _add_bench(commands) -> None:
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=list(BENCHES), help="; ".join(f"{what}: {measured}" for what, measured in BENCHES.items()))
-    bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
+    bench.add_argument("--out", type=named, required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
                        help="physics: most rays of a trace (default: %(default)s)")

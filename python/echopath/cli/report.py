@@ -33,7 +33,7 @@ def _power_text(power: float) -> str:
 
 def line(label: str, value: str) -> str:
     """One line of a report."""
-    return f"  {label + ' ':<{LABEL_WIDTH}}{value}"
+    return f"  {label + '  ':<{LABEL_WIDTH}}{value}"
 
 
 def wrapped(label: str, value: str) -> list[str]:

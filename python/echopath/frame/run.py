@@ -55,6 +55,9 @@ class FrameRun:
                  truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
         check_receiver(radar, trace.start_time, trace.start_time + radar.frame_duration)
+        if signal.retrace != "never" and signal.keyframes > radar.waveform.num_chirps:
+            raise refused(ValueError, "keyframes", f"at most the {radar.waveform.num_chirps} chirps of the frame",
+                          signal.keyframes)
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
         require_names(self.partitions)

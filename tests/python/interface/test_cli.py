@@ -259,10 +259,12 @@ BAD = {
     "missing scene": (("run", "nowhere.toml", "--out", "out"), "nowhere.toml: cannot be read"),
     "missing frame": (("info", "nowhere.h5"), "nowhere.h5: no such file"),
     "missing mesh": (("info", "nowhere.obj"), "nowhere.obj"),
-    "unknown kind of file": (("info", "notes.txt"), "must be a .toml or .h5 file, or one of .glb, .gltf, .obj, .ply, .stl"),
+    "missing folder": (("info", "nowhere"), "nowhere: no such file or folder"),
+    "unknown kind of file": (("info", __file__), "must be a .toml or .h5 file, or one of .glb, .gltf, .obj, .ply, .stl"),
     "selection of a mesh": (("info", "a.obj", "--select", "T . R"), "a.obj: must be a frame file (.h5) for --select"),
     "no rays": (("demo", "--rays", "0"), "must be a whole number of at least 1, got '0'"),
     "rays in words": (("demo", "--rays", "many"), "must be a whole number of at least 1, got 'many'"),
+    "no name of a folder": (("run", "nowhere.toml", "--out", ""), "--out: must be the name of a file or folder, got ''"),
     "no command": ((), "required: COMMAND"),
 }
 
@@ -273,6 +275,19 @@ def test_bad_input_gives_one_clear_line_and_code_2(name):
     done = call(*arguments)
     assert done.returncode == 2 and done.stdout == ""
     assert message in done.stderr.splitlines()[-1] and "Traceback" not in done.stderr
+
+
+def test_one_frame_is_no_single_file(scene_path, tmp_path):
+    """A folder of that name would be taken for the file that was asked for."""
+    done = call("run", scene_path, "--out", tmp_path / "frame.h5", "--rays", MANY_RAYS)
+    assert done.returncode == 2 and done.stderr.startswith("echopath: --out: must be a folder for one frame and its pictures")
+    assert not (tmp_path / "frame.h5").exists()
+
+
+def test_more_keyframes_than_chirps_are_told_before_the_trace(scene_path, tmp_path):
+    scene_path.write_text(SCENE + "[replay]\nretrace = 'always'\nkeyframes = 10000\n")
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS)
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.startswith("echopath: keyframes: must be at most the ")
 
 
 def test_a_fault_of_a_scene_file_is_one_line(scene_path, tmp_path):

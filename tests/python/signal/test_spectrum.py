@@ -143,8 +143,9 @@ def test_bad_input_is_an_error():
     cube = np.zeros((1, 1, 4, 512))
     with pytest.raises(ValueError, match="^zero_pad: "):
         ep.range_doppler(cube, radar, zero_pad=0)
-    with pytest.raises(ValueError, match="^sidelobe_db: "):
-        ep.range_doppler(cube, radar, window=("chebyshev", 1))
+    for sidelobe_db in (1, 19.9, 300.1, np.inf, np.nan):
+        with pytest.raises(ValueError, match="^window: .* 20 to 300"):
+            ep.range_doppler(cube, radar, window=("chebyshev", sidelobe_db))
     with pytest.raises(TypeError, match="^window: "):
         ep.range_doppler(cube, radar, window=80)
     with pytest.raises(ValueError, match="^cube: "):

@@ -67,6 +67,12 @@ class ReplayTable(Table):
     keyframes: int = Field(SignalSettings.keyframes, ge=0, description="stretches of the frame; 0: as many as validity "
                                                                        "suggests")
 
+    @model_validator(mode="after")
+    def _keyframes_of_something(self):
+        if self.keyframes and self.retrace == "never":
+            raise broken_rule("keyframes", "needs retrace = \"invalid\" or \"always\"", self.keyframes)
+        return self
+
 
 class SpectrumTable(Table):
     window: MapWindow = Field(SignalSettings.window, description="a name or [\"chebyshev\", sidelobe level in dB] of both "

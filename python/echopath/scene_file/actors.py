@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import functools
-import inspect
 import typing
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +11,7 @@ from pydantic import create_model
 
 from .. import actors
 from .errors import blamed, validated
+from .tables.actor_keywords import actor_names, parameters_of
 from .tables.table import Table, nearest_key
 
 
@@ -25,7 +25,7 @@ def named_actor(name: str, parameters: dict, folder: Path, key: str, **own):
 def actor_maker(name: str, parameters: dict, folder: Path, key: str) -> Callable[..., Any]:
     """What makes that actor of further keywords. Raises ValueError for parameters that it does not have."""
     factory = _actor_factory(name, f"{key}.actor")
-    known = validated(_parameter_table(name, factory), parameters, (key, "parameters")).model_dump(exclude_unset=True)
+    known = validated(_parameter_table(name), parameters, (key, "parameters")).model_dump(exclude_unset=True)
     if "path" in known:
         known["path"] = folder / known["path"]  # of a motion capture, relative to the scene file
     return functools.partial(factory, **known)
@@ -33,17 +33,8 @@ def actor_maker(name: str, parameters: dict, folder: Path, key: str) -> Callable
 
 def actor_keywords(name: str, key: str) -> dict:
     """{keyword: inspect.Parameter} of an actor; key: that names it. Raises ValueError for an unknown one."""
-    return _parameters(_actor_factory(name, key))
-
-
-def has_parameter(name: object, parameter: str) -> bool:
-    """Whether an actor of that name is known and has such a parameter."""
-    return name in actor_names() and parameter in _parameters(getattr(actors, str(name)))
-
-
-def actor_names() -> list[str]:
-    """Names of the ready-made objects: the public functions of echopath.actors."""
-    return [name for name in actors.__all__ if inspect.isfunction(getattr(actors, name))]
+    _actor_factory(name, key)
+    return parameters_of(name)
 
 
 def _actor_factory(name: str, key: str):
@@ -53,13 +44,8 @@ def _actor_factory(name: str, key: str):
 
 
 @functools.cache
-def _parameters(factory) -> dict:
-    return dict(inspect.signature(factory).parameters)
-
-
-@functools.cache
-def _parameter_table(name: str, factory) -> type[Table]:
+def _parameter_table(name: str) -> type[Table]:
     """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
     fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
-              for parameter in _parameters(factory).values() if parameter.name not in ("material", "trajectory")}
+              for parameter in parameters_of(name).values() if parameter.name not in ("material", "trajectory")}
     return create_model(f"{name}_parameters", __base__=Table, **fields)

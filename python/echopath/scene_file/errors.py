@@ -9,7 +9,8 @@ from pydantic import BaseModel, ValidationError
 
 from .. import _core
 from ..arguments.shown import shown
-from .tables.homes import headers
+from .tables.homes import headers, homes_of
+from .tables.table import Table, nearest_key
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -45,6 +46,12 @@ def _header(location: tuple) -> str:
     return next((f", under {header}" for header in (f"[[{name}]]", f"[{name}]") if header in headers()), "")
 
 
+def _advice(key: str, table: type[Table], advice: str) -> str:
+    """What to say about an unknown key of a table: what the table itself advises, or tables that have it, or keys of this one."""
+    homes = homes_of(key, table)
+    return advice or (f"it belongs to {homes}" if homes else nearest_key(key, table.model_fields))
+
+
 def dotted(location) -> str:
     """('objects', 0, 'material', '<table>', 'scattering') -> 'objects[0].material.scattering'."""
     text = ""
@@ -61,7 +68,7 @@ def one_line(error: dict, prefix: tuple = ()) -> str:
     context = error.get("ctx", {})
     location = prefix + error["loc"]
     if error["type"] == "unknown_key":
-        return f"{dotted(location + (context['key'],))}: {error['msg']}"
+        return f"{dotted(location + (context['key'],))}: unknown key; {_advice(**context)}"
     if error["type"] == "broken_rule":
         return f"{dotted(location + (context['key'],))}: {context['rule']}, got {shown(context['value'])}"
     if error["type"] == "refused":

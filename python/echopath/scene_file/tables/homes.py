@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 from pydantic import BaseModel
 
+from .schema import SceneTable
+
 MOST_HOMES = 3  # a key that more tables have, such as position, tells nothing of the one that was meant
 
 
@@ -32,8 +34,6 @@ def headers() -> set[str]:
 @functools.cache
 def _tables() -> tuple[tuple[str, type[BaseModel], type[BaseModel]], ...]:
     """(header, owner, table) of all tables of a scene file that have a header of their own."""
-    from .schema import SceneTable  # which is made of tables that ask for homes
-
     return tuple(_below(SceneTable, ""))
 
 

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from ...arguments.checks import positive
 from ...trajectories.arguments import Outside
+from .actor_keywords import has_parameter
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
 from .table import Matrix4, Name, NotNegative, Number, Positive, Table, Vector3, broken_rule, by_check, is_number
 
@@ -99,11 +100,7 @@ class ObjectTable(ModelKeys):
 
     @classmethod
     def _advice(cls, key: str, data: dict) -> str:
-        from ..actors import has_parameter  # which makes tables of its own
-
-        if has_parameter(data.get("actor"), key):
-            return f"actors have it in parameters = {{{key} = ...}}"
-        return super()._advice(key, data)
+        return f"actors have it in parameters = {{{key} = ...}}" if has_parameter(data.get("actor"), key) else ""
 
     @model_validator(mode="after")
     def _one_shape(self):

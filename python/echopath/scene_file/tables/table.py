@@ -12,7 +12,6 @@ from pydantic_core import PydanticCustomError
 from ... import _core
 from ...arguments.checks import Rule
 from ...arguments.shown import writable
-from .homes import homes_of
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -64,15 +63,14 @@ class Table(BaseModel):
         if isinstance(data, dict):
             for key in data:
                 if key not in cls.model_fields:
-                    advice = cls._advice(key, data)
-                    raise PydanticCustomError("unknown_key", "unknown key; {advice}", {"key": key, "advice": advice})
+                    raise PydanticCustomError("unknown_key", "unknown key", {"key": key, "table": cls,
+                                                                             "advice": cls._advice(key, data)})
         return data
 
     @classmethod
     def _advice(cls, key: str, data: dict) -> str:
-        """What to say about an unknown key: the tables that have it, or else keys of this one."""
-        homes = homes_of(key, cls)
-        return f"it belongs to {homes}" if homes else nearest_key(key, cls.model_fields)
+        """What this table alone says about an unknown key, "" for nothing."""
+        return ""
 
 
 def broken_rule(key: str, rule: str, value=None) -> PydanticCustomError:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 
 from ..arguments.checks import file
 from ..base.files import require_writable
@@ -49,8 +50,8 @@ def run(options) -> None:
         require_writable(Path(file("--raw", options.raw)).parent, "--raw")
     scene_file = load_scene(options.scene)
     if scene_file.radar is None:
-        raise ValueError(f"{options.scene}: has no radar; 'echopath scene {options.scene} --out SCENE.toml' writes a scene file "
-                         "with one, where [[objects]] names it as model")
+        raise ValueError(f"{options.scene}: has no radar; `echopath scene {quote(options.scene)} --out SCENE.toml` writes a "
+                         "scene file with one, where [[objects]] names it as model")
     chosen = chosen_partition(options.part, scene_file.partitions())
     if is_sequence(scene_file, options):
         print_resumable(run_sequence(scene_file, options, chosen), options.out)
@@ -93,7 +94,7 @@ def scene(options) -> None:
     if out.suffix.lower() != ".toml":
         raise ValueError(f"--out: must be a file .toml, got '{options.out}'")
     model = write_scene_file(options.file, out, unit=options.unit, up=options.up)
-    print("\n".join([*describe_model(Path(options.file), model), f"wrote {out}: echopath run {out} --out DIR"]))
+    print("\n".join([*describe_model(Path(options.file), model), f"wrote {out}: echopath run {quote(str(out))} --out DIR"]))
 
 
 def labels(options) -> None:

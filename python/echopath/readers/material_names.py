@@ -177,5 +177,5 @@ def note_of_unknown(names: Iterable[str]) -> list[str]:
     if "" in names:
         count = names.count("")
         notes.append(f"{counted(count, 'mesh')} without a material {'are' if count > 1 else 'is'} taken for "
-                     f"{DEFAULT}: materials={{\"*\": \"metal\"}} says otherwise")
+                     f"{DEFAULT}, unless `materials` has one for \"*\"")
     return notes

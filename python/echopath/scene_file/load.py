@@ -5,6 +5,7 @@ import dataclasses
 import math
 import tomllib
 from pathlib import Path
+from shlex import quote
 
 from .. import _core
 from ..arguments.checks import refused
@@ -45,8 +46,8 @@ def read_scene(path: Path, options: ReadOptions) -> SceneFile:
             raise refused(ValueError, field.name, "left out for a scene file, whose objects say it", value)
     table = parse(path)
     if "dataset" in table:
-        raise ValueError(f"{path}: a template of a dataset, where a scene file is asked for; `echopath dataset {path} --out DIR` "
-                         "makes its frames")
+        raise ValueError(f"{path}: a template of a dataset, where a scene file is asked for; `echopath dataset "
+                         f"{quote(str(path))} --out DIR` makes its frames")
     try:
         return scene_file_of(table, path)
     except _core.FileError as error:
@@ -147,8 +148,8 @@ def parse(path: Path) -> dict:
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
         if path.suffix.lower() in FRAME_SUFFIXES:
-            raise ValueError(f"{path}: a frame file, where a scene file (.toml) is asked for; `echopath info {path}` says what "
-                             "it holds") from None
+            raise ValueError(f"{path}: a frame file, where a scene file (.toml) is asked for; `echopath info "
+                             f"{quote(str(path))}` says what it holds") from None
         raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
     except RecursionError:
         raise ValueError(f"{path}: its tables or arrays are nested too deeply") from None

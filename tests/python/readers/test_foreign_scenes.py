@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import string
 
 import numpy as np
@@ -284,6 +285,17 @@ def test_things_of_a_street_are_told_apart_in_the_scene_that_is_written_for_it(t
     assert all(f"\n  {name} " in told for name in ("van", "trailer", "pole", "bin")) and "\n  street " not in told
 
 
+def test_commands_that_are_told_can_be_pasted(tmp_path, capsys):
+    """Names with spaces stand in quotes of the shell."""
+    (tmp_path / "a b.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    assert main(["scene", str(tmp_path / "a b.obj"), "--out", str(tmp_path / "my scene.toml")]) == 0
+    told = capsys.readouterr().out.splitlines()[-1]
+    assert shlex.split(told.partition(".toml: ")[2]) == ["echopath", "run", str(tmp_path / "my scene.toml"), "--out", "DIR"]
+    assert main(["run", str(tmp_path / "a b.obj"), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err.split("`")[1]
+    assert shlex.split(told) == ["echopath", "scene", str(tmp_path / "a b.obj"), "--out", "SCENE.toml"]
+
+
 def test_scene_writes_a_file_that_runs_with_the_radar_in_the_street(town, tmp_path, capsys):
     out = tmp_path / "run" / "town.toml"
     assert main(["scene", str(town), "--out", str(out)]) == 0
@@ -293,7 +305,7 @@ def test_scene_writes_a_file_that_runs_with_the_radar_in_the_street(town, tmp_pa
     paths = ep.trace(found.scene, found.radar, num_rays=2000)
     assert paths.num_paths > 0
     assert main(["run", str(town), "--out", str(tmp_path / "x")]) == 2
-    assert "has no radar; 'echopath scene" in capsys.readouterr().err
+    assert "has no radar; `echopath scene" in capsys.readouterr().err
     assert main(["scene", str(town), "--out", str(tmp_path / "town.txt")]) == 2
 
 

@@ -49,7 +49,7 @@ def main(arguments=None) -> int:
 def _print_what_the_output_lacks() -> None:
     """Letters of names and titles that the encoding of the output does not have are printed by number, as on standard error: they
     are no reason to end a long run."""
-    if getattr(sys.stdout, "errors", None) == "strict" and hasattr(sys.stdout, "reconfigure"):
+    if getattr(sys.stdout, "errors", None) in ("strict", "surrogateescape") and hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")
 
 

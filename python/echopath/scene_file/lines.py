@@ -10,11 +10,6 @@ _HEADER = re.compile(r"\s*(\[\[?)([^][]+)\]\]?\s*(#.*)?$")    # [radar.waveform]
 _ASSIGNED = re.compile(r"""\s*((?:"[^"]*"|'[^']*'|[\w.-])+)\s*=""")  # num_chirps = 128, "left wall" = "..."
 
 
-def lines_of_file(path: Path) -> dict[str, int]:
-    """What `key_lines` says of a TOML file."""
-    return key_lines(path.read_text(encoding="utf-8-sig"))
-
-
 def key_lines(text: str) -> dict[str, int]:
     """{dotted path: line, from 1} of the tables and keys of a TOML file, entries of arrays of tables as objects[0]."""
     lines: dict[str, int] = {}
@@ -38,16 +33,16 @@ def line_of(fault: str, lines: dict[str, int]) -> int | None:
     return lines.get(key, lines.get(f"{key}[0]"))
 
 
-def with_lines(error: Exception, path: Path) -> str:
-    """The message of an error whose lines begin with the file and a dotted path, and the line in the file between these."""
-    lines = lines_of_file(path)
-    return "\n".join(_with_line(text, path, lines) for text in str(error).splitlines())
+def with_lines(error: Exception, path: Path, text: str) -> str:
+    """The message of an error whose lines begin with the file and a dotted path, and the line in its text between these."""
+    lines = key_lines(text)
+    return "\n".join(_with_line(fault, path, lines) for fault in str(error).splitlines())
 
 
-def _with_line(text: str, path: Path, lines: dict[str, int]) -> str:
-    fault = text.removeprefix(f"{path}: ")
+def _with_line(told: str, path: Path, lines: dict[str, int]) -> str:
+    fault = told.removeprefix(f"{path}: ")
     line = line_of(fault, lines)
-    return text if line is None else f"{path}: line {line}: {fault}"
+    return told if line is None else f"{path}: line {line}: {fault}"
 
 
 def _words(key: str) -> list[str]:

@@ -44,16 +44,17 @@ def read_scene(path: Path, options: ReadOptions) -> SceneFile:
         value = getattr(options, field.name)
         if value != getattr(ReadOptions(), field.name):
             raise refused(ValueError, field.name, "left out for a scene file, whose objects say it", value)
-    table = parse(path)
+    text = text_of(path)
+    table = parsed(text, path)
     if "dataset" in table:
         raise ValueError(f"{path}: a template of a dataset, where a scene file is asked for; `echopath dataset "
                          f"{quote(str(path))} --out DIR` makes its frames")
     try:
         return scene_file_of(table, path)
     except _core.FileError as error:
-        raise _core.FileError(with_lines(error, path)) from None
+        raise _core.FileError(with_lines(error, path, text)) from None
     except ValueError as error:
-        raise ValueError(with_lines(error, path)) from None
+        raise ValueError(with_lines(error, path, text)) from None
 
 
 def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: KeptRows | None = None) -> SceneFile:
@@ -142,8 +143,13 @@ def _with_file(path: Path, line: str) -> str:
 
 def parse(path: Path) -> dict:
     """The table of a TOML file. Raises ep.FileError, ValueError naming the file and the line."""
+    return parsed(text_of(path), path)
+
+
+def text_of(path: Path) -> str:
+    """The text of a TOML file. Raises ep.FileError, ValueError naming the file."""
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))  # with a byte-order mark, too
+        return path.read_bytes().decode("utf-8-sig")  # with a byte-order mark, too
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
@@ -151,6 +157,12 @@ def parse(path: Path) -> dict:
             raise ValueError(f"{path}: a frame file, where a scene file (.toml) is asked for; `echopath info "
                              f"{quote(str(path))}` says what it holds") from None
         raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+
+
+def parsed(text: str, path: Path) -> dict:
+    """The table of a text in TOML; path: of its file. Raises ValueError naming the file and the line."""
+    try:
+        return tomllib.loads(text)
     except RecursionError:
         raise ValueError(f"{path}: its tables or arrays are nested too deeply") from None
     except ValueError as error:  # of the syntax, or a number of too many digits

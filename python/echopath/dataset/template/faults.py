@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ... import _core
-from ...scene_file.lines import line_of, lines_of_file
+from ...scene_file.lines import key_lines, line_of
 from .distributions import with_kinds
 
 _PLACE = re.compile(r"objects\[(\d+)\]")  # of an object among those that were drawn
@@ -21,7 +21,7 @@ class Faults:
         self._path = path
         objects = table.get("objects")
         self._names = [one.get("name") if isinstance(one, dict) else None for one in objects] if isinstance(objects, list) else []
-        self._lines = lines_of_file(path)
+        self._lines = key_lines(path.read_text(encoding="utf-8-sig"))
 
     @contextmanager
     def of(self, number: int, drawn: dict[str, Any]) -> Iterator[None]:

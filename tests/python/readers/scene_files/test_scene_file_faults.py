@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import math
+import os
 import re
+import threading
 
 import pytest
 
@@ -121,6 +123,15 @@ def test_lines_that_windows_ends_are_counted_alike(write):
     path = write("", radar="\n[trace]\nnum_ray = 5\n" + RADAR)
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     assert fault_of(path).startswith(f"{path}: line 3: trace.num_ray: ")
+
+
+def test_a_pipe_is_read_once(tmp_path):
+    """As of `echopath run <(m4 scene.toml)`: to read it for the lines of its faults would wait for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    writer = threading.Thread(target=(tmp_path / "pipe").write_text, args=("\n[trace]\nnum_ray = 5\n" + RADAR,))
+    writer.start()
+    assert fault_of(tmp_path / "pipe").startswith(f"{tmp_path / 'pipe'}: line 3: trace.num_ray: ")
+    writer.join()
 
 
 def test_a_table_that_is_nowhere_has_no_line(write):

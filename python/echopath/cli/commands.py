@@ -40,7 +40,7 @@ def run(options) -> None:
     from ..frame.unresolved import unresolved_of_frame
     from .resumable import print_resumable
     from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
-    from .run_sequence import is_sequence, run_sequence
+    from .run_sequence import is_sequence, require_no_others, run_sequence
     from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
     from ..scene_file import load_scene
 
@@ -53,6 +53,7 @@ def run(options) -> None:
         raise ValueError(f"{options.scene}: has no radar; `echopath scene {quote(options.scene)} --out SCENE.toml` writes a "
                          "scene file with one, where [[objects]] names it as model")
     chosen = chosen_partition(options.part, scene_file.partitions())
+    require_no_others(out, is_sequence(scene_file, options))
     if is_sequence(scene_file, options):
         print_resumable(run_sequence(scene_file, options, chosen), options.out)
         return

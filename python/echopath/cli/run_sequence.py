@@ -8,14 +8,16 @@ from .. import plots
 from ..base.callers import warn_user
 from ..base.counts import counted
 from ..base.progress import progress_bars
+from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame.unresolved import unresolved_of_frame
 from ..scene_file import SceneFile
 from ..sensor_files import save_raw
 from ..sequence import Sequence, load_sequence
+from ..sequence.folder import NAME as SEQUENCE_FILE
 from ..sequence.pictures import drive_of, write_film_of
 from . import report
 from .numbers import duration_words
-from .run import TRUTH_NAME, keywords_of, raw_line
+from .run import FRAME_NAME, TRUTH_NAME, keywords_of, raw_line
 
 
 def is_sequence(scene_file: SceneFile, options) -> bool:
@@ -28,6 +30,18 @@ def is_sequence(scene_file: SceneFile, options) -> bool:
             text = "/".join(map(str, value)) if option == "shard" else value
             raise ValueError(f"--{option}: belongs to frames in time, give --frames too, got {text}")
     return False
+
+
+def require_no_others(out: Path, are_in_time: bool) -> None:
+    """Raises ValueError where a folder has results of another kind, which those who open it would see in place of these.
+
+    are_in_time: whether frames in time are to be written into it, or one frame
+    """
+    kinds = {FRAME_NAME: "one frame", SEQUENCE_FILE: "frames in time", DATASET_FILE: "a dataset"}
+    del kinds[SEQUENCE_FILE if are_in_time else FRAME_NAME]
+    for name, kind in kinds.items():
+        if (out / name).exists():
+            raise ValueError(f"--out: must be another folder than that of {kind} ({name}), got '{out}'")
 
 
 def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[str]:

@@ -343,3 +343,17 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path,
     assert os.read(leader, 65536).decode().strip().endswith("echopath: stopped; no file was left half written")
     os.close(leader)
     assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.parametrize("there, arguments, kind", [
+    ("sequence.h5", (), "frames in time (sequence.h5)"), ("dataset.toml", (), "a dataset (dataset.toml)"),
+    ("frame.h5", ("--frames", "2", "--interval", "0.1"), "one frame (frame.h5)"),
+    ("dataset.toml", ("--frames", "2", "--interval", "0.1"), "a dataset (dataset.toml)")])
+def test_results_of_another_kind_are_not_written_beside(scene_path, tmp_path, there, arguments, kind):
+    """`echopath view` and `info` of the folder would show the one or the other, which may be the older."""
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / there).write_text("")
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS, *arguments)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr == f"echopath: --out: must be another folder than that of {kind}, got '{tmp_path / 'out'}'\n"
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [there]

@@ -11,7 +11,8 @@ Kind = TypeVar("Kind", bound=type)
 
 
 def known_attributes(kind: Kind) -> Kind:
-    """Decorator of a class: setting what its objects do not have raises AttributeError, which names what may be meant.
+    """Decorator of a class: setting what its objects do not have raises AttributeError, which names what may be meant; setting
+    what can be read alone raises one that names what can be set.
 
     Names that begin with an underscore are taken, as classes have them for themselves. Objects of derived classes, which may
     have attributes of their own, take all unless their class is decorated, too.
@@ -22,6 +23,8 @@ def known_attributes(kind: Kind) -> Kind:
     def checked(self: object, name: str, value: Any) -> None:
         if type(self) is kind and not (name.startswith("_") or name in fields or hasattr(kind, name)):
             raise _unknown(kind, name, fields)
+        if isinstance(member := getattr(kind, name, None), property) and member.fset is None:
+            raise AttributeError(f"{name}: cannot be set; of {kind.__name__} {', '.join(sorted(fields | _settable(kind)))} can")
         set_attribute(self, name, value)
 
     kind.__setattr__ = checked  # type: ignore[method-assign,assignment]

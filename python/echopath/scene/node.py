@@ -6,6 +6,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import flag, real, refused, vector
 from ..base.counts import counted
+from ..base.known_attributes import known_attributes
 from ..base.made_by import made_by
 from ..trajectories.trajectory import Trajectory
 from . import placements
@@ -35,6 +36,7 @@ class FixedArray(np.ndarray):
         return self / other
 
 
+@known_attributes
 @made_by('scene["name"]')
 class SceneNode:
     """An object of a scene, read and changed in place: `scene["street/car"].position += (1.0, 0.0, 0.0)`.

@@ -112,15 +112,26 @@ def test_values_that_cannot_be_changed_name_replace():
 
 @pytest.mark.parametrize("kind, wrong, right", [
     ("Scene", "interferer", "interferers"), ("Scene", "wheather", "weather"), ("Live", "rader", "radar"),
-    ("Frame", "detection", "detections"), ("Frame", "rang_azimuth", "range_azimuth")])
+    ("Frame", "detection", "detections"), ("Frame", "rang_azimuth", "range_azimuth"), ("SceneNode", "postion", "position")])
 def test_misspelt_attributes_are_refused_with_the_one_that_is_meant(scene, frame, kind, wrong, right):
     """In silence nothing would be changed by them."""
-    value = {"Scene": ep.Scene(scene), "Live": ep.Live(scene, RADAR, num_rays=100), "Frame": frame}[kind]
+    value = {"Scene": ep.Scene(scene), "Live": ep.Live(scene, RADAR, num_rays=100), "Frame": frame,
+             "SceneNode": scene[next(iter(scene))]}[kind]
     with pytest.raises(AttributeError, match=f"^{wrong}: no attribute of {kind}, the nearest right one is '{right}'$"):
         setattr(value, wrong, None)
     with pytest.raises(AttributeError, match=f"^qqqq: no attribute of {kind}$"):
         value.qqqq = None
     assert not hasattr(value, wrong) and not hasattr(value, "qqqq")
+
+
+def test_what_can_be_read_alone_is_refused_with_what_can_be_set(scene):
+    """Another mesh or name is another object, which is added."""
+    for name in ("mesh", "name", "parent", "meshes"):
+        with pytest.raises(AttributeError, match=f"^{name}: cannot be set; of SceneNode lifetime, material, motion, position, "
+                                                 "transform, visible, yaw can$"):
+            setattr(scene[next(iter(scene))], name, None)
+    with pytest.raises(AttributeError, match="^scene: cannot be set; of Live radar can$"):
+        ep.Live(scene, RADAR, num_rays=100).scene = scene
 
 
 def test_the_scene_of_a_live_scene_refuses_misspelt_attributes_and_counts_no_change(scene):

@@ -13,12 +13,12 @@ from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words
 from ..scene.closing_speeds import bodies_faster_than
 from ..signals.measures import power_dbm, velocity_extent, with_error
-from .lists import more_line
+from .lists import more_line, strongest
 
 NOTHING_DBM = -300.0  # of filters and tails that numbers alone can hold, 100 dB and more below any receiver
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
-MAX_LISTED = 40  # nodes or meshes named one by one
+MAX_LISTED = 40  # nodes, meshes or objects named one by one
 MAX_UNRESOLVED = 20  # echoes named one by one
 VAGUE_DB, UNKNOWN_DB = 1.0, 20.0  # widths of an interval from which on it is told, and from which on its upper end alone
 PEAK_OF_CELLS = "strongest of its cells"
@@ -233,12 +233,13 @@ def truth(found) -> list[str]:
     if found is None:
         return []
     rows = [("truth", "range", "azimuth", "radial", "in sight", "cross section")]
-    for name, distance, azimuth, velocity, share, *rcs in zip(
-            found.name, found.range, np.degrees(found.azimuth), found.radial_velocity, found.visible_share,
-            found.rcs, found.rcs_low, found.rcs_high):
+    columns = (found.name, found.range, np.degrees(found.azimuth), found.radial_velocity, found.visible_share, found.rcs,
+               found.rcs_low, found.rcs_high)
+    shown = strongest(found.received, found.visible_share, MAX_LISTED)
+    for name, distance, azimuth, velocity, share, *rcs in zip(*(column[shown] for column in columns)):
         rows.append((f"  {name}", f"{distance:.2f} m", f"{azimuth:+z.1f} deg", f"{velocity:+z.2f} m/s", f"{share:.0%}",
                      _cross_section(*rcs)))
-    return _table(rows, right=(1, 2, 3, 4, 5))
+    return _table(rows, right=(1, 2, 3, 4, 5)) + more_line(len(found), MAX_LISTED, indent=2)
 
 
 def _cross_section(rcs: float, low: float, high: float) -> str:
@@ -255,10 +256,11 @@ def _objects(of_cells) -> list[str]:
     if not of_cells.objects:
         return ["no objects"]
     rows = [("objects", "status", "cells", "power, anywhere", PEAK_OF_CELLS, "in sight", "hidden by", UNRESOLVED_MEAN)]
-    for label in of_cells.objects:
+    powers, shares = zip(*((label.power, label.visible_share) for label in of_cells.objects))
+    for label in (of_cells.objects[index] for index in strongest(powers, shares, MAX_LISTED)):
         rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _power(label), _peak(label),
                      f"{label.visible_share:.0%}", occluder_words(label.occluders), _interval(label)))
-    return _table(rows, right=(2, 3, 5))
+    return _table(rows, right=(2, 3, 5)) + more_line(len(of_cells.objects), MAX_LISTED, indent=2)
 
 
 def _ghosts(of_cells) -> list[str]:
@@ -266,11 +268,12 @@ def _ghosts(of_cells) -> list[str]:
     if not shown:
         return []
     rows = [("ghosts", "type", "order", "class", "cells", "power, anywhere", PEAK_OF_CELLS, "via", UNRESOLVED_MEAN)]
-    for ghost in sorted(shown, key=lambda ghost: -ghost.power):
+    for ghost in sorted(shown, key=lambda ghost: -ghost.power)[:MAX_LISTED]:
         rows.append((f"  {ghost.object}", str(ghost.ghost_type), str(ghost.order), str(ghost.class_code), f"{ghost.cells:,}",
                      _power(ghost), _peak(ghost), ", ".join(ghost.via), _interval(ghost)))
     hidden = len(of_cells.ghosts) - len(shown)
-    return _table(rows, right=(1, 2, 3, 4, 5)) + ([f"  and {hidden:,} without cells"] if hidden else [])
+    return _table(rows, right=(1, 2, 3, 4, 5)) + more_line(len(shown), MAX_LISTED, indent=2) + (
+        [f"  and {hidden:,} without cells"] if hidden else [])
 
 
 def _level(power: float) -> str:

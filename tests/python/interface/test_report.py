@@ -1,0 +1,36 @@
+"""What the command line says of a run."""
+from __future__ import annotations
+
+import pytest
+
+import echopath as ep
+from echopath.cli import report
+
+NUM_PLATES = 60
+
+
+@pytest.fixture(scope="module")
+def frame():
+    """Of plates side by side, the last of which is the largest."""
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=4,
+                              chirp_interval=1e-5)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+    scene = ep.Scene()
+    for index in range(NUM_PLATES):
+        size = 0.5 if index == NUM_PLATES - 1 else 0.02
+        scene.add(ep.actors.plate(size, size), name=f"plate_{index}", position=(5.0, 0.5 * (NUM_PLATES - 1 - index), 0.0),
+                  material="metal")
+    return ep.simulate(scene, radar, num_rays=2000, guard=False, labels=True, truth=True)
+
+
+@pytest.mark.parametrize("table", ["labels", "kept_truth"])
+def test_of_many_objects_the_strongest_are_listed(frame, table):
+    lines = {"labels": report.labels, "kept_truth": report.truth}[table](getattr(frame, table))
+    listed = [line.split()[0] for line in lines if line.startswith("  plate_")]
+    assert len(listed) == report.MAX_LISTED and listed[-1] == f"plate_{NUM_PLATES - 1}"
+    assert listed == sorted(listed, key=lambda name: int(name.removeprefix("plate_")))
+    assert f"  and {NUM_PLATES - report.MAX_LISTED} more" in lines
+
+
+def test_names_that_are_longer_than_their_column_stand_apart():
+    assert report.line("n" * 50, "value") == f"  {'n' * 50}  value"

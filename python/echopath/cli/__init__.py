@@ -39,7 +39,7 @@ def main(arguments=None) -> int:
         print(f"echopath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except MemoryError:
-        print("echopath: not enough memory; fewer rays (--rays) need less", file=sys.stderr)
+        print("echopath: not enough memory; fewer rays (--rays), samples and chirps need less", file=sys.stderr)
         return EXIT_BAD_INPUT
     finally:
         _let_go_of_unread_outputs()

@@ -33,6 +33,7 @@ from ..truth.asked import truth_keywords
 from ..signals.rain_echoes import has_rain_echoes, rain_cube
 from .detections import detect_frame
 from .frame import Frame, with_spectra
+from .memory import require_memory
 
 _FAMILIES = object()  # a view that has the name of no partition
 
@@ -55,6 +56,7 @@ class FrameRun:
                  truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
         check_receiver(radar, trace.start_time, trace.start_time + radar.frame_duration)
+        require_memory(radar, signal.zero_pad)
         if signal.retrace != "never" and signal.keyframes > radar.waveform.num_chirps:
             raise refused(ValueError, "keyframes", f"at most the {radar.waveform.num_chirps} chirps of the frame",
                           signal.keyframes)

@@ -78,6 +78,6 @@ sys.exit(main(["demo", "--rays", "3e6", "--out", sys.argv[1]]))
 def test_a_command_without_enough_memory_ends_in_one_line(tmp_path):
     done = subprocess.run([sys.executable, "-c", RUN_OUT_OF_MEMORY, str(tmp_path / "out")], capture_output=True, text=True)
     said = done.stderr.strip()  # Embree says in its own words that it cannot begin
-    assert done.returncode == 2 and said in ("echopath: not enough memory; fewer rays (--rays) need less",
+    assert done.returncode == 2 and said in ("echopath: not enough memory; fewer rays (--rays), samples and chirps need less",
                                              "echopath: Embree: no device could be made"), said
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())

@@ -1,0 +1,29 @@
+"""Whether the signal of a frame fits into the memory of this machine: one that does not would end other programs, too."""
+from __future__ import annotations
+
+import os
+
+from .. import _core
+from ..base.counts import counted
+
+_BYTES = 16  # of a complex sample
+
+
+def require_memory(radar: _core.Radar, zero_pad: int) -> None:
+    """Raises ValueError where the samples of a frame and its map are more than the memory of this machine."""
+    waveform, channels = radar.waveform, len(radar.transmitters) * len(radar.receivers)
+    needed = _BYTES * channels * waveform.num_chirps * waveform.num_samples * (1 + zero_pad ** 2)
+    there = machine_memory()
+    if needed > there:
+        size = (f"{counted(channels, 'channel')}, {counted(waveform.num_chirps, 'chirp')} and "
+                f"{counted(waveform.num_samples, 'sample')}")
+        raise ValueError(f"radar: must have a signal and a map that fit into the memory of this machine, {there / 1e9:,.0f} GB, "
+                         f"got {needed / 1e9:,.0f} GB of {size}")
+
+
+def machine_memory() -> float:
+    """In bytes; infinite where the system does not tell."""
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return float("inf")

@@ -1,10 +1,12 @@
 #pragma once
 // Defines the exceptions of the core. Python shows std::invalid_argument -> ValueError, std::out_of_range -> IndexError,
 // FileError -> OSError, DeviceError -> RuntimeError, Cancelled -> KeyboardInterrupt.
+#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace echopath {
 
@@ -18,12 +20,25 @@ struct Cancelled : std::runtime_error {  // the caller asked a long computation 
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
+// Returns how many significant digits tell a number from its neighbours: 15 do for one that was typed, so that 0.1 is not said to
+// be 0.10000000000000001.
+inline int digits_of(double number) {
+  for (const int digits : {15, 16}) {
+    std::ostringstream text;
+    text.precision(digits);
+    text << number;
+    if (std::strtod(text.str().c_str(), nullptr) == number) return digits;
+  }
+  return 17;
+}
+
 // Raises std::invalid_argument("<argument>: <rule>, got <value>") unless `holds`.
 template <class Value>
 void require(bool holds, std::string_view argument, std::string_view rule, const Value& value) {
   if (holds) return;
   std::ostringstream text;
   text.precision(17);
+  if constexpr (std::is_floating_point_v<Value>) text.precision(digits_of(value));
   text << argument << ": " << rule << ", got " << value;
   throw std::invalid_argument(text.str());
 }

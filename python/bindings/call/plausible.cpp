@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLowestFrequency = 1e6;        // Hz, of radars that look over the horizon
 constexpr double kHighestFrequency = 1e14;      // Hz, of infrared light
-constexpr double kNarrowest = 1e3;              // Hz, cells of 150 km
+constexpr double kNarrowest = 5e3;              // Hz, cells of 30 km: less than radars beyond the horizon have
 constexpr double kLeastBandwidth = 1e-3;        // Hz, below which ranges overflow
 constexpr double kLargestInterval = 1e6;        // s, between chirps
 constexpr double kLargestPower = 1e30;          // W, whose squares are finite

@@ -29,7 +29,7 @@ using OrNone = Optional<Instance<std::shared_ptr<T>>>;
 
 TimeSpan span_of(const std::vector<double>& ends, const char* argument) {
   const bool is_span = ends.size() == 2 && ends[0] < ends[1];
-  require(is_span, argument, "must be (begin, end) in s, ascending, or None", shown(py::cast(ends)));
+  require(is_span, argument, "must be (begin, end) in s, ascending, or None", py::str(py::cast(ends)).cast<std::string>());
   return {std::max(ends[0], TimeSpan{}.begin), std::min(ends[1], TimeSpan{}.end)};
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "echopath/base/constants.h"
 #include "echopath/base/text/nearest_names.h"
 
@@ -10,14 +12,34 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+// What `require` says of a number behind "got ".
+std::string said_of(double value) {
+  try {
+    require(false, "bandwidth", "must be positive", value);
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what(), before = "bandwidth: must be positive, got ";
+    return said.starts_with(before) ? said.substr(before.size()) : "another message: " + said;
+  }
+  return "nothing";
+}
+
 TEST(Require, NamesArgumentRuleAndValue) {
   EXPECT_NO_THROW(require(true, "bandwidth", "must be positive", 1.0));
-  try {
-    require(false, "bandwidth", "must be positive", -0.1);
-    FAIL() << "no exception";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "bandwidth: must be positive, got -0.10000000000000001");
-  }
+  EXPECT_EQ(said_of(-0.1), "-0.1");
+}
+
+TEST(Require, SaysNumbersAsTheyWereTyped) {
+  EXPECT_EQ(said_of(40e-6), "4e-05");
+  EXPECT_EQ(said_of(1e300), "1e+300");
+  EXPECT_EQ(said_of(1e12), "1000000000000");
+  EXPECT_EQ(said_of(77e9), "77000000000");
+  EXPECT_EQ(said_of(std::nan("")), "nan");
+  EXPECT_EQ(said_of(-INFINITY), "-inf");
+}
+
+TEST(Require, SaysAllDigitsThatTellANumberFromItsNeighbours) {
+  EXPECT_EQ(said_of(0.1 + 0.2), "0.30000000000000004");
+  EXPECT_EQ(said_of(std::nextafter(1.0, 2.0)), "1.0000000000000002");
 }
 
 TEST(NearestNames, OrdersByEditDistance) {

@@ -325,9 +325,10 @@ def test_a_lifetime_set_by_hand_stays_when_the_motion_changes():
 
 def test_lifetimes_have_one_rule_wherever_they_are_set():
     for empty in ((1.0, 1.0), (2.0, 1.0)):
-        with pytest.raises(ValueError, match=r"lifetime: must be \(begin, end\) in s, ascending, or None, got"):
+        told = rf"lifetime: must be \(begin, end\) in s, ascending, or None, got \[{empty[0]}, {empty[1]}\]$"
+        with pytest.raises(ValueError, match=told):
             screen_before_a_plate()["screen"].lifetime = empty
-        with pytest.raises(ValueError, match=r"lifetime: must be \(begin, end\) in s, ascending, or None, got"):
+        with pytest.raises(ValueError, match=told):
             screen_before_a_plate().nodes[0].replace(lifetime=empty)
 
 

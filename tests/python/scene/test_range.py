@@ -16,7 +16,7 @@ CASES = {
     "vertex": r"scene: from the radar, vertices of mesh 'far' must lie within 1e12 m, got .*1e\+19",
     "whole scene": r"scene: what is next to the radar must lie within 1e12 m, got .*1e\+19",
     "radar": r"position: the antenna must lie within 1e12 m, got 1e\+20 +0 +0",
-    "velocity": r"velocity: must be below the speed of light, 299792458 m/s, got 9\.99.*e\+38",
+    "velocity": r"velocity: must be below the speed of light, 299792458 m/s, got 1e\+39",
     "turning": r"scene: the motions of mesh '.*' must turn it by finite angles, got one that is not finite at 0\.00\d+ s",
     "start_time": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",
     "start_time without a motion": r"start_time: must lie in \[-1e10, 1e10\] s, got 1e\+40",

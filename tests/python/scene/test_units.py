@@ -40,6 +40,7 @@ def test_what_cannot_be_is_refused(make, says):
     (lambda: _scene().add(ep.actors.plate(1, 1), name="b", material="metal", yaw=180), "^yaw: 180 rad are"),
     (lambda: ep.ChirpSequence(start_frequency=77e6), r"^bandwidth: 1e\+09 Hz is more than start_frequency, 7\.7e\+07 Hz"),
     (lambda: ep.ChirpSequence(bandwidth=1), "^bandwidth: 1 Hz makes range cells of 149896 km"),
+    (lambda: ep.ChirpSequence(bandwidth=4000), "^bandwidth: 4000 Hz makes range cells of 37.4741 km"),  # 4 GHz in MHz
     (lambda: ep.ChirpSequence(chirp_interval=60), "^chirp_interval: 60 s from chirp to chirp"),
     (lambda: ep.trace(_scene(1000.0), _radar(position=(-9e3, 0, 0)), num_rays=100), "^scene: 'car' is 4,000 m long .* mm"),
     (lambda: ep.trace(_scene(1e-4), _radar(), num_rays=100), "^scene: 'car' is 0.0004 m large, less than half a wavelength"),

@@ -15,8 +15,10 @@ from ..tracing.polarization import chosen_model
 from ..transmit.signals import decompose_slots, synthesize_slots
 from ..weather.weather import attenuation_of
 
-# Signals are added and taken away so often before all is summed anew; each time rounds to some 1e-16 of the largest sample.
-MOST_DIFFERENCES = 256
+# Signals that are added and taken away round to about ROUNDING of the largest sample that there is then. All is summed anew
+# where this adds up to more than MOST_ROUNDING of the largest sample: after 256 changes, or one that takes away what was so much
+# stronger than the rest.
+ROUNDING, MOST_ROUNDING = 1e-15, 2.56e-13
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,7 +53,8 @@ class KeptSignal:
         self._cube: np.ndarray | None = None
         self._whole: _core.Paths | None = None  # of which the cubes are to be made anew
         self._pending: list[tuple[float, _core.Paths]] = []  # what is still to be added to the cube, and its sign
-        self._num_differences = 0
+        self._largest = 0.0   # sqrt(W), real or imaginary part of a sample of any cube
+        self._rounding = 0.0  # sqrt(W), of the cubes since they were summed anew
         # The whole record where an update has made it, so that `paths` need not: held until `paths` gives it or the next update
         # begins, beside the parts of which it was made, whether or not anyone asks.
         self._made: _core.Paths | None = None
@@ -77,7 +80,7 @@ class KeptSignal:
                                            "faint_power": faint_power_of(self._trace_keywords["faint_power"], radar)}
         change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
         self._note(change)
-        if self._whole is None and (radar != self._radar or self._num_differences >= MOST_DIFFERENCES):
+        if self._whole is None and radar != self._radar:
             self._whole = self._record.paths(progress)
         middle = time.perf_counter()
         num_changed = self._bring_up(radar, progress)
@@ -94,23 +97,29 @@ class KeptSignal:
             self._pending += [(sign, paths) for sign, paths in ((1.0, change["added"]), (-1.0, change["removed"]))
                               if paths.num_paths]
 
-    def _bring_up(self, radar: _core.Radar, progress) -> int:
+    def _bring_up(self, radar, progress) -> int:
         """Brings the cube to the record; returns the number of paths that this took."""
-        num_paths = 0
-        if self._whole is not None:
-            num_paths = self._whole.num_paths
-            self._set_cubes(self._signals_of(self._whole, radar, progress))
-            self._made = self._whole
-            self._radar, self._whole, self._pending, self._num_differences = radar, None, [], 0
+        num_paths = 0 if self._whole is None else self._sum_anew(radar, progress)
         while self._pending:
             sign, paths = self._pending[-1]
             num_paths += paths.num_paths
-            change = self._signals_of(paths, radar, progress)
+            change, before = self._signals_of(paths, radar, progress), self._largest
             self._set_cubes({name: cube + change[name] if sign > 0.0 else cube - change[name]
                              for name, cube in self._cubes.items()})
             self._pending.pop()
-            self._num_differences += 1
+            self._rounding += ROUNDING * max(before, self._largest)
+        if self._rounding > MOST_ROUNDING * self._largest:
+            self._whole = self._record.paths(progress)
+            num_paths += self._sum_anew(radar, progress)
         return num_paths
+
+    def _sum_anew(self, radar, progress) -> int:
+        """Makes the cubes of the whole record; returns the number of its paths."""
+        assert self._whole is not None
+        self._set_cubes(self._signals_of(self._whole, radar, progress))
+        self._made = self._whole
+        self._radar, self._whole, self._pending, self._rounding = radar, None, [], 0.0
+        return self._made.num_paths
 
     def _signals_of(self, paths: _core.Paths, radar: _core.Radar, progress) -> dict[str, np.ndarray]:
         """{part: cube}"""
@@ -124,6 +133,8 @@ class KeptSignal:
         self._cube = next(iter(cubes.values())) if len(cubes) == 1 else np.sum(list(cubes.values()), axis=0)
         for cube in (self._cube, *cubes.values()):
             cube.flags.writeable = False
+        numbers = [cube.view(np.float64) for cube in cubes.values()]
+        self._largest = max(max(float(part.max()), -float(part.min())) for part in numbers)
 
     def paths(self, progress=None) -> _core.Paths:
         """The whole record, Paths."""

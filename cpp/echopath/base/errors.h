@@ -20,8 +20,8 @@ struct Cancelled : std::runtime_error {  // the caller asked a long computation 
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
-// Returns how many significant digits tell a number from its neighbours: 15 do for one that was typed, so that 0.1 is not said to
-// be 0.10000000000000001.
+// Returns how many significant digits tell a number from its neighbours: 15 do for one that was typed, so that 0.1 is not
+// said to be 0.10000000000000001.
 inline int digits_of(double number) {
   for (const int digits : {15, 16}) {
     std::ostringstream text;

@@ -22,8 +22,8 @@ struct StillRays {
   double error_db = 0.0;  // of their echoes, where there is a target for it
 
   StillRays() = default;
-  // Takes what stands still in `scene` from the guide of its standing_scene, whose trace had these strata. A part that stands
-  // still of an object that moves has no rays of its own.
+  // Takes what stands still in `scene` from the guide of its standing_scene, whose trace had these strata. A part that
+  // stands still of an object that moves has no rays of its own.
   StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, const Scene& scene);
   bool any() const { return !guide.shares.empty(); }
   bool holds(const std::string& stratum) const { return guide.shares.contains(stratum); }

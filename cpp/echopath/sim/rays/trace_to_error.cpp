@@ -27,8 +27,8 @@ int64_t rays_to_come(const StillRays& still, const RayNeeds& needs, int64_t befo
   return std::clamp<int64_t>(std::llround(all), std::min(2 * before, most), most);
 }
 
-// Traces what moves with ever more rays, and at the end beside what stands still, which has the rays of `still`. Without any,
-// all count as what moves.
+// Traces what moves with ever more rays, and at the end beside what stands still, which has the rays of `still`. Without
+// any, all count as what moves.
 Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, const Radar& radar,
                             const TraceSettings& settings, const ErrorTarget& target, Job* job, KeptGeometry* kept) {
   KeptGeometry own;

@@ -206,10 +206,10 @@ def test_info_tells_scenes_frames_and_meshes_apart(finished_run):
 def test_surfaces_on_each_other_are_told(scene_path, tmp_path):
     assert "surfaces on each other            none" in call("info", scene_path).stdout
     again = '[[objects]]\nname = "again"\nmesh = "plate.obj"\nmaterial = "metal"\nposition = [5.0, 0.25, 0.0]\n'
-    (tmp_path / "double.obj").write_text("g a*\n" + PLATE + "g b\n" + PLATE.replace("f 1 2 3 4", "f 5 6 7 8"))
+    (tmp_path / "double.obj").write_text("g a[1]\n" + PLATE + "g b\n" + PLATE.replace("f 1 2 3 4", "f 5 6 7 8"))
     scene_path.write_text(SCENE.replace("[trace]", again + "[trace]", 1).replace("[-2.0, 0.0, 0.0]", "[0.0, 0.0, 0.0]"))
     assert "plate and again                 4 triangles, 0.75 m^2" in call("info", scene_path).stdout
-    assert "a* and b                        4 triangles, 1 m^2" in call("info", tmp_path / "double.obj").stdout
+    assert "a[1] and b                      4 triangles, 1 m^2" in call("info", tmp_path / "double.obj").stdout
     done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
     for told in (done.stdout, call("info", tmp_path / "out" / "frame.h5").stdout):
         assert "surfaces on each other (rounding decides" in told

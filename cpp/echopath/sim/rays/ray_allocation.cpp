@@ -214,7 +214,8 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   if (!needs.strata.empty()) guide.shares = share_out(needs, left);
   const std::vector<Glint> glints = find_glints(paths, job);
   if (!still.any()) raise_field_of_view(paths.frame, needs, glints, guide.shares);
-  const double rays_per_share = left / sum_of(guide.shares);
+  const double shared = sum_of(guide.shares);  // 0 where nothing but what stands still is there
+  const double rays_per_share = shared > 0.0 ? left / shared : 0.0;
   // Shares that persist count rays (LaunchSettings::by_name), of which there are not to be more than num_rays.
   const double up = paths.frame.scatterers == Scatterers::kSurface ? 0.0 : 0.5;
   for (auto& [name, share] : guide.shares) share = rounded_rays(rays_per_share * share, up);

@@ -8,6 +8,7 @@ CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=500e6, num_samples=64,
                           chirp_interval=50e-6)
 RADAR = ep.Radar(CHIRPS, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.01, 0))], position=(0, 0, 1))
 INTERVAL = 0.05  # s
+SINGLE = 1e-4  # rays meet triangles in single precision, whose steps hang on the extent of the scene
 
 
 def room() -> ep.Scene:
@@ -49,6 +50,75 @@ def test_they_are_where_something_comes_and_goes():
     scene.add(ep.actors.sphere(radius=0.2), name="ball_that_comes", position=(5, 2, 1), material="metal", smooth=True)
     scene["ball_that_comes"].lifetime = (0.9 * INTERVAL, 2.5 * INTERVAL)
     assert max(differences(scene, frames=4, num_rays=20_000)) < 1e-9
+
+
+def basin() -> ep.Mesh:
+    """A floor with a low rim around the radar, in one mesh: no cone of directions holds it, so that the field of view does."""
+    corners = 20.0 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    vertices = [(*corner, height) for height in (0.0, 3.0) for corner in corners]
+    sides = [(k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) for k in range(4)]
+    squares = [(0, 1, 2, 3), *sides]
+    return ep.Mesh(vertices, [triangle for a, b, c, d in squares for triangle in ((a, b, c), (a, c, d))])
+
+
+def add_ball_that_comes(scene, **keywords):
+    scene.add(ep.actors.sphere(radius=0.25), name="ball", material="metal", smooth=True, **keywords)
+    scene["ball"].lifetime = (0.9 * INTERVAL, 1.5 * INTERVAL)
+
+
+FEW_OR_PLANNED = pytest.mark.parametrize("num_rays", [2_000, 20_000])
+
+
+@FEW_OR_PLANNED
+def test_they_are_in_surroundings_that_only_the_field_of_view_holds(num_rays):
+    """Once without and once with something that rays are aimed at, above the rim, where it shades nothing."""
+    scene = ep.Scene()
+    scene.add(basin(), name="basin", material=ep.materials["wood"].replace(scattering=0.4))
+    add_ball_that_comes(scene, position=(3, 1.5, 3.5))
+    assert max(differences(scene, frames=3, num_rays=num_rays, max_bounces=1)) < 1e-9
+
+
+@FEW_OR_PLANNED
+def test_they_are_where_a_mirror_comes_behind_them(num_rays):
+    """It is no target of rays, but has the field of view look for what it scatters."""
+    scene = ep.Scene()
+    for name, aside in (("left", 2), ("right", -2)):
+        scene.add(ep.actors.box(size=(1, 1, 2)), name=name, position=(5, aside, 0),
+                  material=ep.materials["wood"].replace(scattering=0.4))
+    scene.add(ep.actors.wall(5, 3), name="ball room", position=(8, -3, 0), yaw=-np.pi / 2,
+              material=ep.materials["concrete"].replace(scattering=0.2, mirror=True))
+    scene["ball room"].lifetime = (0.9 * INTERVAL, 1.5 * INTERVAL)
+    assert max(differences(scene, frames=3, num_rays=num_rays)) < SINGLE
+
+
+@pytest.mark.parametrize("rays", [{"num_rays": 20_000}, {"target_error_db": 1.0, "max_rays": 40_000}])
+def test_a_frame_in_which_nothing_moves_has_their_rays_alone(rays):
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(radius=0.3), name="globe", position=(4, -2, 0.8), material="metal", smooth=True)
+    add_ball_that_comes(scene, position=(3, 1.5, 1))
+    assert max(differences(scene, frames=3, **rays)) < SINGLE
+
+
+@FEW_OR_PLANNED
+def test_a_frame_has_the_same_bits_alone_where_a_part_of_an_object_comes_and_goes(num_rays):
+    """The object is another one with it than without, and was taken to stand still by the frames without."""
+    scene = ep.Scene()
+    scene.add(name="yard", position=(6, 0, 0))
+    for name, aside in (("shed", -2), ("cart", -1.2)):
+        scene.add(ep.actors.box(size=(0.5, 0.5, 1)), name=name, parent="yard", position=(0, aside, 0),
+                  material=ep.materials["wood"].replace(scattering=0.4))
+    scene["yard/cart"].lifetime = (0.9 * INTERVAL, 1.5 * INTERVAL)
+    scene.add(ep.actors.sphere(radius=0.25), name="ball", position=(3, 1.5, 1), speed=1.0, material="metal", smooth=True)
+    scene.add(ep.actors.sphere(radius=0.3), name="globe", position=(4, -3, 0.8), material="metal", smooth=True)
+
+    def frames(places) -> list[bytes]:
+        sequence = ep.Sequence(scene, RADAR, frames=3, interval=INTERVAL, num_rays=num_rays, noise_seed=None, guard=False)
+        return [sequence[place].cube.tobytes() for place in places]
+
+    assert frames([1, 0]) == frames([0, 1])[::-1]
+    globe = ep.Sequence(scene, RADAR, frames=3, interval=INTERVAL, num_rays=num_rays, noise_seed=None, guard=False)
+    first, *later = [ep.decompose(frame.paths, RADAR, {"globe": "T 'globe' R"}, tolerance=1e-12)["globe"] for frame in globe]
+    assert all(np.abs(cube - first).max() < 1e-9 * np.abs(first).max() for cube in later)
 
 
 def test_a_frame_alone_shares_its_rays_out_likewise():

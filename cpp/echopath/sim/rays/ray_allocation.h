@@ -52,11 +52,10 @@ struct RayNeeds {
 
 // Returns for every stratum, but those of `still`, whose echo may stand above the floor as many rays as bring its interval,
 // as far as rays mend it (PowerInterval::high_of_rays), to what is wanted, for objects that move, but not for their images,
-// to a quarter of it.
-// The interval of a coherent echo falls about with the rays, that of a diffuse one with their root; both get rays in
-// proportion to the error over the target, within a factor of kMaxGrowth. An echo that is known better gives rays back,
-// down to WantedError::least_growth; a stratum that sends nothing back keeps a quarter, or that if it is more. One that was
-// too small to have rays is counted as if it had the fewest that a stratum has. Raises Cancelled.
+// to a quarter of it. The interval of a coherent echo falls about with the rays, that of a diffuse one with their root; both
+// get rays in proportion to the error over the target, within a factor of kMaxGrowth. An echo that is known better gives
+// rays back, down to WantedError::least_growth; a stratum that sends nothing back keeps a quarter, or that if it is more.
+// One that was too small to have rays is counted as if it had the fewest that a stratum has. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still = {}, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 

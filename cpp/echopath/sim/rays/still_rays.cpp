@@ -6,24 +6,9 @@
 #include <vector>
 
 namespace echopath {
-namespace {
-
-bool ever_moves(const Scene& scene) { return scene.is_anything_moving() || scene.has_lifetimes(); }
-
-// Marks the nodes at which and below which all stands still.
-std::vector<bool> still_nodes(const Scene& scene) {
-  std::vector<bool> still(scene.nodes().size(), true);
-  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
-    if (scene.stands_still(mesh)) continue;
-    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[node].parent) still[node] = false;
-  }
-  return still;
-}
-
-}  // namespace
 
 StillRays::StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, const Scene& scene) : guide(std::move(of_all)) {
-  const std::vector<bool> still = still_nodes(scene);
+  const std::vector<bool> still = scene.still_nodes();
   for (const Stratum& stratum : strata) {
     if (stratum.object >= 0 && !still[stratum.object]) guide.shares.erase(stratum.name);
   }
@@ -41,7 +26,7 @@ LaunchGuide StillRays::taken_from(LaunchGuide whole) const {
 
 std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
   if (settings.scatterers != Scatterers::kSurface || !settings.guide.shares.empty() || radar.motion) return std::nullopt;
-  if (!ever_moves(scene)) return std::nullopt;
+  if (!scene.ever_changes()) return std::nullopt;
   std::vector<bool> stands;
   for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) stands.push_back(scene.stands_still(mesh));
   if (std::ranges::none_of(stands, std::identity())) return std::nullopt;
@@ -52,8 +37,8 @@ std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, cons
 
 LaunchGuide guide_like(const Paths& paths) {
   LaunchGuide guide = guide_like(paths.frame.strata);
-  if (paths.frame.scatterers != Scatterers::kSurface || paths.radar.motion || !ever_moves(*paths.scene)) return guide;
-  const std::vector<bool> still = still_nodes(*paths.scene);
+  if (paths.frame.scatterers != Scatterers::kSurface || paths.radar.motion || !paths.scene->ever_changes()) return guide;
+  const std::vector<bool> still = paths.scene->still_nodes();
   for (const Stratum& stratum : paths.frame.strata) {
     if (stratum.object < 0 || still[stratum.object]) guide.still_rays += static_cast<double>(stratum.num_rays);
   }

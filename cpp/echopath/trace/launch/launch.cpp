@@ -83,7 +83,10 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   RayTargets found = find_ray_targets(scene, geometry, mirrors, aims);
   std::vector<FocusOfTarget> foci;
   if (!settings.guide.shares.empty()) foci = foci_of(settings.guide.foci, found.targets, field);
-  const LaunchShares shares(scene, found, found.any_unaimed || !mirrors.empty(), settings);
+  const bool any_still_mirror =
+      std::ranges::any_of(mirrors, [&](const Mirror& mirror) { return scene.stands_still(mirror.mesh_id); });
+  const FieldOwns owns{found.any_unaimed || !mirrors.empty(), found.any_still_unaimed || any_still_mirror};
+  const LaunchShares shares(scene, found, owns, settings);
   std::vector<int64_t> rays = shares.rays(foci, field.name);
   for (size_t i = 0; i < foci.size(); ++i) {  // a stratum without rays owns nothing
     if (foci[i].of < found.targets.size() && rays[foci[i].of] == 0)

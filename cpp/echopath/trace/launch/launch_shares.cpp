@@ -84,10 +84,18 @@ std::vector<double> mean_densities(const std::vector<Stratum>& strata) {
 
 }  // namespace
 
-LaunchShares::LaunchShares(const Scene& scene, const RayTargets& found, bool field_owns_any, const LaunchSettings& settings)
-    : scene_(scene), found_(found), field_owns_any_(field_owns_any), settings_(settings),
-      is_steady_(settings.by_name && (scene.is_anything_moving() || scene.has_lifetimes())) {
+LaunchShares::LaunchShares(const Scene& scene, const RayTargets& found, const FieldOwns& field,
+                           const LaunchSettings& settings)
+    : scene_(scene), found_(found), field_(field), settings_(settings),
+      is_steady_(settings.by_name && scene.ever_changes()) {
   for (const RayTarget& target : found.targets) (target.moves ? moving_ : still_) += target.weight;
+}
+
+// Returns the share of the field of view. A steady one is the same while nothing is there that rays are aimed at.
+double LaunchShares::field_share() const {
+  const bool aims_at_any = is_steady_ ? found_.num_objects > 0 : !found_.targets.empty();
+  if (!aims_at_any) return 1.0;
+  return field_.any ? kFieldShare : 0.0;
 }
 
 // Returns the share of what moves, of the rays that are aimed.
@@ -98,20 +106,23 @@ double LaunchShares::moving_share() const {
 }
 
 // Returns the shares of the targets and the field of view by the rule. Steady shares leave that of what moves where none of
-// it is there.
+// it is there, and what moves alone gives up that of a field of view which owns nothing that stands still.
 std::vector<double> LaunchShares::of_rule() const {
-  const double aimed = found_.targets.empty() ? 0.0 : field_owns_any_ ? 1.0 - kFieldShare : 1.0, of_moving = moving_share();
+  const double aimed = 1.0 - field_share(), of_moving = moving_share();
+  const bool is_field_of_moving = is_steady_ && !field_.still;
+  const double to_still = is_field_of_moving ? 1.0 : aimed;  // of which what moves leaves a part
+  const double to_moving = is_field_of_moving ? (aimed - 1.0 + of_moving) / of_moving : aimed;
   std::vector<double> shares;
   for (const RayTarget& target : found_.targets) {
     const double by_weight = target.moves ? of_moving / moving_ : (1.0 - of_moving) / still_;
-    shares.push_back(aimed * by_weight * target.weight);
+    shares.push_back((target.moves ? to_moving : to_still) * by_weight * target.weight);
   }
   shares.push_back(1.0 - aimed);
   return shares;
 }
 
 std::vector<int64_t> LaunchShares::rays(const std::vector<FocusOfTarget>& foci, const std::string& field) const {
-  if (is_by_object()) return rays_by_object(scene_, found_.targets, field_owns_any_, kFieldShare, settings_.num_rays);
+  if (is_by_object()) return rays_by_object(scene_, found_.targets, field_.any, kFieldShare, settings_.num_rays);
   std::vector<double> shares = is_guided() ? named_shares(found_.targets, foci, field, settings_.guide.shares) : of_rule();
   if (!settings_.by_name) return whole_rays(shares, settings_.num_rays);
   if (is_guided()) return rounded_one_by_one(shares);

@@ -16,10 +16,15 @@ struct FocusOfTarget {
   size_t of;
 };
 
+// Says whether the field of view owns any echoes, and any of what stands still.
+struct FieldOwns {
+  bool any = false, still = false;
+};
+
 // Follows the rule of LaunchPlan, that of rays_by_object, or a guide. All arguments must outlive it.
 class LaunchShares {
  public:
-  LaunchShares(const Scene& scene, const RayTargets& found, bool field_owns_any, const LaunchSettings& settings);
+  LaunchShares(const Scene& scene, const RayTargets& found, const FieldOwns& field, const LaunchSettings& settings);
 
   // Returns the rays of the strata in the order of the plan: targets, foci, and the field of view, which has this name.
   std::vector<int64_t> rays(const std::vector<FocusOfTarget>& foci, const std::string& field) const;
@@ -29,12 +34,13 @@ class LaunchShares {
  private:
   bool is_guided() const { return !settings_.guide.shares.empty(); }
   bool is_by_object() const { return settings_.by_object && !is_guided(); }
+  double field_share() const;
   double moving_share() const;
   std::vector<double> of_rule() const;
 
   const Scene& scene_;
   const RayTargets& found_;
-  bool field_owns_any_;
+  FieldOwns field_;
   const LaunchSettings& settings_;
   bool is_steady_;                     // what stands still has the same share in all frames
   double moving_ = 0.0, still_ = 0.0;  // weights of the targets

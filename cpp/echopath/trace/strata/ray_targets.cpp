@@ -25,15 +25,15 @@ constexpr double kSameStratum = 1e-6;
 
 class Target {
  public:
-  Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index)
-      : object(index), node(of.node), name(scene.nodes()[of.node].name), geometry_(&geometry), mesh_ids_(of.mesh_ids) {
+  Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index, bool stands_still)
+      : object(index), node(of.node), name(scene.nodes()[of.node].name), moves(!stands_still), geometry_(&geometry),
+        mesh_ids_(of.mesh_ids) {
     sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, mesh_ids_);
     BitSum sum;
     for (const uint32_t id : mesh_ids_) {
       const std::vector<Vec3>& own = geometry.vertices(id);
       sum.add(own.size());
       sum.add_bytes(own.data(), own.size() * sizeof(Vec3));
-      moves = moves || !scene.stands_still(id);
     }
     bits = sum.value();
   }
@@ -50,8 +50,8 @@ class Target {
   int object, node;
   std::string name;
   Sphere sphere;
+  bool moves;
   uint64_t bits = 0;  // sum of those of the vertices
-  bool moves = false;
 
  private:
   const EmbreeScene* geometry_;
@@ -164,6 +164,7 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
   images.resize(std::min(images.size(), kMaxAims - objects.size()));
   out.num_left_out += static_cast<int64_t>(all - objects.size() - images.size());
   out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
+  out.any_still_unaimed = out.any_still_unaimed || out.num_left_out > 0;
 }
 
 // Finds the targets of one object after the other.
@@ -171,7 +172,8 @@ class TargetSearch {
  public:
   TargetSearch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                const RayTargetSettings& settings, RayTargets& out)
-      : scene_(scene), geometry_(geometry), settings_(settings), finder_(scene, mirrors, settings), out_(out) {}
+      : scene_(scene), geometry_(geometry), settings_(settings), finder_(scene, mirrors, settings),
+        still_nodes_(scene.still_nodes()), out_(out) {}
 
   // Aims at an object and its images, or else at the things that it consists of.
   void take(const SceneObject& object) {
@@ -185,7 +187,7 @@ class TargetSearch {
       objects_.push_back(std::move(*direct));
       append(finder_.at_images(target), images_);
     } else {
-      out_.any_unaimed = out_.any_unaimed || !direct;
+      if (!direct) leave_to_field_of_view(target);
       take_strongest(things);
     }
   }
@@ -210,7 +212,12 @@ class TargetSearch {
   Target new_target(const SceneObject& object) {
     const int index = out_.num_objects++;
     own(object, index);
-    return Target(scene_, geometry_, object, index);
+    return Target(scene_, geometry_, object, index, still_nodes_[object.node]);
+  }
+
+  void leave_to_field_of_view(const Target& target) {
+    out_.any_unaimed = true;
+    out_.any_still_unaimed = out_.any_still_unaimed || !target.moves;
   }
 
   void own(const SceneObject& object, int index) {
@@ -261,7 +268,7 @@ class TargetSearch {
         const double echo = std::pow(target.sphere.radius / (distance * distance), 2);
         things.push_back({std::move(target), std::move(*direct), echo});
       } else {
-        out_.any_unaimed = true;
+        leave_to_field_of_view(target);
         find_things(parts_below(part), things);
       }
     }
@@ -306,6 +313,7 @@ class TargetSearch {
   void leave_out(size_t count) {
     out_.num_left_out += static_cast<int64_t>(count);
     out_.any_unaimed = out_.any_unaimed || count > 0;
+    out_.any_still_unaimed = out_.any_still_unaimed || count > 0;
   }
 
   // Together the things have the weight of one object, and their images no more than that.
@@ -329,6 +337,7 @@ class TargetSearch {
   const EmbreeScene& geometry_;
   const RayTargetSettings& settings_;
   const RayTargetFinder finder_;
+  const std::vector<bool> still_nodes_;
   RayTargets& out_;
   std::vector<RayTarget> objects_, images_;
 };

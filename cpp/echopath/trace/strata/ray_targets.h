@@ -20,7 +20,7 @@ struct RayTarget {
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh
   // Rays find it over these; planes at right angles have one image in both orders.
   std::vector<MirrorSequence> sequences;
-  bool moves = false;   // it, or a mirror that shows it, or it comes and goes (Scene::stands_still)
+  bool moves = false;   // it, or a part of it, or a mirror that shows it moves, or comes and goes (Scene::still_nodes)
   double weight = 1.0;  // in the sharing of the rays; the things of one object share the weight of that
 };
 
@@ -41,6 +41,7 @@ struct RayTargets {
   std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
   int num_objects = 0;              // with the parts of those that surround the transmitter
   bool any_unaimed = false;         // some object has no stratum
+  bool any_still_unaimed = false;   // likewise one that stands still, or one of which that is not known
   // Counts the things and images of one object beyond those that have rays of their own, and what is beyond the strata that
   // a record can tell apart; all objects where these are too many to aim at.
   int64_t num_left_out = 0;

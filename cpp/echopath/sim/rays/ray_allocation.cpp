@@ -234,9 +234,10 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   if (!kept) kept = &own;
   FittedStrata fitted;
   Job unseen(job);  // its progress is that of the trace
-  const auto pilot_of = [&](const SceneSnapshot& seen, int64_t num_rays, KeptGeometry* geometry, FittedStrata* strata) {
+  // Pilots have as many rays with and without what moves: to how many objects rays are aimed hangs on that.
+  const auto pilot_of = [&](const SceneSnapshot& seen, KeptGeometry* geometry, FittedStrata* strata) {
     TraceSettings launch = settings;
-    launch.num_rays = num_rays / kPilotDivisor;
+    launch.num_rays = settings.num_rays / kPilotDivisor;
     launch.num_rays_to_come = settings.num_rays;
     return trace(seen, radar, launch, &unseen, geometry, strata);
   };
@@ -245,12 +246,11 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
     return guide_rays(pilot, ray_needs(pilot, wanted, still, &unseen), num_rays, still, &unseen);
   };
   const auto still = still_rays(*scene, radar, settings, kept_still, [&](const SceneSnapshot& standing) {
-    const int64_t of_half = settings.num_rays / 2;
-    const Paths pilot = pilot_of(standing, of_half, nullptr, nullptr);
-    return StillRays(guide_by(pilot, of_half, {}), pilot.frame.strata, *scene);
+    const Paths pilot = pilot_of(standing, nullptr, nullptr);
+    return StillRays(guide_by(pilot, settings.num_rays / 2, {}), pilot.frame.strata, *scene);
   });
   TraceSettings launch = settings;
-  launch.guide = guide_by(pilot_of(scene, settings.num_rays, kept, &fitted), settings.num_rays, *still);
+  launch.guide = guide_by(pilot_of(scene, kept, &fitted), settings.num_rays, *still);
   return thinned(trace(scene, radar, launch, job, kept, &fitted), job);
 }
 

@@ -29,6 +29,32 @@ std::vector<double> named_shares(const std::vector<RayTarget>& targets, const st
   return out;
 }
 
+// Returns the rays of the strata in the order of the plan. What the guide does not name, as where there were too many objects
+// for its own trace to aim at, gets its mean at most: what stands still out of the rays of the field of view, which met it
+// there, and what moves out of those that the guide leaves of `num_rays`.
+std::vector<double> named_rays(const std::vector<RayTarget>& targets, const std::vector<FocusOfTarget>& foci,
+                               const std::string& field, const LaunchGuide& guide, double num_rays) {
+  double sum = 0.0, num_still = 0.0, num_moving = 0.0;  // of those that it does not name
+  for (const auto& [name, rays] : guide.shares) sum += rays;
+  const double mean = sum / static_cast<double>(guide.shares.size());
+  for (const LaunchFocus& focus : guide.foci) sum += focus.share;
+  for (const RayTarget& target : targets)
+    if (!guide.shares.contains(target.stratum.name)) ++(target.moves ? num_moving : num_still);
+  const auto found = guide.shares.find(field);
+  double of_field = found == guide.shares.end() ? 0.0 : found->second;
+  const double to_still = std::min(mean, of_field > 0.0 ? of_field / (1.0 + num_still) : mean / num_still);
+  const double to_moving = std::min(mean, std::max(mean, num_rays - sum) / num_moving);
+  std::vector<double> out;
+  for (const RayTarget& target : targets) {
+    const auto known = guide.shares.find(target.stratum.name);
+    out.push_back(known != guide.shares.end() ? known->second : target.moves ? to_moving : to_still);
+  }
+  for (const FocusOfTarget& focus : foci) out.push_back(focus.asked->share);
+  if (of_field > 0.0) of_field -= num_still * to_still;
+  out.push_back(of_field);
+  return out;
+}
+
 // Returns whole rays, which add up; a share that is too small for a stratum falls to the last one.
 std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_rays) {
   double all = 0.0, before = 0.0;
@@ -123,10 +149,14 @@ std::vector<double> LaunchShares::of_rule() const {
 
 std::vector<int64_t> LaunchShares::rays(const std::vector<FocusOfTarget>& foci, const std::string& field) const {
   if (is_by_object()) return rays_by_object(scene_, found_.targets, field_.any, kFieldShare, settings_.num_rays);
-  std::vector<double> shares = is_guided() ? named_shares(found_.targets, foci, field, settings_.guide.shares) : of_rule();
-  if (!settings_.by_name) return whole_rays(shares, settings_.num_rays);
-  if (is_guided()) return rounded_one_by_one(shares);
-  std::ranges::for_each(shares, [&](double& share) { share *= static_cast<double>(settings_.num_rays); });
+  const auto all = static_cast<double>(settings_.num_rays);
+  if (!settings_.by_name) {
+    return whole_rays(is_guided() ? named_shares(found_.targets, foci, field, settings_.guide.shares) : of_rule(),
+                      settings_.num_rays);
+  }
+  if (is_guided()) return rounded_one_by_one(named_rays(found_.targets, foci, field, settings_.guide, all));
+  std::vector<double> shares = of_rule();
+  std::ranges::for_each(shares, [&](double& share) { share *= all; });
   std::vector<int64_t> rays = rounded_one_by_one(shares);
   add_remainder(found_.targets, !is_steady_, settings_.num_rays, rays);
   return rays;

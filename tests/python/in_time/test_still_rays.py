@@ -152,3 +152,14 @@ def test_a_part_that_stands_still_of_an_object_that_moves_is_found():
               smooth=True)
     for frame in ep.Sequence(scene, RADAR, frames=2, interval=INTERVAL, num_rays=20_000, noise_seed=None, guard=False):
         assert error_db(frame, "carousel/post", echo_of_sphere(0.3, np.hypot(5, 1))) < 0.2
+
+
+def test_the_error_of_a_frame_is_that_of_echoes_above_its_floor():
+    """The pebble sends 70 dB less than the balloon, which has as many rays with it as where all rays are shared out at once."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(radius=0.05), name="pebble", position=(60, 20, 1), smooth=True,
+              material=ep.materials["wood"].replace(scattering=0.4))
+    scene.add(ep.actors.sphere(radius=1.0), name="balloon", position=(6, -2, 1), speed=1.0, material="metal", smooth=True)
+    together, apart = (ep.trace(scene, RADAR, target_error_db=0.3, max_rays=40_000, scatterers=scatterers).frame
+                       for scatterers in ("rays", "surface"))
+    assert 0.0 < apart.error_db < 1.05 * together.error_db

@@ -18,8 +18,7 @@ namespace echopath {
 // moves. Its rays are therefore shared out in the scene without all that moves or comes and goes, which is the same at all
 // times, and what moves gets other rays beside them in each frame.
 struct StillRays {
-  LaunchGuide guide;      // of the strata of what stands still and the field of view; its shares count rays; empty: none
-  double error_db = 0.0;  // of their echoes, where there is a target for it
+  LaunchGuide guide;  // of the strata of what stands still and the field of view; its shares count rays; empty: none
 
   StillRays() = default;
   // Takes what stands still in `scene` from the guide of its standing_scene, whose trace had these strata. A part that

@@ -10,10 +10,14 @@
 namespace echopath {
 namespace {
 
+double error_of(const Paths& paths, const WantedError& wanted, Job* job) {
+  return ray_needs(paths, wanted, {}, job).worst_db;
+}
+
 // Returns the record with the error that it has once faint paths are left out by lot, which more rays hardly mend.
-Paths with_error_of_lot(Paths paths, const WantedError& wanted, const StillRays& still, Job* job) {
+Paths with_error_of_lot(Paths paths, const WantedError& wanted, Job* job) {
   if (paths.frame.statistics.num_faint_paths > 0) {
-    paths.frame.error_db = std::max(paths.frame.error_db, ray_needs(paths, wanted, still, job).worst_db);
+    paths.frame.error_db = std::max(paths.frame.error_db, error_of(paths, wanted, job));
   }
   return paths;
 }
@@ -43,11 +47,13 @@ Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, 
     Paths paths = trace(scene, radar, launch, job, kept, &fitted);
     const RayNeeds needs = ray_needs(paths, wanted, still, job);
     paths.frame.target_error_db = target.error_db;
-    paths.frame.error_db = std::max(needs.worst_db, still.error_db);
     const bool is_met = needs.worst_db <= target.error_db, has_most = launch.num_rays == target.max_rays,
                is_first = launch.guide.shares.empty();
-    if ((is_whole && (still.any() || is_met || has_most)) || (is_first && paths.frame.statistics.num_hits == 0))
-      return with_error_of_lot(thinned(std::move(paths), job), wanted, still, job);
+    if ((is_whole && (still.any() || is_met || has_most)) || (is_first && paths.frame.statistics.num_hits == 0)) {
+      // Alone, what stands still may be known worse: there fainter echoes stand above the floor.
+      paths.frame.error_db = still.any() ? error_of(paths, wanted, job) : needs.worst_db;
+      return with_error_of_lot(thinned(std::move(paths), job), wanted, job);
+    }
     if (is_first || !is_met) {
       launch.num_rays = rays_to_come(still, needs, launch.num_rays, target.max_rays);
       guide = guide_rays(paths, needs, launch.num_rays, still, job);
@@ -76,9 +82,7 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
     of_half.max_rays = std::max<int64_t>(target.max_rays / 2, 1);
     few.num_rays = std::min(settings.num_rays, of_half.max_rays);
     const Paths paths = trace_to_error_beside({}, standing, radar, few, of_half, job, nullptr);
-    StillRays rays(guide_like(paths.frame.strata), paths.frame.strata, *scene);
-    rays.error_db = paths.frame.error_db;
-    return rays;
+    return StillRays(guide_like(paths.frame.strata), paths.frame.strata, *scene);
   });
   return trace_to_error_beside(*still, scene, radar, settings, target, job, kept);
 }

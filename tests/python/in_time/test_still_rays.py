@@ -24,14 +24,14 @@ def room() -> ep.Scene:
     return scene
 
 
-def of_what_stands_still(frame) -> np.ndarray:
-    return ep.decompose(frame.paths, RADAR, {"still": ~ep.hits("ball*")}, tolerance=1e-12)["still"]
+def of_what_stands_still(frame, moving: str = "ball*") -> np.ndarray:
+    return ep.decompose(frame.paths, RADAR, {"still": ~ep.hits(moving)}, tolerance=1e-12)["still"]
 
 
-def differences(scene, **keywords) -> list[float]:
+def differences(scene, moving: str = "ball*", **keywords) -> list[float]:
     """Of the samples of what stands still from those of frame 0, relative to the largest of these."""
     sequence = ep.Sequence(scene, RADAR, interval=INTERVAL, noise_seed=None, guard=False, **keywords)
-    first, *later = [of_what_stands_still(frame) for frame in sequence]
+    first, *later = [of_what_stands_still(frame, moving) for frame in sequence]
     return [np.abs(cube - first).max() / np.abs(first).max() for cube in later]
 
 
@@ -89,6 +89,20 @@ def test_they_are_where_a_mirror_comes_behind_them(num_rays):
               material=ep.materials["concrete"].replace(scattering=0.2, mirror=True))
     scene["ball room"].lifetime = (0.9 * INTERVAL, 1.5 * INTERVAL)
     assert max(differences(scene, frames=3, num_rays=num_rays)) < SINGLE
+
+
+def test_they_are_in_a_town_of_more_things_than_get_rays_of_their_own():
+    """What comes is nearer than all of them, and would take the place of one."""
+    scene = ep.Scene()
+    scene.add(name="town")
+    for k, angle in enumerate(np.linspace(0, 2 * np.pi, 270, endpoint=False)):
+        distance = 8 + 20 * (k * 0.618 % 1)
+        scene.add(ep.actors.plate(0.3, 0.3), name=f"sign_{k}", parent="town", yaw=angle + np.pi,
+                  position=(distance * np.cos(angle), distance * np.sin(angle), 1),
+                  material=ep.materials["wood"].replace(scattering=0.4))
+    scene.add(ep.actors.sphere(radius=0.25), name="ball", parent="town", position=(3, 0, 4), material="metal", smooth=True)
+    scene["town/ball"].lifetime = (0.9 * INTERVAL, 1.5 * INTERVAL)
+    assert max(differences(scene, frames=3, num_rays=3_000, max_bounces=1, moving="town/ball")) < 1e-9
 
 
 @pytest.mark.parametrize("rays", [{"num_rays": 20_000}, {"target_error_db": 1.0, "max_rays": 40_000}])

@@ -188,7 +188,7 @@ class TargetSearch {
       append(finder_.at_images(target), images_);
     } else {
       if (!direct) leave_to_field_of_view(target);
-      take_strongest(things);
+      take_still_and_moving(things);
     }
   }
 
@@ -296,6 +296,14 @@ class TargetSearch {
       }
     }
     return false;
+  }
+
+  // What moves takes no place, and no part of the weight, from what stands still: both are the same in all frames.
+  void take_still_and_moving(std::vector<Thing>& things) {
+    std::vector<Thing> still, moving;
+    for (Thing& thing : things) (thing.target.moves ? moving : still).push_back(std::move(thing));
+    take_strongest(still);
+    take_strongest(moving);
   }
 
   // Of too many things, those that are in sight and have the strongest echoes get rays of their own.

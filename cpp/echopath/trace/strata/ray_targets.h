@@ -12,16 +12,17 @@ namespace echopath {
 
 // A target is an object (scene_objects.h). Where no stratum holds it, because it surrounds the transmitter as a town does,
 // or where it is a group of things that stand apart, the things that it consists of are targets: the largest of its parts,
-// and of theirs in turn, that a stratum holds. Of more than 256, these are the ones in sight that have the strongest echoes
-// by their size and distance, and of more than 256 images of them those over the fewest mirrors; rays of the field of view
-// meet the others.
+// and of theirs in turn, that a stratum holds. Of more than 256 that stand still these are the ones in sight that have the
+// strongest echoes by their size and distance, and of more than 256 images of them those over the fewest mirrors, and likewise
+// of those that move; rays of the field of view meet the others.
 struct RayTarget {
   Stratum stratum;  // holds the target; without rays
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh
   // Rays find it over these; planes at right angles have one image in both orders.
   std::vector<MirrorSequence> sequences;
-  bool moves = false;   // it, or a part of it, or a mirror that shows it moves, or comes and goes (Scene::still_nodes)
-  double weight = 1.0;  // in the sharing of the rays; the things of one object share the weight of that
+  bool moves = false;  // it, or a part of it, or a mirror that shows it moves, or comes and goes (Scene::still_nodes)
+  // In the sharing of the rays. The things of one object that stand still share the weight of that, those that move another.
+  double weight = 1.0;
 };
 
 // Returns the weight of an image over that many mirrors (0: of the object itself) in the sharing of the rays.

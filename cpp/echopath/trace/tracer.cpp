@@ -87,6 +87,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted
   launch.fitted = fitted;
   launch.by_object = settings.for_edits;
   launch.by_name = settings.for_edits || settings.scatterers == Scatterers::kSurface;
+  launch.is_steady = settings.scatterers == Scatterers::kSurface && !empty_.radar.motion;
   launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);

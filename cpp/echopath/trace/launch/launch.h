@@ -26,9 +26,9 @@ namespace echopath {
 // Each stratum counts the echoes that it owns (ray_owners.h). The field of view owns the echoes of objects that surround the
 // transmitter, of objects and images without a stratum of their own, and the diffuse echoes of mirrors. It gets 15 % of the
 // rays where it owns anything; the others are aimed. By default, moving objects get at least half of the aimed rays, or half
-// of them in all frames (LaunchSettings::by_name). Apart from that, objects and images over one mirror get equal shares, and
-// images over two mirrors a quarter of such a share; the things of one object share what it would get. A stratum that would
-// get fewer than kFewestRays rays is left out. LaunchSettings::by_object has another rule.
+// of them in all frames (LaunchSettings::is_steady). Apart from that, objects and images over one mirror get equal shares,
+// and images over two mirrors a quarter of such a share; the things of one object share what it would get. A stratum that
+// would get fewer than kFewestRays rays is left out. LaunchSettings::by_object has another rule.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 
@@ -91,6 +91,8 @@ struct LaunchSettings {
   // Rays have random numbers by the name of their stratum, shares are rounded to whole rays one by one, and those of a guide
   // count rays: a stratum that stands still and gets the same share in another plan has the same rays there.
   bool by_name = false;
+  // What stands still has the same share in all frames, half of the rays that are aimed: for a radar at rest, by name.
+  bool is_steady = false;
   FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
 };
 

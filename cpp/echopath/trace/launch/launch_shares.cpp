@@ -29,9 +29,9 @@ std::vector<double> named_shares(const std::vector<RayTarget>& targets, const st
   return out;
 }
 
-// Returns the rays of the strata in the order of the plan. What the guide does not name, as where there were too many objects
-// for its own trace to aim at, gets its mean at most: what stands still out of the rays of the field of view, which met it
-// there, and what moves out of those that the guide leaves of `num_rays`.
+// Returns the rays of the strata in the order of the plan. What the guide does not name, as where there were too many
+// objects for its own trace to aim at, gets its mean at most: what stands still out of the rays of the field of view, which
+// met it there, and what moves out of those that the guide leaves of `num_rays`.
 std::vector<double> named_rays(const std::vector<RayTarget>& targets, const std::vector<FocusOfTarget>& foci,
                                const std::string& field, const LaunchGuide& guide, double num_rays) {
   double sum = 0.0, num_still = 0.0, num_moving = 0.0;  // of those that it does not name
@@ -113,7 +113,7 @@ std::vector<double> mean_densities(const std::vector<Stratum>& strata) {
 LaunchShares::LaunchShares(const Scene& scene, const RayTargets& found, const FieldOwns& field,
                            const LaunchSettings& settings)
     : scene_(scene), found_(found), field_(field), settings_(settings),
-      is_steady_(settings.by_name && scene.ever_changes()) {
+      is_steady_(settings.is_steady && scene.ever_changes()) {
   for (const RayTarget& target : found.targets) (target.moves ? moving_ : still_) += target.weight;
 }
 

@@ -13,8 +13,8 @@ namespace echopath {
 // A target is an object (scene_objects.h). Where no stratum holds it, because it surrounds the transmitter as a town does,
 // or where it is a group of things that stand apart, the things that it consists of are targets: the largest of its parts,
 // and of theirs in turn, that a stratum holds. Of more than 256 that stand still these are the ones in sight that have the
-// strongest echoes by their size and distance, and of more than 256 images of them those over the fewest mirrors, and likewise
-// of those that move; rays of the field of view meet the others.
+// strongest echoes by their size and distance, and of more than 256 images of them those over the fewest mirrors, and
+// likewise of those that move; rays of the field of view meet the others.
 struct RayTarget {
   Stratum stratum;  // holds the target; without rays
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh

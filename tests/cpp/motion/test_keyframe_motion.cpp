@@ -175,7 +175,7 @@ TEST(KeyframeMotion, RefusesBadInputByName) {
   expect_error<Invalid>([&] { KeyframeMotion({0, 1, 2}, two, {}); }, {"translations", "got 2"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {Vec3::Zero(), Vec3(nan, 0, 0)}, {}); }, {"translations", "finite"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {identity}); }, {"rotations", "got 1"});
-  expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {identity, too_long}); }, {"rotations", "unit", "got 1.0009"});
+  expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {identity, too_long}); }, {"rotations", "unit", "got 1.001"});
   expect_error<Invalid>([&] { KeyframeMotion({0, 1}, {}, {}); }, {"translations"});
 }
 

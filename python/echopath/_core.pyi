@@ -1428,6 +1428,11 @@ class Radar:
         s, from the first sample to the last
         """
     @property
+    def is_moving(self) -> bool:
+        """
+        Whether it has a motion that moves it: one of 0 m/s does not
+        """
+    @property
     def motion(self) -> Motion | None:
         """
         Motion of the placed radar in world axes, or None

@@ -70,6 +70,13 @@ void Curve::validate(const char* argument, size_t num_columns) const {
   check_numbers(out_tangents, has_tangents ? count : 0, argument, "out_tangents");
 }
 
+bool Curve::is_constant() const {
+  const auto is_zero = [](double tangent) { return tangent == 0.0; };
+  const auto behind_first = values.begin() + static_cast<ptrdiff_t>(num_columns());
+  return std::equal(behind_first, values.end(), values.begin()) && std::ranges::all_of(in_tangents, is_zero) &&
+         std::ranges::all_of(out_tangents, is_zero);
+}
+
 void Playback::validate() const {
   require(std::isfinite(offset) && std::abs(offset) <= kLongestTime, "offset", "must be at most 1e9 s", offset);
   require(period == 0.0 || (period >= kShortestPeriod && period <= kLongestTime), "period", "must be 1e-6 to 1e9 s, or none",

@@ -22,6 +22,7 @@ struct Curve {
   std::vector<double> in_tangents = {}, out_tangents = {};  // [T, C] per s, before and behind each key; kHermite alone
 
   size_t num_columns() const { return times.empty() ? 0 : values.size() / times.size(); }
+  bool is_constant() const;  // all keys are equal, and all tangents are 0
   // Raises invalid_argument naming `argument` unless the times ascend.
   void validate_times(const char* argument) const;
   // Raises the same, also unless the sizes fit `num_columns` and all numbers are finite.

@@ -120,6 +120,12 @@ std::vector<double> CurveMotion::breakpoints(const TimeSpan& during) const {
 
 bool CurveMotion::is_rigid() const { return !data_->curves.scale; }
 
+bool CurveMotion::rests() const {
+  const MotionCurves& curves = data_->curves;
+  const auto is_constant = [](const std::optional<Curve>& curve) { return !curve || curve->is_constant(); };
+  return is_constant(curves.translation) && is_constant(curves.rotation) && is_constant(curves.scale);
+}
+
 double CurveMotion::turn_rate(const TimeSpan& during) const {
   const auto& [curves, playback] = *data_;
   double fastest = 0.0;

@@ -25,6 +25,7 @@ class CurveMotion : public Motion {
   Transform at(double time) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
   bool is_rigid() const override;  // without a curve of scales
+  bool rests() const override;     // all curves are constant
   double turn_rate(const TimeSpan& during) const override;
   const MotionCurves& curves() const;
   const Playback& playback() const;

@@ -21,6 +21,8 @@ class Deformation {
   // Returns the times (s) where the deformation is not smooth, as Motion::breakpoints does.
   virtual std::vector<double> breakpoints(const TimeSpan& during = {}) const = 0;
   virtual TimeSpan span() const = 0;
+  // Tells whether at(t) is the same at all times of the span, as Motion::rests does.
+  virtual bool rests() const { return false; }
   // Returns the bound of Motion::turn_rate for the fastest vertex, rad/s.
   virtual double turn_rate(const TimeSpan& during) const = 0;
 };
@@ -46,5 +48,8 @@ class VertexSequence : public Deformation {
   struct Data;
   std::shared_ptr<const Data> data_;
 };
+
+// Returns whether a deformation moves anything. A null one does not.
+inline bool moves(const std::shared_ptr<const Deformation>& deformation) { return deformation && !deformation->rests(); }
 
 }  // namespace echopath

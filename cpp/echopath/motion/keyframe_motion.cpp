@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -29,6 +30,11 @@ std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num
     if (i > 0 && rotations[i].dot(rotations[i - 1]) < 0.0) rotations[i].coeffs() *= -1.0;
   }
   return rotations;
+}
+
+template <class Value>
+bool all_equal(const std::vector<Value>& samples) {
+  return std::ranges::adjacent_find(samples, std::ranges::not_equal_to()) == samples.end();
 }
 
 // Returns the second derivatives of `samples` at the knots, in the same type.
@@ -113,6 +119,7 @@ Transform KeyframeMotion::at(double time) const {
 }
 
 std::vector<double> KeyframeMotion::breakpoints(const TimeSpan&) const { return data_->knots.breakpoints(); }
+bool KeyframeMotion::rests() const { return all_equal(data_->translations) && all_equal(data_->rotations); }
 TimeSpan KeyframeMotion::span() const { return data_->knots.span(); }
 
 double KeyframeMotion::turn_rate(const TimeSpan& during) const {

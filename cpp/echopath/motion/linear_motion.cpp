@@ -20,6 +20,8 @@ Transform LinearMotion::at(double time) const {
   return transform;
 }
 
+bool LinearMotion::rests() const { return velocity_ == Vec3::Zero() && angular_velocity_ == Vec3::Zero(); }
+
 double LinearMotion::turn_rate(const TimeSpan&) const { return angular_velocity_.norm(); }
 
 }  // namespace echopath

@@ -30,6 +30,8 @@ class Motion {
   }
   // Tells whether at(t) keeps lengths at every time. Others move joints of a Skin, but no nodes.
   virtual bool is_rigid() const { return true; }
+  // Tells whether at(t) is the same at all times of the span, as it is at a speed of 0: what such a motion moves, stands.
+  virtual bool rests() const { return false; }
   virtual TimeSpan span() const { return {}; }
   // Returns a bound (rad/s) of how fast the motion oscillates within `during`: the larger of its angular speed and, where it
   // moves to and fro between samples, pi over the shortest time between two turning points. 0 means that it goes straight
@@ -43,6 +45,7 @@ class LinearMotion : public Motion {
   // velocity [m/s]; angular_velocity [rad/s], right-handed about its own direction. Values must be finite.
   explicit LinearMotion(const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
   Transform at(double time) const override;
+  bool rests() const override;
   double turn_rate(const TimeSpan& during) const override;
   const Vec3& velocity() const { return velocity_; }
   const Vec3& angular_velocity() const { return angular_velocity_; }
@@ -64,6 +67,7 @@ class KeyframeMotion : public Motion {
   ~KeyframeMotion() override;
   Transform at(double time) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
+  bool rests() const override;  // all keys are equal
   TimeSpan span() const override;
   double turn_rate(const TimeSpan& during) const override;
   const std::vector<double>& times() const;
@@ -75,6 +79,9 @@ class KeyframeMotion : public Motion {
   struct Data;
   std::shared_ptr<const Data> data_;
 };
+
+// Returns whether a motion moves anything. A null one does not.
+inline bool moves(const std::shared_ptr<const Motion>& motion) { return motion && !motion->rests(); }
 
 // Returns parent_from_node(t) = Translation(placement) * motion(t) * Linear(placement). By this one rule motions move what
 // is placed: it turns about its own origin, in the axes of its parent. A null `motion` means at rest.

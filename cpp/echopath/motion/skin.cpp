@@ -168,6 +168,11 @@ TimeSpan Skin::span() const {
   return common;
 }
 
+bool Skin::rests() const {
+  const auto stays = [](const Joint& joint) { return !moves(joint.motion); };
+  return std::ranges::all_of(data_->joints, stays) && !moves(data_->shape);
+}
+
 double Skin::turn_rate(const TimeSpan& during) const {
   std::vector<double> rates;  // by joint
   double fastest = 0.0;

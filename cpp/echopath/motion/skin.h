@@ -45,6 +45,7 @@ class Skin : public Deformation {
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;  // of all joints and of the shape
   TimeSpan span() const override;                           // common to all of them; begin > end where there is none
+  bool rests() const override;                              // all joints and the shape do
   double turn_rate(const TimeSpan& during) const override;  // of the fastest joint, those above it and the shape added
 
   const std::vector<Vec3>& vertices() const;

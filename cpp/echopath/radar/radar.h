@@ -109,6 +109,7 @@ struct Radar {
   // Raises invalid_argument where the chirps cannot carry the code of the transmitters: of radars as their users give them.
   // Those that a step of the work cuts to some antennas or chirps need not fit: echoes are those of each transmitter alone.
   void validate_code_fits() const;
+  bool is_moving() const { return moves(motion); }
   bool takes_turns() const { return multiplexing == Multiplexing::kTdm; }
   // Returns how many slots make one of the num_chirps: one for each transmitter, or the length of the BPM code, or 1.
   int num_slots() const;

@@ -184,9 +184,9 @@ std::optional<int> Scene::find(std::string_view full_name) const {
 }
 
 bool Scene::is_moving(uint32_t mesh_id) const {
-  if (node_of(mesh_id).deformation) return true;
+  if (moves(node_of(mesh_id).deformation)) return true;
   for (int i = meshes_[mesh_id].node; i >= 0; i = at(i).parent) {
-    if (at(i).motion) return true;
+    if (moves(at(i).motion)) return true;
   }
   return false;
 }
@@ -220,7 +220,7 @@ bool Scene::is_anything_moving() const {
 }
 
 bool Scene::may_stretch(uint32_t mesh_id) const {
-  if (node_of(mesh_id).deformation) return true;
+  if (moves(node_of(mesh_id).deformation)) return true;
   if (!is_moving(mesh_id)) return false;
   for (int i = meshes_[mesh_id].node; i >= 0; i = at(i).parent) {
     if (scales_unevenly(at(i).placement.linear())) return true;

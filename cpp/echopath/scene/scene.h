@@ -74,7 +74,7 @@ class Scene {
 
   // Returns parent_from_node at `time` (s). The motion of what does not take part is not asked for anything.
   Transform local_transform(int index, double time) const;
-  // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
+  // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms, other than at rest.
   bool is_moving(uint32_t mesh_id) const;
   bool is_anything_moving() const;
   // Returns whether a mesh is the same at all times: it does not move, and is always there.

@@ -19,7 +19,7 @@ constexpr double kQuerySeconds = 5e-7, kRenewalSeconds = 1e-6;
 // Counts the paths that touch what moves.
 Moving count_moving(const Paths& paths, const Radar& radar) {
   std::vector<uint8_t> moves(paths.scene->meshes().size());
-  for (uint32_t mesh = 0; mesh < moves.size(); ++mesh) moves[mesh] = radar.motion || paths.scene->is_moving(mesh);
+  for (uint32_t mesh = 0; mesh < moves.size(); ++mesh) moves[mesh] = radar.is_moving() || paths.scene->is_moving(mesh);
   Moving count;
   for (size_t i = 0; i < paths.offsets.size(); ++i) {
     const Hit* first = paths.hits->data() + paths.offsets[i];

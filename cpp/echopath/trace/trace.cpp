@@ -17,6 +17,10 @@ void TraceSettings::validate() const {
   guide.validate();
 }
 
+bool has_steady_rays(const Scene& scene, const Radar& radar, Scatterers scatterers) {
+  return scatterers == Scatterers::kSurface && !radar.is_moving() && scene.ever_changes();
+}
+
 Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept,
             FittedStrata* fitted) {
   return Tracer(scene, radar, settings, job, kept, fitted).run(job);

@@ -26,6 +26,10 @@ struct TraceSettings : RecordSettings {
   bool operator==(const TraceSettings&) const = delete;  // that of the record's alone would stand for it
 };
 
+// Returns whether what stands still gets the same rays in all frames (LaunchSettings::is_steady): where scatterers persist,
+// before a radar at rest, in a scene that ever changes.
+bool has_steady_rays(const Scene& scene, const Radar& radar, Scatterers scatterers);
+
 // Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.
 // Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings,
 // a radar without antennas, a smooth mirror that is not flat, or a motion that does not cover the frame; raises

@@ -54,7 +54,7 @@ Paths empty_record(const SceneSnapshot& scene, const Radar& radar, const TraceSe
 
 EmbreeScene::Upkeep upkeep_of(const Radar& radar, const TraceSettings& settings) {
   if (settings.for_edits) return EmbreeScene::Upkeep::kEdits;
-  return EmbreeScene::upkeep_near(radar.motion != nullptr);
+  return EmbreeScene::upkeep_near(radar.is_moving());
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted
   launch.fitted = fitted;
   launch.by_object = settings.for_edits;
   launch.by_name = settings.for_edits || settings.scatterers == Scatterers::kSurface;
-  launch.is_steady = settings.scatterers == Scatterers::kSurface && !empty_.radar.motion;
+  launch.is_steady = has_steady_rays(*empty_.scene, empty_.radar, settings.scatterers);
   launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);

@@ -128,7 +128,7 @@ std::string text_of(const Radar& r) {
                   " receivers, at ", place_text(r.position, r.yaw, r.pitch), ", ", r.transmit_power, " W, noise figure ",
                   r.noise_figure_db, " dB",
                   (r.takes_turns() ? "" : std::string(", ") + kMultiplexing.name_of(r.multiplexing)),
-                  (r.receiver ? ", receiver with faults" : ""), (r.motion ? ", moving" : ""), ")");
+                  (r.receiver ? ", receiver with faults" : ""), (r.is_moving() ? ", moving" : ""), ")");
 }
 
 }  // namespace
@@ -172,6 +172,7 @@ a turn, which looks like degrees.)");
       .def_readonly("yaw", &Radar::yaw, "rad, left positive, without `motion`")
       .def_readonly("pitch", &Radar::pitch, "rad, up positive, without `motion`")
       .def_property_readonly("motion", &motion_object, "Motion of the placed radar in world axes, or None")
+      .def_property_readonly("is_moving", &Radar::is_moving, "Whether it has a motion that moves it: one of 0 m/s does not")
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
       .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB, single sideband")
       .def_property_readonly("multiplexing", name_of(kMultiplexing, &Radar::multiplexing),

@@ -228,7 +228,7 @@ def _place(radar, time: float) -> str:
     yaw, pitch = np.degrees((np.arctan2(pose[1, 0], pose[0, 0]), np.arcsin(np.clip(pose[2, 0], -1.0, 1.0))))
     x, y, z = np.round(pose[:3, 3], 6) + 0.0
     place = f"({x:.6g}, {y:.6g}, {z:.6g}) m, yaw {_degrees(yaw)} deg, pitch {_degrees(pitch)} deg"
-    if radar.motion is None:
+    if not radar.is_moving:
         return place
     half = 0.25 * radar.frame_duration  # within the frame, where its motion is known
     before, after = (radar.world_from_radar(time + step)[:3, 3] for step in (-half, half))

@@ -122,7 +122,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> lis
     for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
         looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition],
-                 "radar_moves": frame.radar.motion is not None}
+                 "radar_moves": frame.radar.is_moving}
         words = "taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
         words += "; mean power of all ranges together and its 95 % interval"
         if not all(power.resolved for power in frame.mean_part_powers[partition].values()):

@@ -8,12 +8,12 @@ SURFACE_SEARCHES = 32  # stretches in which new surface is looked for (sim/strea
 
 
 def _moves(case: Case) -> bool:
-    return len(case.moving) > 0 or case.radar.motion is not None
+    return len(case.moving) > 0 or case.radar.is_moving
 
 
 @rule("motion over chirps", "Node.motion", "Radar.motion")
 def _over_chirps(case: Case):
-    reasons = ["the radar moves"] * (case.radar.motion is not None) + [case.named(case.moving)] * (len(case.moving) > 0)
+    reasons = ["the radar moves"] * case.radar.is_moving + [case.named(case.moving)] * (len(case.moving) > 0)
     return _moves(case), "; ".join(reasons) or "nothing moves"
 
 
@@ -48,7 +48,7 @@ def _deforming(case: Case):
 
 @rule("paths at rest evaluated once")
 def _bypass(case: Case):
-    if case.radar.motion is not None:
+    if case.radar.is_moving:
         return False, "the radar moves"
     still = case.num_meshes - len(case.moving)
     return still > 0, f"{still} of {counted(case.num_meshes, 'mesh')} and the radar stand still" if still else "all meshes move"

@@ -139,7 +139,7 @@ def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> 
     hidden: names of objects; paths, radar, objects, progress: as in `visibility_in_trace`
     """
     scene = paths.scene
-    moves = radar.motion is not None or any(scene.is_moving(mesh.id) for mesh in scene.meshes)
+    moves = radar.is_moving or any(scene.is_moving(mesh.id) for mesh in scene.meshes)
     if not (moves and hidden):
         return set()
     appearing = set()

@@ -47,7 +47,7 @@ def radar_html(radar) -> str:
         "velocity": f"up to ±{waveform.max_velocity(radar.num_slots):.4g} m/s",
         "transmit power": f"{float(in_dbm(radar.transmit_power)):.4g} dBm a transmitter",
         "noise figure": f"{radar.noise_figure_db:.4g} dB",
-        "motion": "at rest" if radar.motion is None else repr(radar.motion)})
+        "motion": repr(radar.motion) if radar.is_moving else "at rest"})
 
 
 def paths_html(paths) -> str:

@@ -36,7 +36,7 @@ def closing_speeds(scene, radar, time: float) -> Speeds:
     time: s, of the scene; the distance is that from the middle of the antennas. Differences of second order meet the
         speed of a wheel of 0.3 m and 50 turns/s to 0.01 m/s.
     """
-    moving = [mesh for mesh in scene.meshes if radar.motion is not None or scene.is_moving(mesh.id)]
+    moving = [mesh for mesh in scene.meshes if radar.is_moving or scene.is_moving(mesh.id)]
     return _speeds_of(moving, scene, radar, time)
 
 

@@ -48,7 +48,7 @@ def drive_of(frames: Frames, progress: Progress = None) -> Drive:
         drive.times[place], drive.level[place] = time, level
     if drive is None:
         raise ValueError("frames: must be one at least, got none")
-    return drive if frames.radar.motion is None else drive._replace(driving=_driving(frames, drive.times))
+    return drive if not frames.radar.is_moving else drive._replace(driving=_driving(frames, drive.times))
 
 
 def _driving(frames: Frames, times) -> Driving:

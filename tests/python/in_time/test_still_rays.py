@@ -97,7 +97,7 @@ def test_they_are_in_a_town_of_more_things_than_get_rays_of_their_own():
     scene.add(name="town")
     for k, angle in enumerate(np.linspace(0, 2 * np.pi, 270, endpoint=False)):
         distance = 8 + 20 * (k * 0.618 % 1)
-        scene.add(ep.actors.plate(0.3, 0.3), name=f"sign_{k}", parent="town", yaw=angle + np.pi,
+        scene.add(ep.actors.plate(0.3, 0.3), name=f"sign_{k}", parent="town", yaw=angle - np.pi,
                   position=(distance * np.cos(angle), distance * np.sin(angle), 1),
                   material=ep.materials["wood"].replace(scattering=0.4))
     scene.add(ep.actors.sphere(radius=0.25), name="ball", parent="town", position=(3, 0, 4), material="metal", smooth=True)
@@ -177,3 +177,15 @@ def test_the_error_of_a_frame_is_that_of_echoes_above_its_floor():
     together, apart = (ep.trace(scene, RADAR, target_error_db=0.3, max_rays=40_000, scatterers=scatterers).frame
                        for scatterers in ("rays", "surface"))
     assert 0.0 < apart.error_db < 1.05 * together.error_db
+
+
+def test_what_has_a_motion_at_rest_stands_still():
+    """Cars that are parked have ways in traffic, too, and the speed of a radar in a loop may be 0."""
+    parked, places = room(), ep.KeyframeMotion([-1.0, 0.5, 2.0], np.zeros((3, 3)))
+    for name, motion in {"box_0": ep.LinearMotion(), "box_1": places, "globe": ep.LinearMotion()}.items():
+        parked[name].motion = motion
+    at_rest = RADAR.replace(speed=0.0)
+    assert not at_rest.is_moving and RADAR.replace(speed=0.1).is_moving
+    alone = ep.Sequence(room(), RADAR, frames=2, interval=INTERVAL, num_rays=2_000, noise_seed=None)[1].cube
+    beside = ep.Sequence(parked, at_rest, frames=2, interval=INTERVAL, num_rays=2_000, noise_seed=None)[1].cube
+    np.testing.assert_array_equal(beside, alone)

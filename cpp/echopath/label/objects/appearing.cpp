@@ -146,7 +146,7 @@ std::vector<uint32_t> may_appear(const Scene& scene, const Radar& radar, const S
   if (objects.empty()) return {};
   const PosedScene pose(scene, settings.time);
   const Vec3 near = mean_position(radar.transmitters, radar.world_from_radar(settings.time));
-  const GeometryLoan geometry(kept, scene, pose, near, EmbreeScene::upkeep_near(radar.motion != nullptr), job);
+  const GeometryLoan geometry(kept, scene, pose, near, EmbreeScene::upkeep_near(radar.is_moving()), job);
   const Watch watch(scene, radar, surfaces, settings, pose, *geometry);
   std::vector<uint8_t> appears(objects.size());
   parallel_for(std::ssize(objects), [&](int64_t i) { appears[i] = watch.may_appear(objects[i]); }, job);

@@ -190,7 +190,7 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   const Transform world_from_radar = radar.world_from_radar(settings.time);
   const PosedScene pose(scene, settings.time);
   const Vec3 near = mean_position(radar.transmitters, world_from_radar);
-  const GeometryLoan geometry(kept, scene, pose, near, EmbreeScene::upkeep_near(radar.motion != nullptr), job);
+  const GeometryLoan geometry(kept, scene, pose, near, EmbreeScene::upkeep_near(radar.is_moving()), job);
   const std::array<End, 2> ends = {end_of(radar.transmitters, world_from_radar, (*geometry).origin()),
                                    end_of(radar.receivers, world_from_radar, (*geometry).origin())};
   const NearestPoints nearest(scene, pose, *geometry);

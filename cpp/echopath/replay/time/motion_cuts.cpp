@@ -64,23 +64,23 @@ class CutsWithin {
 
 MotionCuts::MotionCuts(const Scene& scene, const Radar& radar, const TimeSpan& frame) {
   CutsWithin of_radar(frame);
-  if (radar.motion) of_radar.add(radar.motion.get());
+  if (radar.is_moving()) of_radar.add(radar.motion.get());
   index_of(of_radar.take());
-  const auto joined_with = [&](uint32_t above, const auto* own) {
-    if (!own) return above;
+  const auto joined_with = [&](uint32_t above, const auto& own) {
+    if (!moves(own)) return above;
     CutsWithin cuts(frame);
-    cuts.add(own);
+    cuts.add(own.get());
     return join(above, index_of(cuts.take()));
   };
   std::vector<uint32_t> of_node;  // of its motion and those above it
   for (int index = 0; index < std::ssize(scene.nodes()); ++index) {
     const Node& node = scene.nodes()[index];
     const uint32_t above = node.parent < 0 ? kOfRadar : of_node[node.parent];
-    of_node.push_back(scene.takes_part(index) ? joined_with(above, node.motion.get()) : kOfRadar);
+    of_node.push_back(scene.takes_part(index) ? joined_with(above, node.motion) : kOfRadar);
   }
   for (const SceneMesh& mesh : scene.meshes()) {
     const auto node = static_cast<size_t>(mesh.node);
-    of_mesh_.push_back(joined_with(of_node[node], scene.nodes()[node].deformation.get()));
+    of_mesh_.push_back(joined_with(of_node[node], scene.nodes()[node].deformation));
   }
 }
 

@@ -50,11 +50,11 @@ struct PathGrids::Range {
 PathGrids::PathGrids(const Paths& paths, const Radar& radar, TimeGrids& grids, PosedGrids& posed, double wavenumber,
                      double phase_tolerance)
     : paths_(paths), grids_(grids), wavenumber_(wavenumber), phase_tolerance_(phase_tolerance),
-      num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.motion != nullptr) {
+      num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.is_moving()) {
   const TimeSpan frame{grids.start_time(), grids.start_time() + radar.frame_duration()};
   const double of_radar = turn_rate(radar, frame);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-    const bool moves = paths.scene->is_moving(id) || radar.motion;
+    const bool moves = paths.scene->is_moving(id) || radar_moves_;
     of_mesh_.push_back(moves ? first_of_mesh(id, turn_rate(*paths.scene, id, frame) + of_radar, posed) : GridIndex::still());
   }
   are_cuts_of_radar_ = std::ranges::all_of(of_mesh_, [](GridIndex grid) { return grid.cuts() == MotionCuts::kOfRadar; });

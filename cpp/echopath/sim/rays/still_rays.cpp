@@ -25,8 +25,7 @@ LaunchGuide StillRays::taken_from(LaunchGuide whole) const {
 }
 
 std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
-  if (settings.scatterers != Scatterers::kSurface || !settings.guide.shares.empty() || radar.motion) return std::nullopt;
-  if (!scene.ever_changes()) return std::nullopt;
+  if (!settings.guide.shares.empty() || !has_steady_rays(scene, radar, settings.scatterers)) return std::nullopt;
   std::vector<bool> stands;
   for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) stands.push_back(scene.stands_still(mesh));
   if (std::ranges::none_of(stands, std::identity())) return std::nullopt;
@@ -37,7 +36,7 @@ std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, cons
 
 LaunchGuide guide_like(const Paths& paths) {
   LaunchGuide guide = guide_like(paths.frame.strata);
-  if (paths.frame.scatterers != Scatterers::kSurface || paths.radar.motion || !paths.scene->ever_changes()) return guide;
+  if (!has_steady_rays(*paths.scene, paths.radar, paths.frame.scatterers)) return guide;
   const std::vector<bool> still = paths.scene->still_nodes();
   for (const Stratum& stratum : paths.frame.strata) {
     if (stratum.object < 0 || still[stratum.object]) guide.still_rays += static_cast<double>(stratum.num_rays);

@@ -30,8 +30,8 @@ struct StillRays {
   LaunchGuide taken_from(LaunchGuide whole) const;  // leaves the rays of what moves alone
 };
 
-// Returns the scene without what moves or has a lifetime; nothing where the rays of a trace need not persist: scatterers are
-// those of rays, the settings have a guide, the radar moves, or all of the scene does or none.
+// Returns the scene without what moves or has a lifetime; nothing where a trace has no steady rays (has_steady_rays), the
+// settings have a guide, or all of the scene changes.
 std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings);
 
 // Returns the guide that repeats the launch of a record, with the points of rough surfaces that it had.

@@ -71,7 +71,7 @@ StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std
   require(retrace != Retrace::kAlways || is_whole(paths), "retrace",
           "'always' takes all paths of a trace, which decompose takes apart",
           "a selection of " + std::to_string(paths.num_paths()));
-  const bool moves = radar.motion || paths.scene->is_anything_moving();
+  const bool moves = radar.is_moving() || paths.scene->is_anything_moving();
   if (retrace == Retrace::kInvalid && is_whole(paths) && moves) find_new_surface(radar, stretches);
 }
 

@@ -11,7 +11,7 @@ namespace echopath {
 
 bool EmbreeMeshes::Source::is_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id) const {
   const Node& node = scene.node_of(mesh_id);
-  return mesh == node.mesh && deformation == node.deformation && (!deformation || time == pose.time()) &&
+  return mesh == node.mesh && deformation == node.deformation && (!moves(deformation) || time == pose.time()) &&
          translation == pose.world_translation(mesh_id) && linear == pose.linear(mesh_id) && smooth == node.smooth &&
          is_sheet == node.material->is_sheet() && object == scene.meshes()[mesh_id].object &&
          is_moving == scene.is_moving(mesh_id);

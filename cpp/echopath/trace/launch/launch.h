@@ -91,7 +91,7 @@ struct LaunchSettings {
   // Rays have random numbers by the name of their stratum, shares are rounded to whole rays one by one, and those of a guide
   // count rays: a stratum that stands still and gets the same share in another plan has the same rays there.
   bool by_name = false;
-  // What stands still has the same share in all frames, half of the rays that are aimed: for a radar at rest, by name.
+  // What stands still has the same share in all frames, half of the rays that are aimed (has_steady_rays): by name.
   bool is_steady = false;
   FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
 };

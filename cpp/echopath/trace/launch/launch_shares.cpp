@@ -112,14 +112,13 @@ std::vector<double> mean_densities(const std::vector<Stratum>& strata) {
 
 LaunchShares::LaunchShares(const Scene& scene, const RayTargets& found, const FieldOwns& field,
                            const LaunchSettings& settings)
-    : scene_(scene), found_(found), field_(field), settings_(settings),
-      is_steady_(settings.is_steady && scene.ever_changes()) {
+    : scene_(scene), found_(found), field_(field), settings_(settings) {
   for (const RayTarget& target : found.targets) (target.moves ? moving_ : still_) += target.weight;
 }
 
 // Returns the share of the field of view. A steady one is the same while nothing is there that rays are aimed at.
 double LaunchShares::field_share() const {
-  const bool aims_at_any = is_steady_ ? found_.num_objects > 0 : !found_.targets.empty();
+  const bool aims_at_any = settings_.is_steady ? found_.num_objects > 0 : !found_.targets.empty();
   if (!aims_at_any) return 1.0;
   return field_.any ? kFieldShare : 0.0;
 }
@@ -127,7 +126,7 @@ double LaunchShares::field_share() const {
 // Returns the share of what moves, of the rays that are aimed.
 double LaunchShares::moving_share() const {
   if (still_ == 0.0) return 1.0;
-  if (is_steady_) return kMovingShare;
+  if (settings_.is_steady) return kMovingShare;
   return moving_ == 0.0 ? 0.0 : std::max(moving_ / (moving_ + still_), kMovingShare);
 }
 
@@ -135,7 +134,7 @@ double LaunchShares::moving_share() const {
 // it is there, and what moves alone gives up that of a field of view which owns nothing that stands still.
 std::vector<double> LaunchShares::of_rule() const {
   const double aimed = 1.0 - field_share(), of_moving = moving_share();
-  const bool is_field_of_moving = is_steady_ && !field_.still;
+  const bool is_field_of_moving = settings_.is_steady && !field_.still;
   const double to_still = is_field_of_moving ? 1.0 : aimed;  // of which what moves leaves a part
   const double to_moving = is_field_of_moving ? (aimed - 1.0 + of_moving) / of_moving : aimed;
   std::vector<double> shares;
@@ -158,7 +157,7 @@ std::vector<int64_t> LaunchShares::rays(const std::vector<FocusOfTarget>& foci, 
   std::vector<double> shares = of_rule();
   std::ranges::for_each(shares, [&](double& share) { share *= all; });
   std::vector<int64_t> rays = rounded_one_by_one(shares);
-  add_remainder(found_.targets, !is_steady_, settings_.num_rays, rays);
+  add_remainder(found_.targets, !settings_.is_steady, settings_.num_rays, rays);
   return rays;
 }
 

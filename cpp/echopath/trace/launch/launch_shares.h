@@ -42,7 +42,6 @@ class LaunchShares {
   const RayTargets& found_;
   FieldOwns field_;
   const LaunchSettings& settings_;
-  bool is_steady_;                     // what stands still has the same share in all frames
   double moving_ = 0.0, still_ = 0.0;  // weights of the targets
 };
 

@@ -54,7 +54,7 @@ std::vector<double> golden_times(const TimeSpan& frame, int count) {
 
 CheckTimes check_times(const Scene& scene, const Radar& radar, double start) {
   const TimeSpan frame = frame_of(radar, start);
-  const bool moves = radar.motion || scene.is_anything_moving();
+  const bool moves = radar.is_moving() || scene.is_anything_moving();
   if (frame.begin == frame.end || !moves) return given_check_times(scene, radar, start, {frame.begin});
   CheckTimes found;
   found.turn = turns_of(scene, radar, frame);

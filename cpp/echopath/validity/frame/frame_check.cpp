@@ -72,7 +72,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
       mesh_moves_(moving_meshes(*paths.scene)) {
   sheets_move_ = std::ranges::any_of(paths.passes, [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
   is_geometry_still_ = std::ranges::count(mesh_moves_, 1) == 0;
-  is_still_ = is_geometry_still_ && !radar.motion;
+  is_still_ = is_geometry_still_ && !radar.is_moving();
   const PosedScene pose(*paths.scene, paths.frame.trace_time);
   origin_ = EmbreeScene::origin_near(*paths.scene, pose, paths.frame.transmitter);
   traced_ = std::make_shared<EmbreeScene>(*paths.scene, pose, origin_, job);
@@ -156,7 +156,7 @@ void FrameCheck::pose(size_t first, size_t count, Job* job) {
 
 bool FrameCheck::is_still(const LocalPath& path) const {
   const auto moves = [&](const LocalHit& hit) { return mesh_moves_[hit.mesh_id] != 0; };
-  return is_still_ || (!first_radar_.motion && !sheets_move_ && std::none_of(path.hits, path.hits + path.count, moves));
+  return is_still_ || (!first_radar_.is_moving() && !sheets_move_ && std::none_of(path.hits, path.hits + path.count, moves));
 }
 
 std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const {

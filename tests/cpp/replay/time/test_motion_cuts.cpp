@@ -70,7 +70,7 @@ TEST(MotionCuts, AreTheTimesOfKeyframesWithinTheFrame) {
 
 // The radar's are in all sets, and those of a mesh do not hang on other meshes.
 TEST(MotionCuts, OfMeshesAreThoseOfTheirMotionsAndOfTheRadar) {
-  const std::vector<Vec3> places(3, Vec3::Zero());
+  const std::vector<Vec3> places = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitX()};
   const auto stops_at = [&](double time) {
     return std::make_shared<KeyframeMotion>(std::vector<double>{0, time, 1}, places, std::vector<Quaternion>(),
                                             Interpolation::kLinear);
@@ -93,8 +93,9 @@ TEST(MotionCuts, OfMeshesAreThoseOfTheirMotionsAndOfTheRadar) {
 TEST(MotionCuts, JoinedOnesAreUnionsWhateverTheOrder) {
   Scene scene = swaying_limb();
   const std::vector<double> times = {0, 0.0123, 0.02, 1};
+  const std::vector<Vec3> flaps = {Vec3::Zero(), Vec3::UnitZ(), Vec3::Zero(), Vec3::UnitZ()};
   add_body(scene, "bird", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 1), {12, -2, 0},
-           std::make_shared<KeyframeMotion>(times, std::vector<Vec3>(4, Vec3::Zero()), std::vector<Quaternion>()));
+           std::make_shared<KeyframeMotion>(times, flaps, std::vector<Quaternion>()));
   MotionCuts cuts(scene, long_frame(), {0.01, 0.03});
   const uint32_t both = cuts.join(cuts.of_mesh(0), cuts.of_mesh(1));
   EXPECT_EQ(cuts[both].knots, (std::vector<double>{0.0123, 2 * kKnot, 0.02, 3 * kKnot}));

@@ -196,18 +196,14 @@ bool Scene::stands_still(uint32_t mesh_id) const {
   return !is_moving(mesh_id) && covers(lifetime(meshes_[mesh_id].node), always.begin, always.end);
 }
 
-std::vector<bool> Scene::still_nodes() const {
-  std::vector<bool> still(nodes_.size(), true);
-  const auto mark = [&](int node) {
-    for (; node >= 0; node = at(node).parent) still[node] = false;
-  };
-  for (uint32_t id = 0; id < meshes_.size(); ++id) {
-    if (!stands_still(id)) mark(meshes_[id].node);
-  }
-  const TimeSpan always;
-  for (int node = 0; node < static_cast<int>(nodes_.size()); ++node) {
-    const TimeSpan there = lifetime(node);
-    if (at(node).mesh && !takes_part(node) && !covers(there, always.begin, always.end)) mark(node);
+std::vector<bool> Scene::still_meshes() const {
+  std::vector<bool> changes(nodes_.size(), false);  // the own mesh of a node
+  for (uint32_t id = 0; id < meshes_.size(); ++id) changes[meshes_[id].node] = !stands_still(id);
+  std::vector<bool> still;
+  for (const SceneMesh& mesh : meshes_) {
+    int node = mesh.node;
+    while (node >= 0 && !changes[node]) node = at(node).parent;
+    still.push_back(node < 0);
   }
   return still;
 }

@@ -79,9 +79,8 @@ class Scene {
   bool is_anything_moving() const;
   // Returns whether a mesh is the same at all times: it does not move, and is always there.
   bool stands_still(uint32_t mesh_id) const;
-  // Marks the nodes at which and below which all stands still [node]. What comes and goes below a node counts while it is
-  // away, too, so that a scene has the same marks in all frames.
-  std::vector<bool> still_nodes() const;
+  // Marks the meshes that stand still [mesh ID], but for those below a node whose own mesh does not.
+  std::vector<bool> still_meshes() const;
   bool ever_changes() const { return is_anything_moving() || has_lifetimes(); }
   // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
   // scales unevenly.

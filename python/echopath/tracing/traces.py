@@ -71,7 +71,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         mean power of a body to 0.5 %, as many rays to 0.1 %. What rays meet straight from the transmitter persists; second
         and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays. With
         "surface", rays persist too: before a radar at rest half of num_rays go to what stands still, the same in all traces.
-        What has a motion, be it at 0 m/s, and an object any part of which has one or comes and goes, does not stand still
+        What stands still of an object that moves, as the pole of a fan, has rays of its own, too
     edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
         meet at 30 degrees or more, and at rims (`E` in path expressions), directly from the radar, over flagged mirrors and
         over unflagged planes that rays found, and on from edge to edge over flat faces of up to 40 wavelengths (`E E`).

@@ -91,6 +91,22 @@ def test_they_are_where_a_mirror_comes_behind_them(num_rays):
     assert max(differences(scene, frames=3, num_rays=num_rays)) < SINGLE
 
 
+@FEW_OR_PLANNED
+def test_they_are_in_an_object_of_which_parts_move(num_rays):
+    """A gate whose bars lie on its posts and go up, with a wall that mirrors; aimed at as a whole it leaves -33 dB."""
+    scene = ep.Scene()
+    scene.add(name="gate", position=(5, 0, 0))
+    for name, aside in (("left_post", 0.6), ("right_post", -0.6)):
+        scene.add(ep.actors.box(size=(0.5, 0.5, 1.3)), name=name, parent="gate", position=(0, aside, 0),
+                  material=ep.materials["wood"].replace(scattering=0.4))
+    scene.add(ep.actors.wall(3, 1.2), name="wall", parent="gate", position=(2, 0.5, 0), yaw=-np.pi / 2,
+              material=ep.materials["concrete"].replace(scattering=0.2, mirror=True))
+    for name, height in (("lower", 1.35), ("upper", 1.55)):
+        scene.add(ep.actors.box(size=(0.1, 1.5, 0.1)), name=f"{name}_bar", parent="gate", position=(0, 0, height),
+                  material="metal", motion=ep.LinearMotion(velocity=(0, 0, 1.0)))
+    assert max(differences(scene, "gate/*_bar", frames=3, num_rays=num_rays)) < SINGLE
+
+
 def test_they_are_in_a_town_of_more_things_than_get_rays_of_their_own():
     """What comes is nearer than all of them, and would take the place of one."""
     scene = ep.Scene()

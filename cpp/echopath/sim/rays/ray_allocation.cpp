@@ -247,7 +247,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   };
   const auto still = still_rays(*scene, radar, settings, kept_still, [&](const SceneSnapshot& standing) {
     const Paths pilot = pilot_of(standing, nullptr, nullptr);
-    return StillRays(guide_by(pilot, settings.num_rays / 2, {}), pilot.frame.strata, *scene);
+    return StillRays(guide_by(pilot, settings.num_rays / 2, {}));
   });
   TraceSettings launch = settings;
   launch.guide = guide_by(pilot_of(scene, kept, &fitted), settings.num_rays, *still);

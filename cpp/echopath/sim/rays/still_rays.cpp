@@ -5,13 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "echopath/trace/strata/scene_objects.h"
+
 namespace echopath {
 
-StillRays::StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, const Scene& scene) : guide(std::move(of_all)) {
-  const std::vector<bool> still = scene.still_nodes();
-  for (const Stratum& stratum : strata) {
-    if (stratum.object >= 0 && !still[stratum.object]) guide.shares.erase(stratum.name);
-  }
+StillRays::StillRays(LaunchGuide of_standing_scene) : guide(std::move(of_standing_scene)) {
   std::erase_if(guide.shares, [](const auto& share) { return share.second == 0.0; });
   std::erase_if(guide.foci, [&](const LaunchFocus& focus) { return !holds(focus.of); });
   for (const auto& [name, share] : guide.shares) guide.still_rays += share;
@@ -26,8 +24,7 @@ LaunchGuide StillRays::taken_from(LaunchGuide whole) const {
 
 std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
   if (!settings.guide.shares.empty() || !has_steady_rays(scene, radar, settings.scatterers)) return std::nullopt;
-  std::vector<bool> stands;
-  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) stands.push_back(scene.stands_still(mesh));
+  const std::vector<bool> stands = scene.still_meshes();
   if (std::ranges::none_of(stands, std::identity())) return std::nullopt;
   Scene still(scene);
   still.keep_meshes(stands);
@@ -37,7 +34,7 @@ std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, cons
 LaunchGuide guide_like(const Paths& paths) {
   LaunchGuide guide = guide_like(paths.frame.strata);
   if (!has_steady_rays(*paths.scene, paths.radar, paths.frame.scatterers)) return guide;
-  const std::vector<bool> still = paths.scene->still_nodes();
+  const std::vector<bool> still = nodes_with_still_meshes(*paths.scene);
   for (const Stratum& stratum : paths.frame.strata) {
     if (stratum.object < 0 || still[stratum.object]) guide.still_rays += static_cast<double>(stratum.num_rays);
   }

@@ -21,9 +21,7 @@ struct StillRays {
   LaunchGuide guide;  // of the strata of what stands still and the field of view; its shares count rays; empty: none
 
   StillRays() = default;
-  // Takes what stands still in `scene` from the guide of its standing_scene, whose trace had these strata. A part that
-  // stands still of an object that moves has no rays of its own.
-  StillRays(LaunchGuide of_all, const std::vector<Stratum>& strata, const Scene& scene);
+  explicit StillRays(LaunchGuide of_standing_scene);
   bool any() const { return !guide.shares.empty(); }
   bool holds(const std::string& stratum) const { return guide.shares.contains(stratum); }
   double num_rays() const { return guide.still_rays; }

@@ -82,7 +82,7 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
     of_half.max_rays = std::max<int64_t>(target.max_rays / 2, 1);
     few.num_rays = std::min(settings.num_rays, of_half.max_rays);
     const Paths paths = trace_to_error_beside({}, standing, radar, few, of_half, job, nullptr);
-    return StillRays(guide_like(paths.frame.strata), paths.frame.strata, *scene);
+    return StillRays(guide_like(paths.frame.strata));
   });
   return trace_to_error_beside(*still, scene, radar, settings, target, job, kept);
 }

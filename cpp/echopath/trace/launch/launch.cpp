@@ -78,6 +78,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
                                settings.frusta,
                                0.5 * field.solid_angle(),
                                settings.sampler == Sampler::kLattice,
+                               settings.is_steady,
                                settings.num_rays / (LaunchPlan::kFewestRays - 1),
                                settings.fitted};
   RayTargets found = find_ray_targets(scene, geometry, mirrors, aims);

@@ -25,8 +25,8 @@ constexpr double kSameStratum = 1e-6;
 
 class Target {
  public:
-  Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index, bool stands_still)
-      : object(index), node(of.node), name(scene.nodes()[of.node].name), moves(!stands_still), geometry_(&geometry),
+  Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index, bool of_what_moves)
+      : object(index), node(of.node), name(scene.nodes()[of.node].name), moves(of_what_moves), geometry_(&geometry),
         mesh_ids_(of.mesh_ids) {
     sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, mesh_ids_);
     BitSum sum;
@@ -173,23 +173,14 @@ class TargetSearch {
   TargetSearch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                const RayTargetSettings& settings, RayTargets& out)
       : scene_(scene), geometry_(geometry), settings_(settings), finder_(scene, mirrors, settings),
-        still_nodes_(scene.still_nodes()), out_(out) {}
+        is_still_(scene.still_meshes()), holds_still_(nodes_with_still_meshes(scene)), out_(out) {}
 
-  // Aims at an object and its images, or else at the things that it consists of.
   void take(const SceneObject& object) {
-    Target target = new_target(object);
-    std::optional<RayTarget> direct = finder_.at_object(target);
-    std::vector<Thing> things;
-    const std::vector<SceneObject> parts = parts_below(object);
-    if (!direct || are_apart(parts)) find_things(parts, things);
-    if (direct && (things.empty() || solid_angle_of(things) > kMostlyFilled * direct->stratum.solid_angle())) {
-      own(object, target.object);
-      objects_.push_back(std::move(*direct));
-      append(finder_.at_images(target), images_);
-    } else {
-      if (!direct) leave_to_field_of_view(target);
-      take_still_and_moving(things);
-    }
+    SceneObject still{object.node, {}}, rest{object.node, {}};
+    for (const uint32_t id : object.mesh_ids) (is_still_[id] ? still : rest).mesh_ids.push_back(id);
+    if (!settings_.is_steady || still.mesh_ids.empty() || rest.mesh_ids.empty()) return take_as_one(object);
+    take_as_one(still);
+    take_apart(rest);
   }
 
   void finish() {
@@ -209,10 +200,42 @@ class TargetSearch {
     std::move(more.begin(), more.end(), std::back_inserter(to));
   }
 
+  // Aims at an object and its images, or else at the things that it consists of.
+  void take_as_one(const SceneObject& object) {
+    Target target = new_target(object);
+    std::optional<RayTarget> direct = finder_.at_object(target);
+    std::vector<Thing> things;
+    const std::vector<SceneObject> parts = parts_below(object);
+    if (!direct || are_apart(parts)) find_things(parts, things);
+    if (direct && (things.empty() || solid_angle_of(things) > kMostlyFilled * direct->stratum.solid_angle())) {
+      own(object, target.object);
+      objects_.push_back(std::move(*direct));
+      append(finder_.at_images(target), images_);
+    } else {
+      if (!direct) leave_to_field_of_view(target);
+      take_still_and_moving(things);
+    }
+  }
+
+  // Aims at the highest nodes below which nothing stands still.
+  void take_apart(const SceneObject& object) {
+    MeshesByNode found;
+    for (const uint32_t id : object.mesh_ids) {
+      int node = scene_.meshes()[id].node;
+      while (!holds_still_[scene_.nodes()[node].parent]) node = scene_.nodes()[node].parent;
+      found.add(node, id);
+    }
+    std::vector<Thing> things;
+    if (may_look_at(found.found())) look_at(found.found(), things);
+    else leave_to_field_of_view(new_target(object));
+    take_strongest(things);
+  }
+
   Target new_target(const SceneObject& object) {
     const int index = out_.num_objects++;
     own(object, index);
-    return Target(scene_, geometry_, object, index, still_nodes_[object.node]);
+    const bool moves = !std::ranges::all_of(object.mesh_ids, [&](uint32_t id) { return is_still_[id]; });
+    return Target(scene_, geometry_, object, index, moves);
   }
 
   void leave_to_field_of_view(const Target& target) {
@@ -257,9 +280,16 @@ class TargetSearch {
     return parts;
   }
 
+  bool may_look_at(const std::vector<SceneObject>& parts) const {
+    return out_.num_objects + std::ssize(parts) <= settings_.most_objects;
+  }
+
   // Finds among the parts of an object, and theirs in turn, the largest that a stratum holds.
   void find_things(const std::vector<SceneObject>& parts, std::vector<Thing>& things) {
-    if (parts.size() == 1 || out_.num_objects + std::ssize(parts) > settings_.most_objects) return;
+    if (parts.size() > 1 && may_look_at(parts)) look_at(parts, things);
+  }
+
+  void look_at(const std::vector<SceneObject>& parts, std::vector<Thing>& things) {
     for (const SceneObject& part : parts) {
       Target target = new_target(part);
       std::optional<RayTarget> direct = finder_.at_object(target);
@@ -345,7 +375,8 @@ class TargetSearch {
   const EmbreeScene& geometry_;
   const RayTargetSettings& settings_;
   const RayTargetFinder finder_;
-  const std::vector<bool> still_nodes_;
+  const std::vector<bool> is_still_;     // [mesh ID]
+  const std::vector<bool> holds_still_;  // [node]
   RayTargets& out_;
   std::vector<RayTarget> objects_, images_;
 };

@@ -14,13 +14,15 @@ namespace echopath {
 // or where it is a group of things that stand apart, the things that it consists of are targets: the largest of its parts,
 // and of theirs in turn, that a stratum holds. Of more than 256 that stand still these are the ones in sight that have the
 // strongest echoes by their size and distance, and of more than 256 images of them those over the fewest mirrors, and
-// likewise of those that move; rays of the field of view meet the others.
+// likewise of those that move; rays of the field of view meet the others. Where rays are steady, what stands still in an
+// object is a target without what moves in it, such as the pole of a fan, and the highest nodes below which all moves are
+// others.
 struct RayTarget {
   Stratum stratum;  // holds the target; without rays
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh
   // Rays find it over these; planes at right angles have one image in both orders.
   std::vector<MirrorSequence> sequences;
-  bool moves = false;  // it, or a part of it, or a mirror that shows it moves, or comes and goes (Scene::still_nodes)
+  bool moves = false;  // it, or a part of it, or a mirror that shows it moves, or comes and goes (Scene::still_meshes)
   // In the sharing of the rays. The things of one object that stand still share the weight of that, those that move another.
   double weight = 1.0;
 };
@@ -33,6 +35,7 @@ struct RayTargetSettings {
   std::span<const MirrorFrustum> frusta;  // of the transmitter
   double largest_solid_angle = 0.0;       // sr: larger objects are left to the field of view
   bool may_use_strips = true;
+  bool is_steady = false;                                      // LaunchSettings::is_steady
   int64_t most_objects = std::numeric_limits<int64_t>::max();  // nothing is aimed at where there are more
   FittedStrata* fitted = nullptr;                              // the strata of plans before; may be null
 };

@@ -116,9 +116,36 @@ def test_without_a_path_all_of_a_cell_is_the_rest(frame):
     assert cell.value == cell.strongest.value == session.parts.whole.spectrum.values[0, 0, 9, 7] != 0.0
 
 
-def test_too_many_families_are_refused(frame, monkeypatch):
-    monkeypatch.setattr("echopath_viewer.model.maps.attribution.MAX_BYTES", 1 << 20)
-    with pytest.raises(ValueError, match="families: the signals of .* would take more than"):
+ATTRIBUTION = "echopath_viewer.model.maps.attribution"
+
+
+def test_where_memory_is_short_the_weakest_families_are_in_the_rest(frame, frame_attribution, monkeypatch):
+    """Of the five that there is room for each gives a cell what it does beside all others; all of them add up."""
+    size = 16 * 4 * frame.radar.waveform.num_chirps * frame.radar.waveform.num_samples
+    num_mirrors = len(frame_attribution._mirror_names)
+    monkeypatch.setattr(f"{ATTRIBUTION}.MAX_BYTES", (5 + num_mirrors) * size)
+    some = Attribution(Signals(frame.paths, dict(frame.spectrum_settings)))
+    families = ep.families(frame.paths)
+    powers = np.array([power.power for power in ep.received_powers(frame.paths, families.family_of_path, len(families))])
+    strongest = {families.families[number] for number in np.argsort(-powers)[:5]}
+    assert len(families) > 5 and {group.family for group in some.groups} == strongest
+    weights = np.array([[1, 0], [0, 0]])
+    velocity, distance = np.unravel_index(np.abs(frame.spectrum.values[0, 0]).argmax(), frame.spectrum.values.shape[2:])
+    of_some, of_all = (one.of_cell(frame.spectrum, distance, velocity, weights) for one in (some, frame_attribution))
+    whole = {one.name: one.value for one in of_all.contributions}
+    *told, rest = of_some.contributions
+    for one in told:
+        assert abs(one.value - whole[one.name]) <= SYNTHESIS * abs(of_all.value)
+    assert sum(one.value for one in of_some.contributions) == pytest.approx(of_all.value, rel=SUM, abs=0)
+    assert rest.name == f"{REST}, {len(families) - 5} weak families"
+    for group in some.groups:  # the rays of a contribution are shown by this
+        same, = (one for one in frame_attribution.groups if one.name == group.name)
+        np.testing.assert_array_equal(some.paths_of(group), frame_attribution.paths_of(same))
+
+
+def test_signals_of_which_not_one_has_room_are_refused(frame, monkeypatch):
+    monkeypatch.setattr(f"{ATTRIBUTION}.MAX_BYTES", 1 << 17)
+    with pytest.raises(ValueError, match="families: the signals of one and .* mirrors would take more than 0.00012207 GiB"):
         Attribution(Signals(frame.paths, dict(frame.spectrum_settings)))
 
 

@@ -17,6 +17,7 @@ MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
 MAX_MIRRORS = 16        # told apart in the background: those that most paths touch
 REST = "rest: noise, left-out paths"
 REST_RECEIVED = "rest: what the receiver makes, noise, left-out paths"  # its gains, filters and faults are in no family
+WITH_WEAK = "{}, {:,} weak families"  # one of these, where not all families have room
 BACKGROUND = "background"
 
 
@@ -69,7 +70,8 @@ class CellAttribution:
 
 
 class Attribution:
-    """The signals of all families of a frame, kept so that any cell is taken apart at once.
+    """The signals of the families of a frame, kept so that any cell is taken apart at once. Where those of all would take more
+    than MAX_BYTES, the weakest join the rest of each cell.
 
     groups: tuple of EchoGroup
     """
@@ -77,16 +79,14 @@ class Attribution:
     def __init__(self, signals, objects=None, progress=None):
         """signals: model.Signals of the frame; objects: as in `ep.families`; progress: callable (stage, fraction)
 
-        Raises ValueError where the signals would take more than MAX_BYTES.
+        Raises ValueError where the signal of one family would take more than MAX_BYTES.
         """
         self._paths, self._settings = signals.paths, signals.spectrum_settings
         families = ep.families(self._paths, objects)
         mirrors = self._mirrors(families)
         waveform, radar = self._paths.radar.waveform, self._paths.radar
-        size = 16 * len(radar.transmitters) * len(radar.receivers) * waveform.num_chirps * waveform.num_samples
-        if size * (len(families) + len(mirrors)) > MAX_BYTES:
-            raise ValueError(f"families: the signals of {len(families)} would take more than {MAX_BYTES >> 30} GiB")
-        cubes = self._decomposed(families, mirrors, signals.settings, progress)
+        kept, self._num_weak = self._kept(families, mirrors)
+        cubes = self._decomposed(kept, ep.families(kept, objects), mirrors, signals.settings, progress)
         self._num_ranges = signals.num_ranges
         # What a click needs of a channel and a range is one piece.
         self._profiles = np.zeros((len(radar.transmitters), len(radar.receivers), self._num_ranges, len(cubes),
@@ -109,11 +109,25 @@ class Attribution:
             totals[top] = totals.get(top, 0) + int(count)
         return sorted((name for name, count in totals.items() if count), key=lambda name: -totals[name])[:MAX_MIRRORS]
 
-    def _decomposed(self, families, mirrors, settings, progress) -> dict:
+    def _kept(self, families, mirrors) -> tuple:
+        """(paths of the strongest families for whose signals there is room, number of the others)."""
+        radar, waveform, count = self._paths.radar, self._paths.radar.waveform, len(families)
+        size = 16 * len(radar.transmitters) * len(radar.receivers) * waveform.num_chirps * waveform.num_samples
+        room = MAX_BYTES // size - len(mirrors)  # the background is several, by its mirrors
+        if room < 1:
+            raise ValueError(f"families: the signals of one and {len(mirrors)} mirrors would take more than "
+                             f"{MAX_BYTES / 2**30:g} GiB")
+        if count <= room:
+            return self._paths, 0
+        powers = ep.received_powers(self._paths, families.family_of_path, count)
+        strongest = np.argsort([-power.power for power in powers], kind="stable")[:room]
+        return self._paths.select(np.isin(families.family_of_path, strongest)), count - room
+
+    def _decomposed(self, paths, families, mirrors, settings, progress) -> dict:
         """{(family, mirror or "other", ...): cube}, the mirrors telling the paths of the background apart."""
         views = [families.grouping] + [_core.Grouping.selections([(name, ep.hits(name))]) for name in mirrors]
         grouping = _core.Grouping.all_of(views)
-        return decompose_slots(self._paths, self._paths.radar, [grouping], progress=progress, **settings)[0]
+        return decompose_slots(paths, paths.radar, [grouping], progress=progress, **settings)[0]
 
     def _group(self, row: int, key: tuple, mirrors, cube) -> EchoGroup:
         waveform = self._paths.radar.waveform
@@ -165,6 +179,8 @@ class Attribution:
         contributions.sort(key=lambda one: -abs(one.value))
         rest = value - complex(values.sum())
         rest_name = REST if self._paths.radar.receiver is None else REST_RECEIVED
+        if self._num_weak:
+            rest_name = WITH_WEAK.format(rest_name, self._num_weak)
         contributions.append(Contribution(rest_name, rest, _change_db(value, rest)))
         without = [(thing, _change_db(value, sum(part for group, part in zip(self.groups, values) if thing in group.touched)))
                    for thing in self.things]

@@ -133,7 +133,7 @@ class RayTable(QtWidgets.QWidget):
         self.model.show_rays(session, session.listed_rays())
         total = int(session.visible.sum() if session.box is None else session.lit.sum())
         if session.box is None:
-            self.title.setText(f"the {len(self.model.rays):,} rays that are drawn, of {total:,}")
+            self.title.setText(f"{len(self.model.rays):,} drawn, of {total:,} rays")
         else:
             where = "in the selected cells" if not session.lit_by else f"of {session.lit_by}"
             self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays {where}")

@@ -11,7 +11,7 @@ def _moves(case: Case) -> bool:
     return len(case.moving) > 0 or case.radar.is_moving
 
 
-@rule("motion over chirps", "Node.motion", "Radar.motion")
+@rule("motion over chirps", "Node.motion", "Radar.motion", "Radar.is_moving")
 def _over_chirps(case: Case):
     reasons = ["the radar moves"] * case.radar.is_moving + [case.named(case.moving)] * (len(case.moving) > 0)
     return _moves(case), "; ".join(reasons) or "nothing moves"

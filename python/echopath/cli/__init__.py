@@ -10,6 +10,7 @@ from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 from ..base.interrupts import interrupts_are_kept
 from .parser import command_parser
 from .resumable import Unread
+from .typed_names import with_typed_name
 from .warned import warnings_in_lines
 
 EXIT_BAD_INPUT = 2
@@ -36,7 +37,7 @@ def main(arguments=None) -> int:
                 print(f"echopath: {error}", file=sys.stderr)
             return EXIT_UNREAD
     except (ValueError, OSError, ModuleNotFoundError, DeviceError) as error:
-        print(f"echopath: {error}", file=sys.stderr)
+        print(f"echopath: {with_typed_name(str(error), options)}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except MemoryError:
         print("echopath: not enough memory; fewer rays (--rays), samples and chirps need less", file=sys.stderr)

@@ -239,11 +239,11 @@ def test_parts_and_selections_of_the_command_line(scene_path, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (("--part", "T . R"), "echopath: part: must be NAME=SELECTION, as in "),
-    (("--part", "a=T . R", "--part", "a=T R"), "echopath: part: must have a name of its own, got a twice"),
+    (("--part", "T . R"), "echopath: --part: must be NAME=SELECTION, as in "),
+    (("--part", "a=T . R", "--part", "a=T R"), "echopath: --part: must have a name of its own, got a twice"),
     (("--part", "a=T 'plat' R"), "echopath: parts.choice.a: path expression: expected a glob that takes a mesh, got 'plat'; "
                                  "nearest names: plate\n  T 'plat' R\n    ^\n"),
-    (("--part", "a=T . R & T"), "echopath: part: a: path expression: expected a hit"),
+    (("--part", "a=T . R & T"), "echopath: --part: a: path expression: expected a hit"),
 ])
 def test_faults_of_parts_are_told_before_the_trace(scene_path, tmp_path, arguments, message):
     done = call("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS, *arguments)
@@ -277,6 +277,34 @@ def test_bad_input_gives_one_clear_line_and_code_2(name):
     done = call(*arguments)
     assert done.returncode == 2 and done.stdout == ""
     assert message in done.stderr.splitlines()[-1] and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (("demo", "--rays", "1e11"), "--rays: must be a whole number from 1 to"),
+    (("demo", "--batches", "65"), "--batches: must be a whole number from 1 to 64, got 65"),
+    (("run", "SCENE", "--out", "out", "--frames", "2", "--interval", "1e-9"), "--interval: must be at least"),
+    (("run", "SCENE", "--out", "SCENE", "--frames", "2", "--interval", "0.1"), "--out: must be a folder that can be written"),
+    (("labels", "FRAME", "--out", "out", "--dynamic-range", "-3"), "--dynamic-range: must be a finite number"),
+    (("labels", "FRAME", "--out", "out", "--object", "plate"), "--object: must be NAME=GLOB"),
+    (("labels", "FRAME", "--out", "out", "--object", "a=plat"), "--object: must be globs that take meshes"),
+    (("scene", "SCENE", "--out", "a.toml"), "FILE: must be a file of the kinds .glb"),
+    (("scene", "MESH", "--out", "a.toml", "--unit", "-1"), "--unit: must be "),
+    (("view", "FRAME", "--scale", "0"), "--scale: must be a whole number"),
+])
+def test_faults_name_what_was_typed(finished_run, tmp_path, monkeypatch, arguments, message):
+    """And not what the functions behind the options call it."""
+    scene, folder = finished_run
+    monkeypatch.chdir(tmp_path)
+    files = {"SCENE": scene, "FRAME": folder / "frame.h5", "MESH": scene.parent / "plate.obj"}
+    done = call(*(files.get(argument, argument) for argument in arguments))
+    assert done.returncode == 2 and done.stderr.startswith(f"echopath: {message}"), done.stderr
+
+
+def test_faults_of_a_scene_file_keep_their_names(scene_path, tmp_path):
+    """Nobody typed an option for them."""
+    scene_path.write_text(SCENE.replace("num_rays = 2000", "num_rays = 0"))
+    done = call("run", scene_path, "--out", tmp_path / "out")
+    assert done.returncode == 2 and "trace.num_rays: must be" in done.stderr and "--rays" not in done.stderr
 
 
 def test_one_frame_is_no_single_file(scene_path, tmp_path):

@@ -1,0 +1,21 @@
+"""Errors name what was typed on the command line: "--rays", where the functions behind it call it num_rays."""
+from __future__ import annotations
+
+from argparse import Namespace
+
+# Arguments of functions that have another name on the command line. Others are called alike: seed is --seed.
+_TYPED_AS = {"num_rays": "rays", "path": "out", "dynamic_range_db": "dynamic_range", "noise_margin_db": "noise_margin",
+             "objects": "object"}
+
+
+def with_typed_name(message: str, options: Namespace) -> str:
+    """A message "argument: rule, got value" with what the argument was typed as; others, as those of scene files, as they are.
+
+    options: of the command
+    """
+    argument, colon, rest = message.partition(": ")
+    if argument == "path" and hasattr(options, "file"):  # which has no name on the command line
+        return f"FILE{colon}{rest}"
+    typed = _TYPED_AS.get(argument, argument)
+    was_typed = colon and getattr(options, typed, None) not in (None, [])
+    return f"--{typed.replace('_', '-')}{colon}{rest}" if was_typed else message

@@ -126,7 +126,7 @@ def test_faults_of_the_table_are_told_by_their_place(scene_path, told, table):
 @pytest.mark.parametrize("options, told", [(("--interval", 0.1), "--interval: belongs to frames in time"),
                                            (("--keep", "maps"), "--keep: belongs to frames in time"),
                                            (("--frames", 2), "--interval: must be given"),
-                                           (("--frames", 2, "--interval", 1e-6), "interval: must be at least")])
+                                           (("--frames", 2, "--interval", 1e-6), "--interval: must be at least")])
 def test_wrong_options_are_named(scene_path, tmp_path, capsys, options, told):
     assert run(scene_path, tmp_path / "out", *options) == 2
     assert capsys.readouterr().err.startswith(f"echopath: {told}")
@@ -138,7 +138,7 @@ def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 0
     scene_path.write_text(SCENE.replace("speed = 2.0", "speed = 3.0"))
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 2
-    assert capsys.readouterr().err.startswith("echopath: path: must be new, or of this sequence (scene/motions/0")
+    assert capsys.readouterr().err.startswith("echopath: --out: must be new, or of this sequence (scene/motions/0")
 
 
 def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):

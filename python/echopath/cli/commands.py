@@ -43,6 +43,8 @@ def run(options) -> None:
     from .run_sequence import is_sequence, require_no_others, run_sequence
     from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
     from ..scene_file import load_scene
+    from ..scene_file.lines import settings_told
+    from .typed_names import typed_arguments
 
     out = Path(options.out)
     require_writable(out.parent if out.is_file() else out, "--out")
@@ -54,14 +56,16 @@ def run(options) -> None:
                          "scene file with one, where [[objects]] names it as model")
     chosen = chosen_partition(options.part, scene_file.partitions())
     require_no_others(out, is_sequence(scene_file, options))
+    typed = typed_arguments(options)
     if is_sequence(scene_file, options):
-        print_resumable(run_sequence(scene_file, options, chosen), options.out)
+        with settings_told(scene_file.path, typed):
+            print_resumable(run_sequence(scene_file, options, chosen), options.out)
         return
     if out.suffix.lower() in FRAME_SUFFIXES and not out.is_dir():  # of a file of frames in time: the scene had to say
         raise ValueError(f"--out: must be a folder for one frame and its pictures, got '{out}'; frames in time (--frames) go to "
                          "one file")
     require_writable(out, "--out")
-    with progress_bars() as progress:
+    with progress_bars() as progress, settings_told(scene_file.path, typed):
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)
         certificate = certify(frame, progress=progress)

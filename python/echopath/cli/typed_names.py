@@ -17,5 +17,14 @@ def with_typed_name(message: str, options: Namespace) -> str:
     if argument == "path" and hasattr(options, "file"):  # which has no name on the command line
         return f"FILE{colon}{rest}"
     typed = _TYPED_AS.get(argument, argument)
-    was_typed = colon and getattr(options, typed, None) not in (None, [])
-    return f"--{typed.replace('_', '-')}{colon}{rest}" if was_typed else message
+    return f"--{typed.replace('_', '-')}{colon}{rest}" if colon and typed in _typed(options) else message
+
+
+def typed_arguments(options: Namespace) -> set[str]:
+    """The arguments of functions that were typed, in the words of the functions."""
+    typed = _typed(options)
+    return typed | {argument for argument, option in _TYPED_AS.items() if option in typed}
+
+
+def _typed(options: Namespace) -> set[str]:
+    return {name for name, value in vars(options).items() if value is not None and value != []}

@@ -4,10 +4,15 @@ from __future__ import annotations
 import re
 import tomllib
 from collections import Counter
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 _HEADER = re.compile(r"\s*(\[\[?)([^][]+)\]\]?\s*(#.*)?$")    # [radar.waveform] or [[objects]]
 _ASSIGNED = re.compile(r"""\s*((?:"[^"]*"|'[^']*'|[\w.-])+)\s*=""")  # num_chirps = 128, "left wall" = "..."
+
+# Tables whose keys are arguments of a simulation, which looks at some of them again: in view of the radar, or of each other.
+_SETTINGS = ("trace", "replay", "spectrum", "labels", "detections", "truth", "angle", "sequence")
 
 
 def key_lines(text: str) -> dict[str, int]:
@@ -37,6 +42,29 @@ def with_lines(error: Exception, path: Path, text: str) -> str:
     """The message of an error whose lines begin with the file and a dotted path, and the line in its text between these."""
     lines = key_lines(text)
     return "\n".join(_with_line(fault, path, lines) for fault in str(error).splitlines())
+
+
+def with_table(fault: str, lines: dict[str, int]) -> str:
+    """A fault "argument: rule" of a simulation with the table before it that has the argument as a key, where one alone does."""
+    argument = fault.partition(": ")[0]
+    tables = [table for table in _SETTINGS if f"{table}.{argument}" in lines]
+    return f"{tables[0]}.{fault}" if len(tables) == 1 else fault
+
+
+@contextmanager
+def settings_told(path: Path, typed: Collection[str] = ()) -> Iterator[None]:
+    """ValueErrors of a simulation in the block begin with the file, the line and the table of the setting that they name.
+
+    path: of the scene file that has the settings; typed: names of those that have come from elsewhere
+    """
+    try:
+        yield
+    except ValueError as error:
+        lines = key_lines(path.read_text(encoding="utf-8-sig"))
+        fault = with_table(str(error), lines)
+        if fault == str(error) or fault.partition(": ")[0].rpartition(".")[2] in typed:
+            raise
+        raise ValueError(_with_line(fault, path, lines)) from None
 
 
 def _with_line(told: str, path: Path, lines: dict[str, int]) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ... import _core
-from ...scene_file.lines import key_lines, line_of
+from ...scene_file.lines import key_lines, line_of, with_table
 from .distributions import with_kinds
 
 _PLACE = re.compile(r"objects\[(\d+)\]")  # of an object among those that were drawn
@@ -44,7 +44,7 @@ class Faults:
             if text.startswith("  "):  # goes on from the line before
                 lines[len(lines), text] = text
                 continue
-            key, colon, rule = self._named(text.removeprefix(f"{self._path}: "), drawn).partition(": ")
+            key, colon, rule = with_table(self._named(text.removeprefix(f"{self._path}: "), drawn), self._lines).partition(": ")
             line = line_of(f"{self._written(key)}: {rule}", self._lines)
             where = f"{self._path}: " if line is None else f"{self._path}: line {line}: "
             lines.setdefault((line, rule or key), where + scene + with_kinds(key + colon + rule))

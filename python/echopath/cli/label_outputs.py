@@ -1,7 +1,7 @@
 """Label maps for programs and pictures of labels for people."""
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import echopath as ep
@@ -12,27 +12,33 @@ from ..signals.parts import ONLY_PARTITION
 MAPS_FOLDER = "label_maps"
 
 
-def write_labels(frame, folder: Path, selections: dict) -> list:
-    """Writes label maps and pictures of a frame's labels; returns the paths of the PNG files.
+def write_labels(frame, folder: Path, selections: dict) -> Iterator[Path]:
+    """Writes label maps and pictures of a frame's labels; yields the path of each PNG file that is written.
 
     selections: {partition: {part: selection}} of those partitions that are written, {} for a frame without any.
     """
     of_partitions = {name: labels for name, labels in frame.labels.items() if name in selections or not selections}
-    written, names = [], label_names(of_partitions)
+    names = label_names(of_partitions)
 
-    def write(name: str, figure) -> None:
+    def write(name: str, figure) -> Path:
         path = folder / f"{name}.png"
         plots.save_png(figure, path, seed=frame.paths.frame.seed)
-        written.append(path)
+        return path
 
     for index, (partition, labels) in enumerate(of_partitions.items()):
-        written += ep.save_label_images(labels, folder / MAPS_FOLDER, _map_names(partition, names[partition], index == 0))
+        yield from ep.save_label_images(labels, folder / MAPS_FOLDER, _map_names(partition, names[partition], index == 0))
         if index == 0:
-            write("objects_and_ghosts", plots.plot_ghosts(labels))
+            yield write("objects_and_ghosts", plots.plot_ghosts(labels))
         powers = _powers(frame, partition, selections.get(partition, {}))
         title = "Which part made each cell" + (f", by {partition}" if partition != ONLY_PARTITION else "")
-        write(f"labels_{names[partition]}", plots.plot_labels(labels, title=title, powers=powers))
-    return written
+        yield write(f"labels_{names[partition]}", plots.plot_labels(labels, title=title, powers=powers))
+
+
+def label_maps_of(folder: Path, partitions: Iterable[str]) -> list[Path]:
+    """The files of label maps that `write_labels` makes of partitions."""
+    names = {name for partition, written in label_names(partitions).items()
+             for name in _map_names(partition, written, is_first=True).values()}
+    return [folder / MAPS_FOLDER / f"{name}{suffix}" for name in sorted(names) for suffix in (".png", ".json")]
 
 
 def _map_names(partition: str, name: str, is_first: bool) -> dict:

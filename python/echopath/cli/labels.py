@@ -11,6 +11,7 @@ from ..frame_file import left_out, load_frame, save_labels
 from . import report
 from .label_outputs import write_labels
 from .run import DETECTIONS_NAME, chosen_partition
+from .warned import pictures_warned
 
 
 def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, progress=None) -> list[str]:
@@ -32,11 +33,13 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
         frame.detections.to_csv(folder / DETECTIONS_NAME)
         detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"),
                                        file=DETECTIONS_NAME)
-    save_labels(frame.labels, folder / "labels.h5")
-    written = write_labels(frame, folder, frame.selections | chosen)
+    written = [folder / "labels.h5"]
+    save_labels(frame.labels, written[0])
+    with pictures_warned("the labels are written, but not all of their pictures"):
+        written.extend(write_labels(frame, folder, frame.selections | chosen))
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
             *detections, f"written to {folder}",
-            f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
+            f"  {', '.join(str(one.relative_to(folder)) for one in written)}",
             *report.unresolved(unresolved_of_frame(frame, settings.objects, progress), frame.paths, missing)]
 
 

@@ -324,7 +324,7 @@ def files(written) -> list[str]:
     """What a run wrote, how large the frame file is and what it leaves out."""
     folder = written.frame_path.parent
     pictures = ", ".join(str(picture.relative_to(folder)) for picture in written.pictures)
-    return [f"written to {folder}", omissions(written.left_out, written.frame_path), f"  {pictures}"]
+    return [f"written to {folder}", omissions(written.left_out, written.frame_path), *([f"  {pictures}"] if pictures else [])]
 
 
 def omissions(left_out, path) -> str:

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import itertools
 import dataclasses
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import echopath as ep
@@ -14,6 +16,8 @@ from ..base.stages import StageClock
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame
+from ..frame_file.frame import partition_names
+from ..frame_file.opening import reading
 from ..paths.families import families
 from ..paths.resolution import RESOLVED_DB
 from ..plots.frames import limits_of_frame, noise_words, title_of
@@ -21,7 +25,8 @@ from ..scene_file import SceneFile
 from ..signals.measures import for_pictures, with_error
 from ..signals.parts import parts_of_options
 from ..truth.places import true_places
-from .label_outputs import file_names, label_names, write_labels
+from .label_outputs import MAPS_FOLDER, file_names, label_maps_of, label_names, write_labels
+from .warned import pictures_warned
 
 FRAME_NAME, TRUTH_NAME, DETECTIONS_NAME = "frame.h5", "truth.csv", "detections.csv"
 _PICTURES = ("scene", "map", "overview", "range_azimuth", "objects_and_ghosts")  # beside those of partitions
@@ -83,22 +88,48 @@ def write_outputs(frame: Frame, folder, partitions, objects=None) -> Written:
     the first partition from above); with labels also objects_and_ghosts.png, labels_NAME.png for each partition and label_maps/
     for programs.
     objects: that pictures name, as in `families`; None: the children of the scene's root
+    Files of an earlier run in the folder go when the frame is written. The frame is there whatever becomes of its pictures: what
+    keeps these from being made is a warning.
     """
     folder = Path(folder)
     clock = StageClock()
+    earlier = outputs_of_run(folder)
     with clock("frame file"):
         frame_path = folder / FRAME_NAME
         left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame))
+        _remove(earlier, folder / MAPS_FOLDER)
         if frame.detections is not None:
             frame.detections.to_csv(folder / DETECTIONS_NAME)
         if frame.kept_truth is not None:
             frame.kept_truth.to_csv(folder / TRUTH_NAME)
+    pictures: list = []
     with clock("pictures"):
-        pictures = _write_pictures(frame, folder, partitions, objects)
-        if frame.labels:
-            pictures += write_labels(frame, folder, {name: frame.selections[name] for name in partitions})
+        with pictures_warned("the frame is written, but not all of its pictures"):
+            pictures.extend(_write_pictures(frame, folder, partitions, objects))
+            if frame.labels:
+                pictures.extend(write_labels(frame, folder, {name: frame.selections[name] for name in partitions}))
     frame.stages += clock.stages
     return Written(frame_path, left_out, pictures)
+
+
+def outputs_of_run(folder: Path) -> list[Path]:
+    """The files beside frame.h5 that the run which made it may have written, by the partitions that it keeps; [] without it."""
+    try:
+        with reading(folder / FRAME_NAME) as file:
+            partitions = partition_names(file)
+    except ep.FileError:
+        return []
+    names = [*_PICTURES, *_picture_names(partitions).values(), *(f"labels_{name}" for name in label_names(partitions).values())]
+    return [folder / DETECTIONS_NAME, folder / TRUTH_NAME, *(folder / f"{name}.png" for name in names),
+            *label_maps_of(folder, partitions)]
+
+
+def _remove(files: list[Path], folder: Path) -> None:
+    """Removes files, and a folder if nothing else is in it."""
+    for path in files:
+        path.unlink(missing_ok=True)
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def raw_line(path, num_bytes: int) -> str:
@@ -106,19 +137,23 @@ def raw_line(path, num_bytes: int) -> str:
     return f"wrote {path}: {counted(num_bytes, 'byte')} of raw data"
 
 
-def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> list:
-    written = []
+def _picture_names(partitions) -> dict[str, str]:
+    """{partition: name of its picture}, as no other file has it."""
+    return file_names(partitions, {"/": "_"}, [*_PICTURES, *(f"labels_{name}" for name in label_names(partitions).values())])
 
-    def write(name: str, figure) -> None:
+
+def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> Iterator[Path]:
+    """Yields the path of each PNG file that is written."""
+    def write(name: str, figure) -> Path:
         plots.save_png(figure, folder / f"{name}.png", seed=frame.paths.frame.seed, noise_seed=frame.noise_seed)
-        written.append(folder / f"{name}.png")
+        return folder / f"{name}.png"
 
-    write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power, objects=objects))
+    yield write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power, objects=objects))
     vmin, vmax = limits_of_frame(frame)
     title = title_of(frame)
     mean = for_pictures(f"; in the mean {with_error(frame.mean_power)}")
-    write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
-    names = file_names(partitions, {"/": "_"}, [*_PICTURES, *(f"labels_{name}" for name in label_names(partitions).values())])
+    yield write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
+    names = _picture_names(partitions)
     for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
         looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition],
@@ -127,16 +162,15 @@ def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> lis
         words += "; mean power of all ranges together and its 95 % interval"
         if not all(power.resolved for power in frame.mean_part_powers[partition].values()):
             words += f" (not resolved: wider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g}\N{NO-BREAK SPACE}dB)"
-        write(names[partition], plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
+        yield write(names[partition], plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
         if index == 0:
             words = f"The same {words}"
-            write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
+            yield write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
         leaked = frame.beside_spectra.get(LEAKAGE)
-        write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame, objects),
-                                                        leaked=leaked and frame.range_azimuth_of(leaked)))
-    return written
+        yield write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame, objects),
+                                                              leaked=leaked and frame.range_azimuth_of(leaked)))
 
 
 def _places(frame: Frame, objects) -> dict:

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .. import plots
-from ..base.callers import warn_user
 from ..base.counts import counted
 from ..base.progress import progress_bars
 from ..dataset.folder import TEMPLATE as DATASET_FILE
@@ -18,6 +17,7 @@ from ..sequence.pictures import drive_of, write_film_of
 from . import report
 from .numbers import duration_words
 from .run import FRAME_NAME, TRUTH_NAME, keywords_of, raw_line
+from .warned import pictures_warned
 
 
 def is_sequence(scene_file: SceneFile, options) -> bool:
@@ -79,20 +79,15 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
 
 
 def _write_pictures(stored, title: str) -> Iterator[str]:
-    """The frames at a glance and as a film, of maps that are read once; yields a line for each file.
-
-    The frames are there whatever becomes of their pictures: what keeps these from being made is a warning.
-    """
+    """The frames at a glance and as a film, of maps that are read once; yields a line for each file."""
     picture, film = _beside(stored, "overview.png"), _beside(stored, "film.gif")
-    try:
+    with pictures_warned("the frames are written, but not all of their pictures"):
         drive = drive_of(stored)
         plots.save_png(plots.plot_drive(drive, title=title), picture, seed=stored.settings["seed"],
                        noise_seed=stored.settings["noise_seed"])
         yield f"wrote {picture}"
         write_film_of(drive, film, stored.interval)
         yield f"wrote {film}"
-    except Exception as error:  # of drawing, of memory or of the disk
-        warn_user(f"the frames are written, but not all of their pictures: {str(error) or type(error).__name__}")
 
 
 def _beside(stored, name: str) -> Path:

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
+from ..base.callers import warn_user
 from ..base.counts import counted
 from ..base.work_at_hand import work_at_hand
 
@@ -40,6 +41,15 @@ def warnings_in_lines() -> Iterator[None]:
             for first, *others in said.values():
                 if others:
                     _print(f"{counted(len(others), 'more warning')} with other numbers, of: {_shortened(first)}", is_late=True)
+
+
+@contextmanager
+def pictures_warned(told: str) -> Iterator[None]:
+    """What keeps pictures in the block from being made is a warning, `told` and the reason: the results are there anyway."""
+    try:
+        yield
+    except Exception as error:  # of drawing, of memory or of the disk
+        warn_user(f"{told}: {str(error) or type(error).__name__}")
 
 
 def _without_numbers(text: str) -> str:

@@ -271,6 +271,12 @@ def _check_spectrum_size(group, frame: Frame) -> None:
                               f"{zero_pad!r}")
 
 
+def partition_names(file) -> list[str]:
+    """The names of the partitions of a file that is open. Raises ep.FileError."""
+    folder = read_group(file, "partitions")
+    return [read_attribute(read_group(folder, str(index)), "name", str) for index in range(len(folder))]
+
+
 @blames_group
 def _read_partitions(file, frame: Frame) -> None:
     folder = read_group(file, "partitions")

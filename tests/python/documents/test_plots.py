@@ -192,7 +192,7 @@ def test_pictures_of_a_run_with_leakage_have_the_scale_of_the_scene(leaking, tmp
     for frame in leaking:
         figures = {}
         monkeypatch.setattr(plots, "save_png", lambda figure, path, **_: figures.update({path.name: figure}))
-        run._write_pictures(frame, tmp_path, ["parts"])
+        list(run._write_pictures(frame, tmp_path, ["parts"]))
         scales.append({name: {scale_of(axes) for axes in figure.axes if axes.get_images() or axes.get_aspect() == 1.0}
                        for name, figure in figures.items() if name != "scene.png"})
     assert scales[0].keys() == {"map.png", "parts.png", "overview.png", "range_azimuth.png"}

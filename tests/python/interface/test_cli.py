@@ -250,6 +250,33 @@ def test_faults_of_parts_are_told_before_the_trace(scene_path, tmp_path, argumen
     assert done.returncode == 2 and done.stdout == "" and done.stderr.startswith(message)
 
 
+@pytest.mark.usefixtures("blank_pictures")
+def test_a_run_takes_the_files_of_an_earlier_one_along(scene_path, tmp_path):
+    """They would be taken for its own; what else is in the folder stays."""
+    out, fresh = tmp_path / "out", tmp_path / "fresh"
+    scene_path.write_text(SCENE + "[labels]\n[detections]\n")
+    assert call("run", scene_path, "--out", out, "--rays", "500", "--truth", "--part", "strong=power > 1e-30").returncode == 0
+    assert {"choice.png", "detections.csv", "truth.csv", "labels_choice.png", "label_maps"} <= {one.name for one in out.iterdir()}
+    (out / "notes.txt").write_text("mine")
+    scene_path.write_text(SCENE)
+    for folder in (out, fresh):
+        assert call("run", scene_path, "--out", folder, "--rays", "500").returncode == 0
+    left = {path.name for path in out.rglob("*")}
+    assert left == {path.name for path in fresh.iterdir()} | {"notes.txt"}
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_a_picture_that_fails_is_a_warning_beside_the_report(scene_path, tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(ep.plots, "plot_partition", fail)
+    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
+    assert done.returncode == 0 and (tmp_path / "out" / "frame.h5").is_file()
+    assert done.stderr == "warning: the frame is written, but not all of its pictures: MemoryError\n"
+    assert "received power, route" in done.stdout and "  scene.png, map.png\n" in done.stdout
+
+
 def test_info_of_a_record_without_signals_is_told(scene_path, tmp_path):
     scene_file = ep.load_scene(scene_path)
     ep.trace(scene_file.scene, scene_file.radar, num_rays=100).save(tmp_path / "paths.h5")

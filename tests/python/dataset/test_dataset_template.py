@@ -112,6 +112,46 @@ position = [{uniform = [0.0, 8.0]}, {uniform = [-0.5, 0.5]}, 1.0]
     assert near > 0  # they are as close as they may
 
 
+def test_objects_stand_apart_where_their_ways_begin(tmp_path):
+    """Plates whose trajectory or motion begins 5 m beside their position, and what one of these carries: places at time 0."""
+    ways = """[[objects]]
+name = "driving"
+count = 3
+apart = 0.5
+trajectory = {points = [[-5.0, 0.0], [20.0, 0.0]], speed = 4.0}
+BODY
+[[objects]]
+name = "keyed"
+count = 2
+apart = 0.5
+motion = {kind = "keyframes", times = [-1.0, 1.0], translations = [[-5.0, -1.0, 0.0], [-5.0, 1.0, 0.0]]}
+BODY
+[[objects]]
+name = "cart"
+group = true
+position = [4.0, -4.0, 0.0]
+trajectory = {points = [[0.0, 0.0], [0.0, 9.0]], turn_radius = 1.0, speed = 4.0}
+[[objects]]
+name = "carried"
+parent = "cart"
+count = 2
+apart = 0.5
+BODY
+""".replace("BODY", """actor = "plate"
+parameters = {width = 0.2, height = 0.2}
+material = "metal"
+position = [{uniform = [5.0, 9.0]}, {uniform = [-1.5, 1.5]}, 1.0]""")
+    template = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", ways + "[trace]")))
+    near = 0
+    for number in range(10):
+        scene = template.scene_file(number).scene
+        middles = [scene.world_vertices(mesh.id, 0.0).mean(axis=0)[:2] for mesh in scene.meshes if mesh.name != "wall"]
+        apart = [np.hypot(*(one - other)) for index, one in enumerate(middles) for other in middles[:index]]
+        assert min(apart) >= 1.0 - 1e-9
+        near += min(apart) < 1.2
+    assert near > 0  # they are as close as they may
+
+
 def test_other_keys_and_more_scenes_change_no_draw(path, tmp_path):
     before = dataset.Template(path).draw(4)
     post = 'name = "post"\nactor = "plate"\nparameters = {width = 1, height = 1}\nposition = [{uniform = [1, 2]}, 9, 0]\n'

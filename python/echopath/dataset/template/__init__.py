@@ -19,6 +19,7 @@ from ...scene_file.tables.run_tables import FOUND
 from ...scene_file.tables.schema import SceneTable
 from ...scene_file.tables.table import Positive, Table
 from ...scene_file.traffic import TrafficFiles
+from ...scene_file.trajectories import Trajectories
 from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
@@ -89,6 +90,7 @@ class Template:
         self._rest = scene
         self._traffic: dict[str, TrafficFiles] = {}  # as it was drawn last
         self._rows = KeptRows()
+        self._trajectories = Trajectories(self.folder, [], self._rows)  # for where objects are that stand apart
 
     def __repr__(self) -> str:
         made = self.settings
@@ -108,7 +110,7 @@ class Template:
             for name in ("trace", "noise"):
                 if isinstance(settings := table.setdefault(name, {}), dict):  # else the schema of the scene refuses it
                     settings.setdefault("seed", int(drawing.random(f"{name}.seed").integers(_SEEDS)))
-            table["objects"] = DrawnObjects(drawing).of(self._objects)
+            table["objects"] = DrawnObjects(drawing, self._trajectories).of(self._objects)
             return DrawnScene(number, table, drawing.values)
         except ValueError as error:
             raise self._faults.told(error, number) from None

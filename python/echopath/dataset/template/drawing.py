@@ -11,6 +11,10 @@ import numpy as np
 
 from ...arguments.shown import shown
 from ...scene.placements import ORIGIN, placement
+from ...scene_file.errors import validated
+from ...scene_file.objects import motion_of
+from ...scene_file.tables.object_tables import ObjectTable
+from ...scene_file.trajectories import Trajectories
 from .distributions import REFERENCE, drawn, is_distribution, is_number, refuse_misspelt
 from .references import Source, changed, is_reference, refuse_wrong_reference
 
@@ -96,17 +100,22 @@ class Drawing:
 
 
 class DrawnObjects:
-    """Draws the objects of a scene: how many of each there are, and where."""
+    """Draws the objects of a scene: how many of each there are, and where.
 
-    def __init__(self, drawing: Drawing):
-        self._drawing = drawing
+    trajectories: makes those of their tables
+    """
+
+    def __init__(self, drawing: Drawing, trajectories: Trajectories):
+        self._drawing, self._trajectories = drawing, trajectories
         self._left_out: list[tuple[re.Pattern[str], int]] = []  # of full names, the number of a copy that follows, and the last
         self._frames: dict[str, np.ndarray] = {}  # world_from_object [4, 4] by full name, at time 0
         self._places: list[tuple[np.ndarray, float]] = []  # (x, y) in the world and radius in m of what stands apart
+        self._stand_apart = False  # whether some objects are to
 
     def of(self, entries: Any) -> list[Any]:
         if not isinstance(entries, list):
             return [entries]  # which the schema of the scene refuses
+        self._stand_apart = any(isinstance(entry, dict) and "apart" in entry for entry in entries)
         objects: list[Any] = []
         for index, entry in enumerate(entries):
             is_table = isinstance(entry, dict) and isinstance(entry.get("name"), str)
@@ -153,13 +162,25 @@ class DrawnObjects:
         frame = self._frame_of(carrier)
         apart, position = entry.pop("apart", None), entry.pop("position", None)
         made: dict[str, Any] = {"name": name} | self._drawing.of(entry, place)
+        motion = self._motion_of(made) if self._stand_apart else np.eye(4)
         if apart is not None:
             radius = self._number(apart, f"{place}.apart", "a number of m, at least 0", lambda x: x >= 0.0)
-            made["position"] = self._free_place(position, radius, place, frame)
+            made["position"] = self._free_place(position, radius, place, frame, motion[:3, 3])
         elif position is not None:
             made["position"] = self._drawing.of(position, f"{place}.position")
-        self._frames[_full_name(carrier, name)] = frame @ _placement_of(made)
+        self._frames[_full_name(carrier, name)] = frame @ _moved(_placement_of(made), motion)
         return made
+
+    def _motion_of(self, made: dict[str, Any]) -> np.ndarray:
+        """[4, 4], where trajectory or motion of a table of an object have it at time 0; of a refused one the identity."""
+        if not made.keys() & {"trajectory", "motion"}:
+            return np.eye(4)
+        try:
+            table = validated(ObjectTable, made)
+            motion = self._trajectories.of(table, "") or motion_of(table.motion, "")
+            return np.eye(4) if motion is None else motion.at(0.0)
+        except (ValueError, OSError):  # of what the schema of the scene refuses, or a file that is not there
+            return np.eye(4)
 
     def _frame_of(self, carrier: Any) -> np.ndarray:
         """World_from_carrier [4, 4] at time 0; of a part of an object that of the object."""
@@ -168,10 +189,10 @@ class DrawnObjects:
             path = path.rpartition("/")[0]
         return self._frames.get(path, np.eye(4))
 
-    def _free_place(self, position: Any, radius: float, place: str, frame: np.ndarray) -> list[float]:
+    def _free_place(self, position: Any, radius: float, place: str, frame: np.ndarray, way: np.ndarray) -> list[float]:
         """A position of which no other that is to stand apart is nearer than both radii together, seen from above.
 
-        frame: world_from_carrier [4, 4] of what carries the object
+        frame: world_from_carrier [4, 4] of what carries the object; way: [3] m from its position at time 0, in the axes of that
         """
         for attempt in range(_MOST_PLACES):
             found: list[float] = self._drawing.of(position, f"{place}.position", f"/try {attempt}")
@@ -181,7 +202,7 @@ class DrawnObjects:
                     raise ValueError
             except (TypeError, ValueError, OverflowError):
                 raise ValueError(f"{place}.position: must be [x, y, z] in m beside apart, got {shown(found)}") from None
-            above = frame[:2, :len(own)] @ own + frame[:2, 3]
+            above = frame[:2, :len(own)] @ own + frame[:2, :3] @ way + frame[:2, 3]
             if all(np.hypot(*(above - other)) >= radius + beside for other, beside in self._places):
                 self._places.append((above, radius))
                 return found
@@ -190,6 +211,11 @@ class DrawnObjects:
 
 def _full_name(parent: Any, name: str) -> str:
     return f"{parent}/{name}" if isinstance(parent, str) and parent else name
+
+
+def _moved(placed: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """The placement [4, 4] of an object that a motion has turned about its position and carried on."""
+    return np.block([[motion[:3, :3] @ placed[:3, :3], placed[:3, 3:] + motion[:3, 3:]], [placed[3:]]])
 
 
 def _placement_of(made: dict[str, Any]) -> np.ndarray:

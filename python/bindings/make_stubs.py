@@ -46,6 +46,7 @@ PLAIN = [
     (r"numpy\.ndarray(?!\[)", "numpy.ndarray[typing.Any, typing.Any]"),
     (r"(\w+: [A-Z]\w+) = None", r"\1 | None = None"),
     (r"    def __setattr__\(self, .*\n        \.\.\.\n", ""),                   # says what to write instead
+    (r"    def __r?(?:and|or)__\(self, arg0: typing\.Any\) -> None:\n        \.\.\.\n", ""),  # likewise
     (r"(    @staticmethod\n)?    def __init__\(\*args: .*\n +\"\"\"\n +Raises TypeError: is made by .*\n +\"\"\"\n", ""),
     (r"(__hash__: typing\.ClassVar\[None\] = None)", r"\1  # type: ignore[assignment]"),
     (r"def __(eq|ne)__\(self, arg0: [^)]*\) -> Selection:",

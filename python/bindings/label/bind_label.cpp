@@ -55,6 +55,32 @@ py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
 // Power of a path, to be compared with powers in W.
 struct Power {};
 
+// Refuses what else stands beside & or |: these bind tighter than comparisons, so that Python reads `a & ep.num_bounces == 1`
+// as `(a & ep.num_bounces) == 1`.
+[[noreturn]] void refuse_beside_operator(const char* argument, py::handle value) {
+  refuse_type(argument,
+              "what they join is a Selection or its text, and a comparison stands in parentheses, as in ep.hits('wall') & "
+              "(ep.num_bounces == 1)",
+              value);
+}
+
+struct Operand : SelectionOrText {
+  static Selection from(py::handle value, const char* argument) {
+    if (!py::isinstance<Selection>(value) && !PyUnicode_Check(value.ptr())) refuse_beside_operator(argument, value);
+    return SelectionOrText::from(value, "text");
+  }
+};
+
+using Joined = Arg<"& and |", Operand>;
+
+// Lets what is compared say so, too, where no Selection is beside & or |: `ep.power > 1e-15 & ep.num_bounces == 2`.
+template <class Type>
+void refuse_operators(py::class_<Type>& type) {
+  for (const char* method : {"__and__", "__or__", "__rand__", "__ror__"}) {
+    type.def(method, [](const py::object& self, const py::object&) { refuse_beside_operator("& and |", self); });
+  }
+}
+
 void check_globs(const Selection& selection, Arg<"scene", Instance<std::shared_ptr<Scene>>> scene) {
   selection.check_globs((*scene)->all_mesh_names());
 }
@@ -104,14 +130,10 @@ takes no mesh of the scene.)");
   define(selection, "check", &check_globs, py::arg("scene"),
          "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.");
   selection.def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
-      .def(
-          "__and__", [](const Selection& a, const Selection& b) { return a & b; }, py::is_operator())
-      .def(
-          "__rand__", [](const Selection& a, const Selection& b) { return b & a; }, py::is_operator())
-      .def(
-          "__or__", [](const Selection& a, const Selection& b) { return a | b; }, py::is_operator())
-      .def(
-          "__ror__", [](const Selection& a, const Selection& b) { return b | a; }, py::is_operator())
+      .def("__and__", [](const Selection& a, const Joined& b) { return a & *b; })
+      .def("__rand__", [](const Selection& a, const Joined& b) { return *b & a; })
+      .def("__or__", [](const Selection& a, const Joined& b) { return a | *b; })
+      .def("__ror__", [](const Selection& a, const Joined& b) { return *b | a; })
       .def("__invert__", [](const Selection& a) { return ~a; })
       .def("__bool__", [](const Selection&) -> bool { refuse_truth("a Selection"); })
       .def("__eq__",
@@ -140,6 +162,7 @@ void bind_num_bounces(py::module_& m) {
       .def("__bool__", [](const NumBounces&) -> bool { refuse_truth("ep.num_bounces"); })
       .def("__reduce__", [](const NumBounces&) { return "num_bounces"; })  // of this module, itself
       .def("__repr__", [](const NumBounces&) { return "ep.num_bounces"; });
+  refuse_operators(type);
   m.attr("num_bounces") = NumBounces{};
 }
 
@@ -160,6 +183,7 @@ ep.power > 1e-15 is a Selection; `paths.power` has the values.)");
       .def("__bool__", [](const Power&) -> bool { refuse_truth("ep.power"); })
       .def("__reduce__", [](const Power&) { return "power"; })
       .def("__repr__", [](const Power&) { return "ep.power"; });
+  refuse_operators(type);
   m.attr("power") = Power{};
 }
 

@@ -37,6 +37,24 @@ def test_the_text_of_a_selection_stands_for_it(paths, selection):
     assert np.array_equal(read.matches(paths), selection.matches(paths))
 
 
+@pytest.mark.parametrize("joined", [
+    lambda: REAR & ep.num_bounces == 1, lambda: ep.num_bounces == 1 & REAR, lambda: REAR | ep.power > 1e-15,
+    lambda: ep.power > 1e-15 & ep.num_bounces == 2, lambda: "T . R" & ep.num_bounces == 1, lambda: REAR & 1 <= ep.num_bounces,
+    lambda: 1 == ep.num_bounces | REAR, lambda: REAR & None,
+])
+def test_comparisons_beside_operators_are_told_to_stand_in_parentheses(joined):
+    """& and | bind tighter than comparisons in Python, other than in the text of a Selection."""
+    with pytest.raises(TypeError, match=r"a comparison stands in parentheses, as in ep.hits\('wall'\) & \(ep.num_bounces == 1\)"):
+        joined()
+
+
+def test_text_is_joined_as_a_selection(paths):
+    for joined, meant in ((REAR & "T . R", REAR & ONE), ("T . R" & REAR, ONE & REAR), ("T . R" | TWO, ONE | TWO)):
+        assert joined == meant
+    with pytest.raises(ValueError, match="path expression: expected"):
+        REAR & "T Rear R"
+
+
 @pytest.mark.parametrize("text, meant", [
     ("T . R | T . . R & ~T .* 'Rear' .* R", ONE | (TWO & ~REAR)),   # not before and before or
     (" ( T . R | T . . R ) & ( T .* 'Rear' .* R ) ", (ONE | TWO) & REAR),

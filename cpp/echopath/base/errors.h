@@ -1,6 +1,7 @@
 #pragma once
 // Defines the exceptions of the core. Python shows std::invalid_argument -> ValueError, std::out_of_range -> IndexError,
 // FileError -> OSError, DeviceError -> RuntimeError, Cancelled -> KeyboardInterrupt.
+#include <complex>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
@@ -32,14 +33,28 @@ inline int digits_of(double number) {
   return 17;
 }
 
+// Writes a value as it was typed: 0.1, and 4+0.1j of complex numbers.
+template <class Value>
+void write_typed(std::ostream& text, const Value& value) {
+  text.precision(17);
+  if constexpr (std::is_floating_point_v<Value>) text.precision(digits_of(value));
+  text << value;
+}
+
+inline void write_typed(std::ostream& text, const std::complex<double>& value) {
+  write_typed(text, value.real());
+  text << std::showpos;
+  write_typed(text, value.imag());
+  text << std::noshowpos << "j";
+}
+
 // Raises std::invalid_argument("<argument>: <rule>, got <value>") unless `holds`.
 template <class Value>
 void require(bool holds, std::string_view argument, std::string_view rule, const Value& value) {
   if (holds) return;
   std::ostringstream text;
-  text.precision(17);
-  if constexpr (std::is_floating_point_v<Value>) text.precision(digits_of(value));
-  text << argument << ": " << rule << ", got " << value;
+  text << argument << ": " << rule << ", got ";
+  write_typed(text, value);
   throw std::invalid_argument(text.str());
 }
 

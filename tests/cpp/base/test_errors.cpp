@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/text/nearest_names.h"
@@ -13,7 +14,8 @@ namespace {
 using Names = std::vector<std::string>;
 
 // What `require` says of a number behind "got ".
-std::string said_of(double value) {
+template <class Value>
+std::string said_of(const Value& value) {
   try {
     require(false, "bandwidth", "must be positive", value);
   } catch (const std::invalid_argument& error) {
@@ -35,6 +37,11 @@ TEST(Require, SaysNumbersAsTheyWereTyped) {
   EXPECT_EQ(said_of(77e9), "77000000000");
   EXPECT_EQ(said_of(std::nan("")), "nan");
   EXPECT_EQ(said_of(-INFINITY), "-inf");
+}
+
+TEST(Require, SaysComplexNumbersAsTheyWereTyped) {
+  EXPECT_EQ(said_of(std::complex<double>(4.0, 0.1)), "4+0.1j");
+  EXPECT_EQ(said_of(std::complex<double>(-2.5, -1e-3)), "-2.5-0.001j");
 }
 
 TEST(Require, SaysAllDigitsThatTellANumberFromItsNeighbours) {

@@ -7,6 +7,7 @@
 
 #include "call/argument.h"
 #include "call/define.h"
+#include "echopath/base/text/streamed.h"
 #include "paths/record_keywords.h"
 #include "values/array.h"
 #include "values/travel.h"
@@ -110,13 +111,21 @@ void bind_trace_frame(py::module_& m) {
   py::class_<TraceStatistics> bound_statistics(m, "TraceStatistics",
                                                "What a trace did. Raises TypeError or ValueError naming the argument.");
   define_record(bound_statistics, StatisticsKeywords{});
+  bound_statistics.def("__repr__", [](const TraceStatistics& self) {
+    return streamed("TraceStatistics(", self.num_rays, " rays, ", self.num_queries, " queries, ", self.num_hits, " hits, ",
+                    self.num_paths, " paths)");
+  });
 
   py::class_<TraceFrame> bound_frame(
       m, "TraceFrame",
       "What amplitudes and lengths of paths are relative to. Raises TypeError or ValueError naming the argument.");
   bind_settings(bound_frame, RecordKeywords{});
   bound_frame.def_property_readonly("transmitter", array_of(&TraceFrame::transmitter), "[3] m, where rays started, world")
-      .def_property_readonly("receiver", array_of(&TraceFrame::receiver), "[3] m, where hits were connected to, world");
+      .def_property_readonly("receiver", array_of(&TraceFrame::receiver), "[3] m, where hits were connected to, world")
+      .def("__repr__", [](const TraceFrame& self) {
+        return streamed("TraceFrame(", self.statistics.num_rays, " rays, ", self.strata.size(), " strata, seed ", self.seed,
+                        ", at ", self.trace_time, " s)");
+      });
 }
 
 }  // namespace echopath::bindings

@@ -34,6 +34,10 @@ class SceneRecord(NamedTuple):
     files: dict[str, str] = {}
     reason: str = ""
 
+    def __repr__(self) -> str:
+        told = self.reason or (counted(len(self.files), "file") if self.files else "")
+        return f"SceneRecord({self.state}{told and ': '}{told})"
+
 
 def scene_name(scene: int) -> str:
     """The name of the folder of a scene, in that of the dataset."""

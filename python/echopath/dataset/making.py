@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from .. import _core
 from ..arguments.checks import array, checked, count, flag, optional, refused, text
 from ..arguments.checks import path as file_or_folder
+from ..base.counts import counted
 from ..base.files import require_writable
 from ..sequence.folder import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
@@ -39,6 +40,10 @@ class Forecast(NamedTuple):
     seconds: float | None
     bytes: int
 
+    def __repr__(self) -> str:
+        time = "a time that depends on the workers" if self.seconds is None else f"about {self.seconds:.2g} s"
+        return f"Forecast({counted(self.frames, 'frame')} in {time}, {self.bytes / 2**20:.2g} MiB)"
+
 
 class MadeScene(NamedTuple):
     """One scene that was looked at or made.
@@ -56,6 +61,12 @@ class MadeScene(NamedTuple):
     total: int
     seconds_left: float | None
     unresolved: UnresolvedEchoes | None = None
+
+    def __repr__(self) -> str:
+        told = [f"{self.done} of {self.total}: scene {self.scene} ({self.split}) {self.record.state}"]
+        told += [self.record.reason] if self.record.reason else []
+        told += [f"about {self.seconds_left:.2g} s left"] if self.seconds_left else []
+        return f"MadeScene({', '.join(told)})"
 
 
 def _frames_rule(argument: str, value: Any) -> tuple[int, int] | None:

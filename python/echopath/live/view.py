@@ -45,5 +45,5 @@ class LiveView:
 
     def __repr__(self) -> str:
         kind = "preview" if self.is_preview else "view"
-        return (f"LiveView({kind} of change {self.number}: {self.num_rays_shot} of {counted(self.num_rays, 'ray')} shot, "
+        return (f"LiveView({kind} of change {self.number}: {self.num_rays_shot:,} of {counted(self.num_rays, 'ray')} shot, "
                 f"{counted(self.num_paths_changed, 'path')} changed, {1e3 * self.seconds:.0f} ms)")

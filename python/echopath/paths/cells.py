@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
 from ..base.callers import warn_user
+from ..base.counts import counted
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..base.velocities import ambiguity_of
@@ -37,6 +38,10 @@ class PathCells:
     velocity: np.ndarray
     range_index: np.ndarray
     velocity_index: np.ndarray
+
+    def __repr__(self) -> str:
+        inside = np.count_nonzero(self.range_index != OUTSIDE)
+        return f"PathCells({counted(len(self.length), 'path')}, {inside:,} within the map)"
 
     @checked(self=anything, range_indices=_ENDS, velocity_indices=_ENDS)
     def within(self, range_indices: ArrayLike, velocity_indices: ArrayLike) -> np.ndarray:

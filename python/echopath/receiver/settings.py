@@ -225,6 +225,11 @@ class Receiver(Settings):
         if any(corner <= 0.0 for corner in self.high_pass):
             raise refused(ValueError, "high_pass", "Hz above 0", self.high_pass)
 
+    def __repr__(self) -> str:
+        default = Receiver()
+        told = (f"{name}={value!r}" for name, value in self.keywords().items() if value != getattr(default, name))
+        return f"Receiver({', '.join(told)})"
+
     def plain(self) -> dict[str, Any]:
         """{keyword: value} of what is not the default, values of its values likewise: for files."""
         return _plain(self)

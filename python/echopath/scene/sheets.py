@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
+from ..base.counts import counted
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 
@@ -40,6 +41,10 @@ class SheetCoefficients:
         """
         te, tm = np.abs(self.te_transmission) ** 2, np.abs(self.tm_transmission) ** 2
         return te_share * te + (1.0 - te_share) * tm
+
+    def __repr__(self) -> str:
+        first, last = np.degrees([self.incidence.min(), self.incidence.max()]) if self.incidence.size else (np.nan, np.nan)
+        return f"SheetCoefficients({counted(self.incidence.size, 'angle')} from {first:.4g} to {last:.4g} degrees)"
 
     def __eq__(self, other) -> bool:
         return has_same_fields(self, other) if isinstance(other, SheetCoefficients) else NotImplemented

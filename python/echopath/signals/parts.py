@@ -4,9 +4,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from .. import _core
 from .._core import Grouping, Selection
 from ..arguments.checks import Progress, an, checked, optional, refused, text
+from ..arguments.names import first_names
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from ..base.equality import is_same
 from ..base.made_by import made_by
@@ -48,6 +51,10 @@ class Parts(dict[Any, Any]):
         return not self == other
 
     __hash__ = None
+
+    def __repr__(self) -> str:
+        shape = "".join(f": {list(np.shape(cube))}" for cube in list(self.values())[:1])
+        return f"Parts({first_names(list(map(str, self)))}{shape})"
 
     def __missing__(self, name):
         raise KeyError(f"no part '{name}'; there are {', '.join(map(str, self))}")

@@ -1,0 +1,53 @@
+"""What results and settings show of themselves at a prompt: one short line that says what they hold."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import dataset
+from echopath.dataset.folder import SceneRecord
+from support import shapes
+
+LONGEST = 120  # characters
+
+
+@pytest.fixture(scope="module")
+def paths():
+    scene = shapes.scene_of(plate=(shapes.plate((5.0, 0.0, 0.0), (-1.0, 0.0, 0.0), 1.0), shapes.lambert(0.9)))
+    radar = ep.Radar(ep.ChirpSequence(num_samples=64, num_chirps=4),
+                     transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
+    return radar, ep.trace(scene, radar, num_rays=300)
+
+
+def test_records_show_what_they_were_made_with(paths):
+    _, record = paths
+    rays, hits = record.frame.statistics.num_rays, record.frame.statistics.num_hits
+    assert repr(record.frame).startswith(f"TraceFrame({rays} rays, {len(record.frame.strata)} strata, seed 1, at ")
+    assert f"({rays} rays, " in repr(record.frame.statistics) and f", {hits} hits, " in repr(record.frame.statistics)
+
+
+def test_arrays_are_counted_and_not_listed(paths):
+    radar, record = paths
+    parts = ep.decompose(record, radar, {"plate": "T 'plate' R"})
+    assert repr(parts) == "Parts(plate, other: [1, 1, 4, 64])" and repr(parts | {}).startswith("{")
+    cells = ep.path_cells(record, ep.range_doppler(sum(parts.values()), radar))
+    assert repr(cells) == f"PathCells({record.num_paths} paths, {np.count_nonzero(cells.range_index >= 0)} within the map)"
+    sheet = ep.sheet_coefficients(ep.materials["painted_bumper"], frequency=77e9, incidence=np.radians([0, 30, 60]))
+    assert repr(sheet) == "SheetCoefficients(3 angles from 0 to 60 degrees)"
+
+
+def test_receivers_show_what_is_not_ideal():
+    assert repr(ep.Receiver()) == "Receiver()"
+    faulty = ep.Receiver(iq_gain_db=0.2, phase_noise={"offsets": [1e4], "levels": [-70.0]})
+    assert repr(faulty) == "Receiver(phase_noise=PhaseNoise(offsets=(10000.0,), levels=(-70.0,)), iq_gain_db=0.2)"
+    assert eval(repr(faulty), {"Receiver": ep.Receiver, "PhaseNoise": ep.PhaseNoise}) == faulty
+
+
+def test_datasets_tell_of_their_scenes_in_short_lines():
+    """`for told in dataset.make(...): print(told)` is what the documentation does."""
+    files = {f"frame_{number:04d}.h5": "0" * 64 for number in range(9)}
+    done = dataset.MadeScene(0, "train", SceneRecord("done", files), False, 1, 4, 0.56)
+    failed = done._replace(record=SceneRecord("failed", reason="ValueError: no rays"), seconds_left=None)
+    assert repr(done) == "MadeScene(1 of 4: scene 0 (train) done, about 0.56 s left)"
+    assert repr(failed) == "MadeScene(1 of 4: scene 0 (train) failed, ValueError: no rays)"
+    assert repr(done.record) == "SceneRecord(done: 9 files)"
+    assert repr(dataset.Forecast(8, 1.4962, 3024925)) == "Forecast(8 frames in about 1.5 s, 2.9 MiB)"

@@ -36,7 +36,7 @@ def maps_of(argument: str, parts: dict | None, spectrum, radar) -> dict:
 
 def _map_of(argument: str, name: str, part, spectrum, radar):
     if isinstance(part, dict):
-        raise ValueError(f"{argument}: must be those of one view, got several, such as {name!r}")
+        raise ValueError(f"{argument}: must be those of one view, as {argument}[{name!r}], got a table of views")
     if not isinstance(part, _core.RangeDoppler):
         return _core.range_doppler(array("[T, R, C, S]", kind="complex")(argument, part), radar, window=spectrum.window,
                                    zero_pad=spectrum.zero_pad)

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, optional, refused, text
+from ..arguments.names import first_names
 from ..arguments.objects import Objects
 from ..arguments.part_names import REST, require_names
 from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
@@ -208,7 +209,8 @@ def _selections_and_cubes(parts, radar, start_time: float, errors: bool):
     if not isinstance(parts, Mapping):
         raise refused(TypeError, "parts", "Parts of decompose or {name: selection}", parts)
     if any(isinstance(value, Mapping) for value in parts.values()):
-        raise ValueError(f"parts: must be one partition, got several: {', '.join(map(str, parts))}; give one of them")
+        raise ValueError(f"parts: must be one partition, as parts[{next(iter(parts))!r}], got a table of partitions: "
+                         f"{first_names(list(map(str, parts)))}")
     if not any(isinstance(value, np.ndarray) for value in parts.values()):
         return {text("parts", name): selection_rule(f"parts.{name}", value) for name, value in parts.items()}, {}
     _check_cubes(parts, radar, start_time)

@@ -63,7 +63,7 @@ def test_words_name_objects_and_ghosts(labels):
     ({"window": "han"}, "window"),
     ({"zero_pad": 0}, "zero_pad"),
     ({"objects": ["bicycle"]}, "bicycle"),
-    ({"parts": {"one": {"a": "T . R"}}}, "parts: must be one partition"),
+    ({"parts": {"one": {"a": "T . R"}}}, r"parts: must be one partition, as parts\['one'\], got a table of partitions: one"),
     ({"parts": {"one": np.zeros((1, 1, 2, 2))}}, "parts: cubes must have shape"),
     ({"parts": ep.signals.parts.Parts({"other": np.zeros((1, 1, 64, 256))}, {}, make_radar(height=1.1)), "radar": make_radar()},
      "parts: must be of the radar, got those of another transmitters"),

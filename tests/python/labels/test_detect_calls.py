@@ -87,7 +87,7 @@ def test_bad_arguments_are_named(spheres):
     with pytest.raises(ValueError, match="paths: must be traced with the radar"):
         other = radar_with(num_chirps=32)
         ep.detect(ep.range_doppler(np.zeros((1, 8, 32, 256), complex), other), other, paths=paths)
-    with pytest.raises(ValueError, match="parts: must be those of one view"):
+    with pytest.raises(ValueError, match=r"parts: must be those of one view, as parts\['view'\]"):
         ep.detect(spectrum, radar, parts={"view": parts})
     with pytest.raises(ValueError, match="parts: maps must be as"):
         ep.detect(spectrum, radar, parts={name: ep.range_doppler(cube, radar, zero_pad=2) for name, cube in parts.items()})

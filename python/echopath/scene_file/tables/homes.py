@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from .schema import SceneTable
 
+_TOP = "the top of the file, above all tables"
 MOST_HOMES = 3  # a key that more tables have, such as position, tells nothing of the one that was meant
 
 
@@ -18,6 +19,8 @@ def homes_of(key: str, asking: type[BaseModel]) -> str:
     asking: the table that has it not; of kinds of tables that stand in several places, such as motions, those below it are meant
     """
     found: dict[type[BaseModel], str] = {}
+    if (top := SceneTable.model_fields.get(key)) is not None and not any(_named_in(top.annotation)):
+        found[SceneTable] = _TOP
     for header, owner, table in _tables():
         if key in table.model_fields:
             kind = next((other for other in found if issubclass(table, other)), table)

@@ -217,6 +217,9 @@ def test_a_mirror_of_layers_without_a_whole_material_of_its_name_gets_no_name_in
 
 @pytest.mark.parametrize("text, told", [
     ("num_rays = 5\n" + RADAR, "num_rays: unknown key; it belongs to [trace]"),
+    (RADAR + "[labels]\nmark_mirrors = true",
+     "labels.mark_mirrors: unknown key; it belongs to the top of the file, above all tables"),
+    (RADAR + "[trace]\ntitle = 'a street'", "trace.title: unknown key; it belongs to the top of the file, above all tables"),
     ("seed = 5\n" + RADAR, "seed: unknown key; it belongs to [trace] or [noise]"),
     (RADAR.replace("num_samples", "transmit_power = 1.0\nnum_samples"),
      "radar.waveform.transmit_power: unknown key; it belongs to [radar]"),

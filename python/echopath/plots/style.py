@@ -110,15 +110,37 @@ def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *,
     Raises OSError where the file cannot be written, TypeError naming the argument.
     """
     import matplotlib
+
+    whole = _whole(figure)
+    with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary, _settled(whole):
+        whole.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))
+
+
+def show(figure: Figure | SubFigure | Axes) -> None:
+    """Shows a figure that plot_* has made in a window, or in a notebook below the cell, with all that pyplot has to show.
+
+    figure: of matplotlib, or axes in it
+    Returns as `matplotlib.pyplot.show` does: from a script, when the windows are closed. Raises TypeError naming the argument.
+    """
+    from matplotlib import pyplot
+
+    whole = _whole(figure)
+    if whole.canvas.manager is None:  # a window of pyplot takes it in the place of its own
+        canvas = pyplot.figure(figsize=whole.get_size_inches()).canvas
+        canvas.figure = whole
+        whole.set_canvas(canvas)
+    pyplot.show()
+
+
+def _whole(figure) -> Figure:
+    """The figure that axes or a part of one belong to."""
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
     drawn = figure.figure if isinstance(figure, Axes) else figure
     if not isinstance(drawn, FigureBase):
         raise refused(TypeError, "figure", "a figure of matplotlib, or axes in it", figure)
-
-    with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary, _settled(drawn.figure):
-        drawn.figure.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))
+    return drawn.figure
 
 
 @contextmanager

@@ -32,3 +32,4 @@ frame = ep.simulate(scene, radar, num_rays=40_000, angles={"combine": "peak", "w
 truth = ep.truth(frame)
 places = dict(zip(truth.name, zip(truth.range, truth.azimuth)))
 figure = plots.plot_range_azimuth(frame.range_azimuth, title="Three corners at 6, 9 and 14 m, a ball at 10 m", places=places)
+plots.show(figure)

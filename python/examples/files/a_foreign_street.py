@@ -39,3 +39,4 @@ frame = ep.simulate(scene, radar, num_rays=100_000, max_bounces=2, angles={"wind
 # %%
 # Fronts of metal on the right answer more strongly than those of brick on the left.
 figure = ep.plots.plot_range_azimuth(frame.range_azimuth, title="Houses of another program: brick left, metal right")
+ep.plots.show(figure)

@@ -61,3 +61,4 @@ print(file.title)
 frame = ep.simulate(file.scene, file.radar, parts=file.parts, guard=False, trace=file.trace, signal=file.signal)
 figure = plots.plot_overview(frame.spectrum, {name: one for name, one in frame.part_spectra["parts"].items() if name != "other"},
                              title="All that is received", parts_title="Without noise, by part")
+plots.show(figure)

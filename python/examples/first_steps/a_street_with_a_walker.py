@@ -28,3 +28,4 @@ print(frame)
 # %%
 # Velocities are positive for what recedes, so the walker stands below zero. The walls stand still.
 figure = plots.plot_range_doppler(frame.spectrum, title="A person walks towards the radar between two walls")
+plots.show(figure)

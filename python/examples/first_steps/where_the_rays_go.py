@@ -26,3 +26,4 @@ print(paths)
 # Green rays went straight to an object and back, blue ones took the wall on one way, orange ones bounced three times within
 # the corner reflector.
 figure = plots.plot_scene(scene, paths, num_rays=150, title="150 of the paths of 20 000 rays: the strongest to each object")
+plots.show(figure)

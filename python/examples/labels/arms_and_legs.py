@@ -22,3 +22,4 @@ parts = {"arms": "T .* 'walker/arm_*' .* R", "legs": "T .* 'walker/leg_*' .* R",
 frame = ep.simulate(scene, radar, num_rays=40_000, parts=parts, noise_seed=None, guard=False)
 spectra = {name: spectrum for name, spectrum in frame.part_spectra["parts"].items() if name != "other"}
 figure = plots.plot_partition(spectra, title="A walker by parts of the body")
+plots.show(figure)

@@ -31,3 +31,4 @@ print(f"sum of the parts and the whole differ by {difference:.0e} of the peak")
 spectra = {name: ep.range_doppler(cube, radar) for name, cube in parts.items() if name != "other"}
 powers = {name: ep.received_power(paths.select(way)) for name, way in ways.items()}
 figure = plots.plot_partition(spectra, powers=powers, title="A walker 2.5 m beside a metal wall, by the way of the echo")
+plots.show(figure)

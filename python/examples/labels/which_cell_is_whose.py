@@ -26,3 +26,4 @@ print(labels)
 
 # %%
 figure = plots.plot_ghosts(labels, title="Cells of objects and of their ghosts")
+plots.show(figure)

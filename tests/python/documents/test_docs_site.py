@@ -137,14 +137,15 @@ def fewer(count: int, many: int, part: int) -> int:
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
-def test_scripts_of_the_gallery_run_without_a_warning_and_draw(script, monkeypatch):
-    monkeypatch.setattr(plt, "show", lambda: None)
+def test_scripts_of_the_gallery_run_without_a_warning_and_show_their_figures(script, monkeypatch):
+    shown = []
+    monkeypatch.setattr(plt, "show", lambda: shown.extend(map(plt.figure, plt.get_fignums())))
     names = {"__name__": "a_script"}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         exec(compile(with_little_work(script.read_text(encoding="utf-8")), str(script), "exec"), names)
     figures = [value for value in names.values() if isinstance(value, Figure)]
-    assert figures
+    assert figures and all(any(figure is one for one in shown) for figure in figures)
     assert all(len(titles_and_labels(figure)) >= 2 for figure in figures)
     plt.close("all")
 

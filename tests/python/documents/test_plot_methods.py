@@ -276,3 +276,21 @@ def test_the_velocity_of_one_chirp_has_no_other_tick_than_its_own(ax):
     ep.range_doppler(np.ones((1, 1, 1, 16), complex), radar).plot(ax=ax)
     ax.figure.canvas.draw()
     assert ax.get_yticks().tolist() == [0.0] and len(ax.get_xticks()) > 1
+
+
+def test_figures_without_a_window_are_shown_by_pyplot(frame, monkeypatch):
+    from matplotlib import pyplot as plt
+
+    shown = []
+    monkeypatch.setattr(plt, "show", lambda: shown.append([plt.figure(number) for number in plt.get_fignums()]))
+    plt.close("all")
+    figure = ep.plots.plot_scene(frame.scene, frame.paths)
+    for given in (figure, figure.axes[0], figure):  # once shown, it has its window
+        ep.plots.show(given)
+    assert shown == [[figure]] * 3
+    assert plt.gcf() is figure
+    figure.canvas.draw()
+    assert np.ptp(np.asarray(figure.canvas.buffer_rgba())) > 0
+    plt.close("all")
+    with pytest.raises(TypeError, match="figure: must be a figure of matplotlib, or axes in it, got"):
+        ep.plots.show(frame)

@@ -12,11 +12,14 @@ namespace {
 
 constexpr size_t kMaxObjects = 3;    // in the text
 constexpr size_t kValueColumn = 37;  // of the text
+constexpr double kNothing = 1e-12;   // share of the power, 120 dB below it, that the text calls 0
 
 // By so much changes what two edges opposite each other leave of a field, per half Fresnel zone, at most.
 constexpr double kMostPerHalfZone = 2.0;
 
-std::string percent(double share) { return with_digits(share < 0.1 ? 2 : 3, 100.0 * share) + " %"; }
+std::string percent(double share) {
+  return share < kNothing ? "0 %" : with_digits(share < 0.1 ? 2 : 3, 100.0 * share) + " %";
+}
 
 std::string radians(double phase) { return with_digits(2, phase) + " rad"; }
 

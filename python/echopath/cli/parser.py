@@ -79,7 +79,8 @@ def _add_run(commands) -> None:
     run = commands.add_parser("run", help="simulate a scene file")
     run.add_argument("scene", metavar="SCENE.toml", help=f"scene file (keys: {data_folder('README.md')})")
     run.add_argument("--out", type=named, required=True, metavar="DIR",
-                     help="folder of the results; of frames in time also one file (.h5) of all")
+                     help="folder of the results, in the place of those of an earlier run; of frames in time also one file (.h5) "
+                          "of all")
     _add_trace_options(run, default_rays=None)
     _add_part_option(run)
     run.add_argument("--truth", action="store_true",

@@ -177,5 +177,5 @@ class Detections:
         names, counts = np.unique(self.part[(self.part != "") & ~self.is_noise], return_counts=True)
         of_parts = "".join(f", {count} {name}" for name, count in zip(names, counts))
         of_parts += f", {self.is_noise.sum()} of noise alone" if self.is_noise.any() else ""
-        return (f"Detections({len(self)}: {self.range.min():.2f} to {self.range.max():.2f} m, {self.velocity.min():.2f} to "
-                f"{self.velocity.max():.2f} m/s{of_parts})")
+        return (f"Detections({len(self)}: {self.range.min():.2f} to {self.range.max():.2f} m, {self.velocity.min():z.2f} to "
+                f"{self.velocity.max():z.2f} m/s{of_parts})")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.decibels import SMALLEST_POWER, in_dbm
-from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new
+from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new, require_drawable
 
 if TYPE_CHECKING:
     from .. import _core
@@ -21,8 +21,9 @@ def draw_angle_spectrum(spectrum: _core.AngleSpectrum, range: float | None = Non
 
     spectrum: AngleSpectrum; range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
     ax: axes to draw in, None: new ones; title: above the place of the cell
-    Returns the axes: angles in degrees, power in dBm. Raises TypeError naming `ax`.
+    Returns the axes: angles in degrees, power in dBm. Raises TypeError naming `spectrum` or `ax`.
     """
+    require_drawable("spectrum", "an AngleSpectrum, as ep.angle_fft makes it of a spectrum", spectrum, "values", "azimuth")
     row, column = _cell(spectrum, range, velocity)
     level = in_dbm(np.abs(spectrum.values[:, :, row, column]) ** 2, SMALLEST_POWER)
     with axes_or_new(ax, 7.0, 4.4) as ax:

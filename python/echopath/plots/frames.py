@@ -11,7 +11,7 @@ from ..arguments.part_names import LEAKAGE
 from ..base.velocities import ambiguity_of, folded
 from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, hold_points
 from .points import draw_points
-from .style import axes_or_new
+from .style import axes_or_new, require_drawable
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes
@@ -40,8 +40,9 @@ def draw_frame(frame: Frame, *, ax: Axes | None = None, vmin: float | None = Non
 
     ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm, None: `limits_of_frame`
     title: None: what it shows
-    Returns the axes, as `draw_range_doppler`. Raises ValueError for a record of paths alone.
+    Returns the axes, as `draw_range_doppler`. Raises TypeError naming `frame`, ValueError for a record of paths alone.
     """
+    require_drawable("frame", "a Frame", frame, "spectrum", "detections")
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to draw, got a record of paths alone")
     vmin, vmax = chosen_limits(limits_of_frame(frame), vmin, vmax)

@@ -12,7 +12,7 @@ from ..arguments.part_names import REST
 from ..arguments.checks import optional, real, refused
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, static_speed, with_error
-from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
+from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, require_drawable, set_title
 
 if TYPE_CHECKING:
     from .. import _core
@@ -49,8 +49,9 @@ def _noise_above(share: float, num_channels: int) -> float:
 def power_dbm(spectrum: _core.RangeDoppler) -> np.ndarray:
     """Mean power of the channels, [velocity, range] in dB re 1 mW.
 
-    spectrum: RangeDoppler. Raises AttributeError for other objects.
+    spectrum: RangeDoppler. Raises TypeError naming it.
     """
+    require_drawable("spectrum", "a RangeDoppler, as ep.range_doppler makes it of a cube", spectrum, "values", "velocity")
     power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
     return in_dbm(power, SMALLEST_POWER)
 
@@ -59,7 +60,7 @@ def colour_limits(spectrum: _core.RangeDoppler, leaked: _core.RangeDoppler | Non
     """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5.
 
     spectrum: RangeDoppler; leaked: that of the leakage in it, which sets no scale, or None
-    Raises AttributeError for other objects.
+    Raises TypeError naming `spectrum`.
     """
     return limits_of_level(power_dbm(spectrum), None if leaked is None else power_dbm(leaked))
 
@@ -99,7 +100,7 @@ def plot_range_doppler(spectrum: _core.RangeDoppler, *, title: str = "Received p
     spectrum: of `range_doppler`; title: above the map; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`
     note: small print below the map
     Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
-    ValueError naming vmin or vmax.
+    ValueError naming spectrum, vmin or vmax.
     """
     with new_figure(*MAP_SIZE) as figure:
         draw_range_doppler(spectrum, ax=figure.subplots(), vmin=vmin, vmax=vmax, title=title)
@@ -113,7 +114,7 @@ def draw_range_doppler(spectrum: _core.RangeDoppler, *, ax: Axes | None = None, 
 
     spectrum: of `range_doppler`; ax: axes to draw in, None: new ones; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`
-    Returns the axes, as of `plot_range_doppler`. Raises TypeError or ValueError naming ax, vmin or vmax.
+    Returns the axes, as of `plot_range_doppler`. Raises TypeError or ValueError naming spectrum, ax, vmin or vmax.
     """
     vmin, vmax = _limits(spectrum, vmin, vmax)
     with axes_or_new(ax, *MAP_SIZE) as ax:

@@ -9,7 +9,7 @@ import numpy as np
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..paths.resolution import RESOLVED_DB
 from ..signals.measures import for_pictures, with_error
-from .style import new_figure, part_colours
+from .style import new_figure, part_colours, require_drawable
 
 if TYPE_CHECKING:
     from .. import _core
@@ -22,8 +22,12 @@ def plot_part_powers(powers: Mapping[str, _core.ReceivedPower], *, title: str = 
     """The mean received power of each part with its 95 % interval; hollow where it is not resolved.
 
     powers: {part: ep.ReceivedPower}; title: above them. Returns a matplotlib figure: power in dBm across.
-    Raises AttributeError for other objects.
+    Raises TypeError naming `powers`.
     """
+    rule = "a dict of ReceivedPower, as frame.mean_part_powers['parts'] is one"
+    require_drawable("powers", rule, powers, "items")
+    for power in powers.values():
+        require_drawable("powers", rule, power, "interval_db")
     with new_figure(6.0, 0.9 + 0.38 * len(powers)) as figure:
         draw_part_powers(figure.subplots(), powers, title)
     return figure

@@ -8,7 +8,7 @@ import numpy as np
 from ..arguments.checks import choice, text
 from ..base.counts import counted
 from .maps import RANGE_LABEL, VELOCITY_LABEL
-from .style import axes_or_new, part_colours
+from .style import axes_or_new, part_colours, require_drawable
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 if TYPE_CHECKING:
@@ -31,8 +31,9 @@ def draw_detections(detections: Detections, *, view: str = "range_doppler", ax: 
     detections: Detections; title: above the axes
     view: "range_doppler", or "above" (needs azimuths); ax: axes to draw in, None: new ones
     Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame.
-    Raises ValueError for other views, and for a view from above without azimuths.
+    Raises TypeError naming detections, ValueError for other views and for a view from above without azimuths.
     """
+    require_drawable("detections", "Detections, as frame.detections are", detections, "points", "ghost_type")
     choice(*VIEWS)("view", view)
     if view == "above" and len(detections) and not np.isfinite(detections.azimuth).any():
         raise ValueError("view: 'above' needs azimuths, which the antennas of these detections cannot tell")

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import an
+from ..arguments.checks import LARGEST_COUNT, an, array
+from ..arguments.checks import count as whole
 from ..arguments.objects import Objects, named_globs
 from ..base.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
@@ -68,13 +69,15 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
     objects: as in `families`, such as those of labels; None: the children of the scene's root
     Mirrors are drawn translucent, dashed where they go on beyond the picture; up to 12 objects bear their names.
-    title: above them. Returns a matplotlib figure with three views in metres. Raises TypeError naming scene or paths.
+    title: above them. Returns a matplotlib figure with three views in metres. Raises TypeError or ValueError naming the
+    argument.
     """
     an(_core.Scene)("scene", scene)
     an(_core.Paths)("paths", paths)
+    num_rays = whole(1, LARGEST_COUNT)("num_rays", num_rays)
     scene = scene_in_frame(scene, paths.radar, paths.frame.start_time)  # whose mesh IDs are those of the paths
     time = paths.frame.trace_time if time is None else time
-    power = paths.power if power is None else power
+    power = paths.power if power is None else array(f"[{len(paths)}]")("power", power)
     names = _names_of_meshes(scene, objects)
     chosen = _chosen(names, paths, power, num_rays)
     drawing = _collect(scene, subset(paths, chosen), time, names if objects is None else _named(names, objects))

@@ -36,6 +36,12 @@ _SETTINGS = {
 }
 
 
+def require_drawable(argument: str, rule: str, value, *attributes: str) -> None:
+    """Raises TypeError naming the argument and the rule unless the value has the attributes that are drawn."""
+    if not all(hasattr(value, name) for name in attributes):
+        raise refused(TypeError, argument, rule, value)
+
+
 @contextmanager
 def new_figure(width: float, height: float):
     """Yields an empty figure of that size in inches that needs no window."""

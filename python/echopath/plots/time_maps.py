@@ -10,7 +10,7 @@ from .maps import (
     DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
     limits_above, margin_of,
 )
-from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours
+from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours, require_drawable
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes
@@ -39,6 +39,7 @@ def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = 
     Returns the axes: time in s across; radial velocity in m/s, range in m or azimuth in degrees up. Raises TypeError or
     ValueError naming the argument.
     """
+    require_drawable("map", "a Spectrogram, RangeTime or AngleTime, as ep.spectrogram makes it of frames", map, "AXIS", "power")
     level = in_dbm(map.power, SMALLEST_POWER)
     noise = _noise_level(level, map.noise_power) if map.part is None else level.max() - DYNAMIC_RANGE_DB - MARGIN_OVER_MEDIAN_DB
     vmin, vmax = chosen_limits(limits_above(noise, level.max()), vmin, vmax)
@@ -60,8 +61,9 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     """The whole in grey under the cells of the mask, coloured by the part that dominates, in given axes or new ones (None).
 
     labels: SpectrogramLabels; title: above the axes
-    Returns the axes: time in s across, radial velocity in m/s up. Raises TypeError naming `ax`.
+    Returns the axes: time in s across, radial velocity in m/s up. Raises TypeError naming `labels` or `ax`.
     """
+    require_drawable("labels", "SpectrogramLabels, as ep.spectrogram_labels makes them", labels, "whole", "dominant")
     from matplotlib.colors import ListedColormap
 
     level = in_dbm(labels.whole, SMALLEST_POWER)

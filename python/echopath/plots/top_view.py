@@ -12,7 +12,7 @@ from ..arguments.checks import refused
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
-from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, set_title
+from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, require_drawable, set_title
 
 if TYPE_CHECKING:
     from .. import _core
@@ -36,6 +36,9 @@ LEGEND_LOOK = {"facecolor": "black", "labelcolor": "white", "framealpha": 1.0}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
 
+_MAP_RULE = "a RangeAzimuth, as ep.range_azimuth makes it of a spectrum"
+
+
 def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth], *,
                        title: str = "Received power by range and azimuth, seen from above", vmin: float | None = None,
                        vmax: float | None = None, places: Mapping[str, ArrayLike] | None = None,
@@ -52,6 +55,8 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
     if maps is None:
         raise refused(TypeError, "maps", "a RangeAzimuth, which frames have whose antennas tell azimuths apart", maps)
     maps = maps if isinstance(maps, dict) else {"": maps}
+    for one in maps.values():
+        require_drawable("maps", _MAP_RULE, one, "azimuth", "power")
     first = next(iter(maps.values()))
     vmin, vmax = chosen_limits(_colour_limits(first, leaked), vmin, vmax)
     reach = max(_reach(one, vmin) for one in maps.values())
@@ -86,8 +91,9 @@ def draw_range_azimuth(map: _core.RangeAzimuth, *, ax: Axes | None = None, vmin:
     """One map in given axes, or in new ones, otherwise as `plot_range_azimuth`.
 
     map: of `range_azimuth`; ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: above them
-    Returns the axes. Raises TypeError or ValueError naming ax, vmin or vmax.
+    Returns the axes. Raises TypeError or ValueError naming map, ax, vmin or vmax.
     """
+    require_drawable("map", _MAP_RULE, map, "azimuth", "power")
     vmin, vmax = chosen_limits(_colour_limits(map), vmin, vmax)
     with axes_or_new(ax, LARGE * _aspect(map) + 1.6, LARGE + 0.8) as ax:
         image = _draw(ax, map, _reach(map, vmin), vmin, vmax)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .style import CURVE_COLOURS, axes_or_new
+from .style import CURVE_COLOURS, axes_or_new, require_drawable
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes
@@ -24,8 +24,9 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
     The legend has the tracks that follow objects, or where none does all of them: the first ROWS times COLUMNS, and how many
     more.
     tracks: Tracks; title: above the axes
-    Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
+    Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `tracks` or `ax`.
     """
+    require_drawable("tracks", "Tracks, as ep.track makes them", tracks, "track", "state")
     numbers = np.unique(tracks.track)
     named = np.unique(tracks.track[tracks.object != ""]) if np.any(tracks.object != "") else numbers
     listed, more = named[:ROWS * COLUMNS].tolist(), max(len(named) - ROWS * COLUMNS, 0)

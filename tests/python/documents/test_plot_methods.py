@@ -94,7 +94,22 @@ def test_the_picture_of_a_scene_refuses_by_name_what_is_none(frame, scene, paths
     (lambda frame: ep.plots.plot_overview(frame.spectrum, frame.part_spectra), "spectra", "{'parts'"),
     (lambda frame: ep.plots.plot_labels(frame.labels), "labels", "{'parts'"),
     (lambda frame: ep.plots.plot_ghosts(frame), "labels", "Frame"),
-    (lambda frame: ep.plots.plot_range_azimuth(None), "maps", "None")])
+    (lambda frame: ep.plots.plot_range_azimuth(None), "maps", "None"),
+    (lambda frame: ep.plots.plot_range_azimuth(frame.spectrum), "maps", "RangeDoppler"),
+    (lambda frame: ep.plots.draw_range_azimuth(frame.spectrum), "map", "RangeDoppler"),
+    (lambda frame: ep.plots.plot_range_doppler(frame.cube), "spectrum", "an array"),
+    (lambda frame: ep.plots.draw_range_doppler(frame), "spectrum", "Frame"),
+    (lambda frame: ep.plots.power_dbm(frame.cube), "spectrum", "an array"),
+    (lambda frame: ep.plots.colour_limits(None), "spectrum", "None"),
+    (lambda frame: ep.plots.plot_part_powers(frame.mean_part_powers), "powers", "{"),
+    (lambda frame: ep.plots.draw_detections(frame), "detections", "Frame"),
+    (lambda frame: ep.plots.draw_tracks(frame), "tracks", "Frame"),
+    (lambda frame: ep.plots.draw_frame(frame.spectrum), "frame", "RangeDoppler"),
+    (lambda frame: ep.plots.draw_time_map(frame), "map", "Frame"),
+    (lambda frame: ep.plots.draw_angle_spectrum(frame.spectrum), "spectrum", "RangeDoppler"),
+    (lambda frame: ep.plots.draw_spectrogram_labels(frame), "labels", "Frame"),
+    (lambda frame: ep.plots.plot_scene(frame.scene, frame.paths, num_rays=0), "num_rays", "0"),
+    (lambda frame: ep.plots.plot_scene(frame.scene, frame.paths, power=[1.0]), "power", "an array")])
 def test_pictures_refuse_by_name_what_a_frame_holds_elsewhere(frame, draw, argument, got):
     with pytest.raises((TypeError, ValueError), match=f"^{argument}: must be .*, got {got}"):
         draw(frame)

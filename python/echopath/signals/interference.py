@@ -15,7 +15,7 @@ from ..arguments.settings import Replay, SignalSettings
 from ..base.chirps import chirps_duration
 from ..receiver.chain import transmitted_code
 from ..transmit import radar_of_noise
-from .interference_crossing import FINE, Chirps, add_crossing
+from .interference_crossing import EDGE, FINE, Chirps, add_crossing
 from .interference_ways import Ways, require_own_channels
 
 
@@ -51,10 +51,12 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     require_own_channels("other", other)
     ways, codes = Ways(radar, other, paths, begins, replay), transmitted_code(other)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
+    edge = EDGE / waveform.sampling_rate
     for place, begin in enumerate(begins):
         delay, amplitude = ways.of(place)
-        fine = np.zeros((num_rx, FINE * waveform.num_samples), complex)
-        for slot in _slots_under_way(other, codes, begin - offset, waveform.chirp_duration, np.max(delay, initial=0.0)):
+        fine = np.zeros((num_rx, FINE * (waveform.num_samples + 2 * EDGE)), complex)
+        for slot in _slots_under_way(other, codes, begin - edge - offset, waveform.chirp_duration + 2.0 * edge,
+                                     np.max(delay, initial=0.0)):
             pair = Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
                            begin - slot.begin - offset)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
@@ -97,13 +99,19 @@ def _chirp(waveform, slot: int) -> tuple:
 
 
 def _filtered(fine, waveform):
-    """[rx, sample] of signals [rx, FINE x sample]: what the filter before the converter leaves of them.
+    """[rx, sample] of signals [rx, FINE x (sample + 2 EDGE)]: what the filter before the converter leaves of them.
 
-    The one branch of real samples does not tell differences of frequency below 0 from those above: both are left.
+    The one branch of real samples does not tell differences of frequency below 0 from those above: both are left. The outer half
+    of both edges fades, so that the end of a chirp is not heard in its beginning.
     """
+    samples = slice(FINE * EDGE, -FINE * EDGE, FINE)
     if not fine.any():
-        return fine[:, ::FINE]
-    spectrum, count = np.fft.fft(fine), waveform.num_samples
+        return fine[:, samples]
+    half = FINE * EDGE // 2
+    fade = np.sin(0.5 * np.pi * (np.arange(half) + 0.5) / half) ** 2
+    fine[:, :half] *= fade
+    fine[:, -half:] *= fade[::-1]
+    spectrum, count = np.fft.fft(fine), waveform.num_samples + 2 * EDGE
     removed = slice((count + 1) // 2, fine.shape[1] - (count - 1) // 2) if waveform.real else slice(count, None)
     spectrum[:, removed] = 0.0
-    return np.fft.ifft(spectrum)[:, ::FINE]
+    return np.fft.ifft(spectrum)[:, samples]

@@ -52,6 +52,32 @@ def test_another_radar_sends_with_the_errors_of_its_transmitters():
         ep.simulate(ep.Scene(interferers=[ep.Interferer(radar=wrong)]), victim(), num_rays=100)
 
 
+def behind_a_running_filter(sender, *, finer=64, edge=256):
+    """The signal of a sender in the receiver of `victim`, over its amplitude: mixed at many times the sampling rate, from long
+    before the samples until long after them, and what an ideal filter leaves of it."""
+    waveform, distance = sender.waveform, sender.position[0]
+    place = np.arange(-edge * finer, (COUNT + edge) * finer)
+    time = place / (finer * RATE)
+    sent = time - distance / C
+    cycles = 77e9 * time + 0.5 * SLOPE * time ** 2 - waveform.start_frequency * sent - 0.5 * waveform.slope * sent ** 2
+    mixed = np.exp(2j * np.pi * np.mod(cycles, 1.0)) * ((sent >= 0.0) & (sent < waveform.chirp_duration))
+    frequency = np.fft.fftfreq(len(place), 1.0 / (finer * RATE))
+    passed = np.fft.ifft(np.fft.fft(mixed) * ((frequency >= 0.0) & (frequency < RATE)))
+    return passed[::finer][edge:-edge]
+
+
+@pytest.mark.parametrize("start, slope_ratio", [(76.9e9, 1.2), (76.8e9, 1.2), (77.3e9, 0.5), (77.45e9, 0.1)])
+def test_outside_of_a_crossing_nothing_is_heard_but_the_ringing_of_the_filter(start, slope_ratio):
+    """Neither where the mixed signal is followed no longer, nor at the other end of a chirp at whose end the crossing is."""
+    sender = build_radar(num_samples=COUNT, start_frequency=start, bandwidth=slope_ratio * 1e9, position=(20, 0, 0), yaw=np.pi)
+    found = ep.interference(victim(num_chirps=1), sender)[0, 0, 0]
+    expected = np.sqrt(friis(0.01, 20.0, start)) * behind_a_running_filter(sender)
+    begins = int(np.ceil(20.0 / C * RATE))  # a jump between two samples
+    errors = np.delete(np.abs(found - expected), [begins - 1, begins, begins + 1]) / np.sqrt(friis(0.01, 20.0, start))
+    assert np.abs(expected).max() > 0.9 * np.sqrt(friis(0.01, 20.0, start))
+    assert np.max(errors) < 0.03
+
+
 def test_one_branch_hears_both_sides_of_a_crossing():
     """Real samples do not tell a difference of frequency from its negative: half the sampling rate on either side. How much
     power the turn in the middle has depends on its phase."""

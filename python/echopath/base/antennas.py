@@ -7,6 +7,7 @@ import numpy as np
 
 from .rates import radar_rate
 
+NO_PART = 1e-9       # of a polarisation: what rounding leaves of its part across a way along it
 CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
 ALL_AROUND = 1e-6    # length of a mean of unit vectors that has no direction
 
@@ -60,6 +61,20 @@ def mixes_polarisations(radar) -> bool:
 def polarization_of(antenna) -> np.ndarray:
     """[3] unit vector in the radar's frame."""
     return _turned(antenna.orientation, antenna.polarization)
+
+
+def polarization_across(polarizations, ways) -> np.ndarray:
+    """Unit vectors [N, 3] of the parts of polarisations [N, 3] across ways, unit vectors [N, 3]; along the polarisation
+    that of the vertical, or of x where the way is vertical."""
+    across = _part_across(polarizations, ways)
+    for instead in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
+        is_along = np.linalg.norm(across, axis=1) < NO_PART * np.linalg.norm(polarizations, axis=1)
+        across[is_along] = _part_across(np.broadcast_to(instead, ways.shape), ways)[is_along]
+    return across / np.linalg.norm(across, axis=1)[:, None]
+
+
+def _part_across(vectors, ways) -> np.ndarray:
+    return vectors - np.sum(vectors * ways, axis=1)[:, None] * ways
 
 
 def _turned(orientation, vector) -> np.ndarray:

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 
 import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
+from ..base.antennas import polarization_across
 from ..base.counts import counted
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
@@ -66,3 +68,42 @@ def sheet_coefficients(material: _core.Material, *, frequency: float, incidence:
     angles = np.atleast_1d(np.asarray(incidence, np.float64))
     rows = _core._sheet_coefficients(material, frequency, angles, from_behind)
     return SheetCoefficients(angles, *rows[:4], rows[4].real, rows[4].imag)
+
+
+_SAME_PLACE = 1e-9  # of a way: where it meets two triangles of a sheet at their common edge
+
+
+def passed_field(scene, *, time: float, begin: np.ndarray, end: np.ndarray, frequency: float, polarization: np.ndarray) -> float:
+    """What the sheets of a scene leave of the size of a field on a straight way between two places.
+
+    time: s; begin, end: [3] m; frequency: Hz; polarization: [3], of the field
+    """
+    way = (end - begin) / np.linalg.norm(end - begin)
+    field, left = polarization_across(polarization[None], way[None])[0], 1.0
+    for material, normal in _crossings(scene, time, begin, end):
+        across = np.cross(way, normal)
+        incidence = np.arctan2(np.linalg.norm(across), abs(way @ normal))
+        te_share = (field @ across) ** 2 / max(across @ across, _SAME_PLACE ** 2)
+        sheet = sheet_coefficients(material, frequency=frequency, incidence=float(incidence))
+        left *= float(np.sqrt(sheet.passed_power(min(te_share, 1.0))[0]))
+    return left
+
+
+def _crossings(scene, time: float, begin, end) -> Iterator[tuple]:
+    """(material, unit normal [3]) of each sheet that a way from `begin` to `end` goes through."""
+    for one in scene.meshes:
+        if not one.material.layers:
+            continue
+        corners = np.asarray(scene.world_vertices(one.id, time))[one.triangles]
+        first, second, away = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], begin - corners[:, 0]
+        normals = np.cross(first, second)
+        with np.errstate(divide="ignore", invalid="ignore"):  # of ways along a triangle
+            scale = -1.0 / (normals @ (end - begin))
+            share = np.sum(normals * away, axis=1) * scale
+            turn = np.cross(end - begin, away)
+            u, v = -np.sum(turn * second, axis=1) * scale, np.sum(turn * first, axis=1) * scale
+            is_met = (share > 0.0) & (share < 1.0) & (np.minimum(u, v) >= -_SAME_PLACE) & (u + v <= 1.0 + _SAME_PLACE)
+        met = np.flatnonzero(is_met)
+        met = met[np.argsort(share[met])]
+        for triangle in met[np.diff(share[met], prepend=-1.0) > _SAME_PLACE]:
+            yield one.material, normals[triangle] / np.linalg.norm(normals[triangle])

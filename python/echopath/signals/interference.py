@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import an, checked, optional, real
 from ..arguments.motions import require_motion
-from ..arguments.settings import Replay, SignalSettings
+from ..arguments.settings import Polarization, Replay, SignalSettings, TraceSettings
 from ..base.chirps import chirps_duration
 from ..receiver.chain import transmitted_code
 from ..transmit import radar_of_noise
@@ -20,16 +20,17 @@ from .interference_ways import Ways, require_own_channels
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"),
-         replay=SignalSettings.RULES["replay"])
+         replay=SignalSettings.RULES["replay"], polarization=TraceSettings.RULES["polarization"])
 def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | None = None, *, start_time: float = 0.0,
-                 offset: float = 0.0, replay: Replay = SignalSettings.replay) -> NDArray[np.complex128]:
+                 offset: float = 0.0, replay: Replay = SignalSettings.replay,
+                 polarization: Polarization = TraceSettings.polarization) -> NDArray[np.complex128]:
     """The signal of another FMCW radar in the receivers of a radar [tx, rx, chirp, sample], to be added to its own.
 
     Model: the other radar sends its chirps over and over, frame after frame; each is mixed with the chirp of the radar that is
     under way, and the filter before the converter leaves what lies within the band: a crossing of slopes m and n lasts
     sampling_rate / |m - n|, of real samples on both sides of its middle. It sends while it samples. Both radars and the scene
     move through the frame: each chirp has the delays and the Doppler of its own time. The direct way has the spreading of one
-    way and both antennas' gains toward each other, without anything in between; polarisation counts for nothing.
+    way, both antennas' gains toward each other and what their polarisations share, without anything in between.
     radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own and the
         errors of its transmitters, such as their back-off (`Receiver`)
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
@@ -38,7 +39,8 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
         1024 drawn by the seed of the trace, which have the power of all of them; None: the direct way alone. A trace has no
         direct way: the two signals add up
     start_time: s, first sample of the frame; offset: s, by which frames of the other radar begin later than at time 0
-    replay: of those paths, as in `synthesize`
+    replay: of those paths, as in `synthesize`; polarization: of the direct way, as in `trace`: "scalar": all antennas count as
+        co-polarised; that of paths is that of their trace
     Returns the cube before `demultiplex`, [tx, rx, chirp, sample] or [1, rx, slots, sample], in sqrt(W). As a part of its own
     beside the others, {"interference": cube}, it is named by labels of detections. Raises TypeError or ValueError naming the
     argument.
@@ -49,7 +51,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     for argument, one in (("radar", radar), ("other", other)):
         require_motion(argument, one, (start_time, start_time + radar.frame_duration))
     require_own_channels("other", other)
-    ways, codes = Ways(radar, other, paths, begins, replay), transmitted_code(other)
+    ways, codes = Ways(radar, other, paths, begins, replay, polarization), transmitted_code(other)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     edge = EDGE / waveform.sampling_rate
     for place, begin in enumerate(begins):

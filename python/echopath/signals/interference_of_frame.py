@@ -9,12 +9,14 @@ from ..arguments.motions import require_motion
 from ..arguments.settings import TraceSettings
 from ..base.callers import warn_user
 from ..base.chirps import start_with_middle
+from ..base.antennas import polarization_of
 from ..scene.interferers import interferers_of
+from ..scene.sheets import passed_field
 from ..tracing.traces import trace
 from ..transmit import signal_shape
 from ..weather.weather import attenuation_of
 from .interference import interference
-from .interference_ways import interference_radar, require_apart, require_own_channels
+from .interference_ways import antennas_see_each_other, interference_radar, require_apart, require_own_channels
 
 
 def has_interference(scene, effects: Choices) -> bool:
@@ -53,27 +55,31 @@ def _ways_of(scene, radar, one, settings: TraceSettings, replay: str, progress) 
     """Signals of an Interferer in sqrt(W) over the direct way and over the paths of the scene, without those that it has not."""
     timing, ways = {"start_time": settings.start_time, "offset": one.offset}, []
     if one.over != "paths" and (share := _direct_share(scene, radar, one.radar, settings)) > 0.0:
-        ways.append(share * interference(radar, one.radar, **timing))
-    if one.over != "direct" and (paths := _one_way_paths(scene, radar, one.radar, settings, progress)).num_paths:
+        ways.append(share * interference(radar, one.radar, **timing, polarization=settings.polarization))
+    if one.over != "direct" and (paths := _one_way_paths(scene, radar, one.radar, settings, progress)).power.any():
         ways.append(interference(radar, one.radar, paths, **timing, replay=replay))
     return ways
 
 
 def _warn_of_silence(index: int, has_ways: bool) -> None:
     why = ("its chirps never come near those of the radar while it samples, which another offset or slope changes" if has_ways
-           else "no way leads from it to the radar")
+           else "no way leads from it to the radar on which the antennas of both have gain and share a polarisation")
     warn_user(f"interferers[{index}]: is never heard in the frame: {why}")
 
 
 def _direct_share(scene, radar, other, settings: TraceSettings) -> float:
-    """What the scene leaves of the field of the direct way in the middle of the frame: 0 where something stands in it."""
+    """What the scene leaves of the field of the direct way in the middle of the frame: 0 where something stands in it, or an
+    antenna has no gain there."""
     time = radar.middle_of_frame(settings.start_time)
     between = interference_radar(radar, other, time=time)
     sent, heard = (np.mean([one.position for one in antennas], axis=0)
                    for antennas in (between.transmitters, between.receivers))
-    if not _core.are_clear(scene, time=time, origin=sent, points=[heard])[0]:
+    if not (antennas_see_each_other(radar, other, time, settings.polarization)
+            and _core.are_clear(scene, time=time, origin=sent, points=[heard])[0]):
         return 0.0
-    return float(np.exp(-attenuation_of(scene, other, settings.effects) * np.linalg.norm(heard - sent)))
+    passed = passed_field(scene, time=time, begin=sent, end=heard, frequency=other.waveform.start_frequency,
+                          polarization=polarization_of(between.transmitters[0]))
+    return passed * float(np.exp(-attenuation_of(scene, other, settings.effects) * np.linalg.norm(heard - sent)))
 
 
 def _one_way_paths(scene, radar, other, settings: TraceSettings, progress):

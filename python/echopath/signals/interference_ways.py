@@ -6,6 +6,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked, real, refused
 from ..arguments.motions import require_motion
+from ..base.antennas import polarization_across
 from ..base.rotations import matrices, product, quaternions
 from ..receiver.channels import require_channels
 from .interference_paths import few_paths
@@ -44,6 +45,12 @@ def require_apart(radar, other, times, argument: str) -> None:
         _require_far(np.linalg.norm(sent[:, None] - heard, axis=2), _wavelength(other), argument)
 
 
+def antennas_see_each_other(radar, other, time: float, polarization: str) -> bool:
+    """Whether any transmitter of the other radar and any receiver of this one have gain toward each other at a time in s, in a
+    polarisation that they share; polarization: as in `trace`."""
+    return bool(Ways(radar, other, None, np.array([time]), "material", polarization).of(0)[1].any())
+
+
 def _require_far(distance, wavelength: float, argument: str) -> None:
     """Nearer than a wavelength, the spreading of one way holds no longer, and makes power of nothing."""
     if np.min(distance) < wavelength:
@@ -66,11 +73,13 @@ class Ways:
     """Delays and amplitudes of all ways from the transmitters of another radar to the receivers, in each chirp.
 
     radar: that receives; other: that sends; paths: of a trace between them, None: the direct way; begins: [N] s, of the chirps
-    replay: of the paths, as in `synthesize`. Raises ValueError for paths between other antennas.
+    replay: of the paths, as in `synthesize`; polarization: of the direct way, "scalar": its antennas count as co-polarised
+    Raises ValueError for paths between other antennas.
     """
 
-    def __init__(self, radar, other, paths, begins, replay: str):
+    def __init__(self, radar, other, paths, begins, replay: str, polarization: str = "auto"):
         self._radar, self._other, self._begins, self._replay = radar, other, begins, replay
+        self._is_polarised = polarization != "scalar"
         self._paths, self._scale = (None, None) if paths is None else few_paths(paths)
         self._kept = range(0), None, None  # chirps, their delays and amplitudes
         if paths is not None:
@@ -109,6 +118,8 @@ class Ways:
         ahead = apart / distance[..., None]
         gains = (_fields(other.transmitters, sent[1], ahead)
                  * np.swapaxes(_fields(radar.receivers, heard[1], -np.swapaxes(ahead, 0, 1)), 0, 1))
+        if self._is_polarised:
+            gains = gains * _match(other.transmitters, radar.receivers, sent[1], heard[1], ahead)
         amplitude = np.sqrt(other.transmit_power) * gains * wavelength / (4.0 * np.pi * distance)
         return distance[..., None] / _core.speed_of_light, amplitude[..., None]
 
@@ -132,3 +143,12 @@ def _fields(antennas, turned, ways) -> np.ndarray:
     """Gain and phase [A, B, T] of antennas, turned by [A, T, 3, 3], toward directions [A, B, T, 3] in the world."""
     return np.array([[antenna.pattern.field(np.einsum("tij,ti->tj", turn, way)) for way in toward]
                      for antenna, turn, toward in zip(antennas, turned, ways)])
+
+
+def _match(transmitters, receivers, sent, heard, ahead) -> np.ndarray:
+    """Share [A, B, T] of the field in the polarisation of receivers, whose antennas are turned by [., T, 3, 3], of that which
+    transmitters send along unit vectors [A, B, T, 3] in the world."""
+    fields, takers = ([np.einsum("tij,j->ti", turn, antenna.polarization) for antenna, turn in zip(antennas, turned)]
+                      for antennas, turned in ((transmitters, sent), (receivers, heard)))
+    return np.array([[np.sum(polarization_across(field, way) * polarization_across(taker, way), axis=-1)
+                      for taker, way in zip(takers, ways)] for field, ways in zip(fields, ahead)])

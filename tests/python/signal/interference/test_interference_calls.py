@@ -86,6 +86,8 @@ def test_another_radar_in_the_place_of_the_radar_is_refused():
      r"^interferers\[1\]: is never heard in the frame: its chirps never come near"),
     ([ep.Interferer(radar=RADAR.replace(position=(16, 6, 0)), over="direct")],  # behind the ball
      r"^interferers\[0\]: is never heard in the frame: no way leads from it"),
+    ([direct(position=(-5, 0, 0), yaw=np.pi, transmitters=[ep.Antenna(pattern=ep.CosinePower(2))])],  # looks away
+     r"^interferers\[0\]: is never heard in the frame: no way leads from it to the radar on which the antennas of both"),
 ])
 def test_a_radar_that_is_never_heard_is_named(others, told):
     with pytest.warns(RuntimeWarning, match=told) as warned:

@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from support.radars import build_radar
 from support.signals.other_radars import TONE, victim
 
 import echopath as ep
@@ -54,6 +55,44 @@ def test_what_stands_in_the_direct_way_hides_it():
     both = [frame_of(street(ep.Interferer(radar=TONE, over="direct"), wall=wall)).interference_cube
             for wall in (IN_THE_WAY, None)]
     assert not both[0].any() and both[1].any()
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.6])
+@pytest.mark.parametrize("aside, sheets", [(0.0, 1), (0.1, 1), (0.1, 2), (2.0, 0)])
+def test_sheets_in_the_direct_way_weaken_it(turn, aside, sheets):
+    """Lossy foam, of which next to nothing is reflected, takes exp(-k n'' D / cos) of the field; the way goes through the common
+    edge of both triangles, through one of them, or beside them."""
+    thickness, permittivity = 0.02, 1.0 - 0.02j
+    sender = build_radar(position=(20, 0, 0), yaw=np.pi)
+    scene = ep.Scene(interferers=[ep.Interferer(radar=sender, over="direct")])
+    foam = ep.Material(layers=[ep.Layer(thickness, permittivity)])
+    for number in range(max(sheets, 1)):
+        scene.add(ep.actors.plate(1.0, 1.0), name=f"foam{number}", material=foam, yaw=turn, position=(5 + number, aside, aside))
+    received = frame_of(scene, build_radar(), noise_seed=None, guard=False).interference_cube
+    share = np.linalg.norm(received) / np.linalg.norm(ep.interference(build_radar(), sender))
+    loss = 2 * np.pi * 77e9 / ep.speed_of_light * thickness * -np.sqrt(permittivity).imag / np.cos(turn)
+    assert 20 * np.log10(share) == pytest.approx(-20 * np.log10(np.e) * loss * sheets, abs=0.01)
+
+
+@pytest.mark.parametrize("model, expected", [("auto", np.cos(0.7)), ("scalar", 1.0)])
+def test_the_direct_way_has_what_the_polarisations_share(model, expected):
+    """Malus: the cosine of the angle between linear polarisations, whichever way the antennas look."""
+    radar = victim(**SLOW, receivers=[ep.Antenna(polarization=(0.0, np.sin(0.7), np.cos(0.7)))])
+    sender = TONE.replace(position=(30, 0, 0), yaw=np.pi)
+    plain, turned = (frame_of(street(ep.Interferer(radar=sender, over="direct")), one, noise_seed=None, guard=False,
+                              polarization=model).interference_cube for one in (victim(**SLOW), radar))
+    np.testing.assert_allclose(turned, expected * plain, atol=1e-9 * np.abs(plain).max())
+
+
+def test_slants_of_45_degrees_to_the_same_side_do_not_hear_each_other_ahead():
+    """As radars of oncoming traffic are built: seen from one, the slant of the other is that to the other side."""
+    slant = [ep.Antenna(polarization=np.array((0.0, 1.0, 1.0)) / np.sqrt(2.0))]
+    ahead, behind = (victim(**SLOW, transmitters=slant, receivers=slant, position=(x, 0, 0), yaw=yaw)
+                     for x, yaw in ((30, np.pi), (-30, 0.0)))
+    heard = [np.linalg.norm(ep.interference(victim(**SLOW, receivers=slant), one)) for one in (ahead, behind)]
+    upright = ep.interference(victim(**SLOW), victim(**SLOW, position=(30, 0, 0)))
+    assert heard[1] == pytest.approx(np.linalg.norm(upright), rel=1e-6)
+    assert heard[0] < 1e-9 * heard[1]
 
 
 def test_a_wall_brings_another_radar_from_its_image_into_a_frame():

@@ -15,8 +15,8 @@ Over = Literal["both", "direct", "paths"]
 class Interferer(Settings):
     """Another FMCW radar in a scene, which sends into the receivers of the radar that is simulated (`Scene.interferers`).
 
-    radar: that sends: its waveform, code, power, transmitters with their errors (`Receiver`), place in m and motion count. Its
-        motion covers the frames, and the direct way is at least a wavelength long
+    radar: that sends: its waveform, code, power, transmitters with their errors and that of its frequency (`Receiver`), place in
+        m and motion count. Its motion covers the frames, and the direct way is at least a wavelength long
     offset: s, by which its frames begin later than at time 0; they follow each other without a pause. A chirp is heard while
         its frequency is within the band of that of the radar; frames warn of a radar that never is
     over: "both" the direct way, where nothing stands in it, and the paths of the scene; "direct" or "paths" alone

@@ -32,7 +32,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     move through the frame: each chirp has the delays and the Doppler of its own time. The direct way has the spreading of one
     way, both antennas' gains toward each other and what their polarisations share, without anything in between.
     radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own and the
-        errors of its transmitters, such as their back-off (`Receiver`)
+        errors of its transmitters, such as their back-off, and of its frequency (`Receiver`)
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
         transmitters of the other and the receivers of this one, both as they stand in the middle of the frame
         (`interference_radar`), replayed to where both are at each chirp: the strongest that hold 99.9 % of the power, or about
@@ -52,6 +52,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
         require_motion(argument, one, (start_time, start_time + radar.frame_duration))
     require_own_channels("other", other)
     ways, codes = Ways(radar, other, paths, begins, replay, polarization), transmitted_code(other)
+    bends = _frequency_error(other)[2:]
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     edge = EDGE / waveform.sampling_rate
     for place, begin in enumerate(begins):
@@ -59,8 +60,8 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
         fine = np.zeros((num_rx, FINE * (waveform.num_samples + 2 * EDGE)), complex)
         for slot in _slots_under_way(other, codes, begin - edge - offset, waveform.chirp_duration + 2.0 * edge,
                                      np.max(delay, initial=0.0)):
-            pair = Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
-                           begin - slot.begin - offset)
+            pair = Chirps(waveform, *_chirp(waveform, place), *_sent_chirp(other, slot.index), other.waveform.chirp_duration,
+                          begin - slot.begin - offset, bends)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
                 add_crossing(fine[rx], pair, delay[tx, rx], np.conj(code) * amplitude[tx, rx])
         cube[place] = _filtered(fine, waveform)
@@ -98,6 +99,17 @@ def _chirp(waveform, slot: int) -> tuple:
                    for steps in (waveform.frequency_steps, waveform.bandwidth_steps))
     slope = waveform.slope + wider * waveform.sampling_rate / waveform.num_samples
     return waveform.start_frequency + step, slope
+
+
+def _sent_chirp(other, slot: int) -> tuple:
+    """Likewise of another radar, with the error of its oscillator."""
+    off, off_slope, *_ = *_frequency_error(other), 0.0, 0.0
+    start, slope = _chirp(other.waveform, slot)
+    return start + off, slope + off_slope
+
+
+def _frequency_error(other) -> tuple:
+    return () if other.receiver is None else other.receiver.frequency_error
 
 
 def _filtered(fine, waveform):

@@ -20,6 +20,8 @@ class Chirps(NamedTuple):
     """A chirp of this radar and one of the other: frequencies of their first samples in Hz, slopes in Hz/s.
 
     waveform: of this radar; sent_duration: s; late: s, by which the chirp of this radar begins later
+    sent_bends: (Hz/s^2, Hz/s^3, ...), by which the other frequency is off its slope: times t^2, t^3, ..., t in s after its first
+        sample
     """
 
     waveform: _core.ChirpSequence
@@ -29,6 +31,7 @@ class Chirps(NamedTuple):
     sent_slope: float
     sent_duration: float
     late: float
+    sent_bends: tuple = ()
 
 
 def add_crossing(fine: np.ndarray, chirps: Chirps, delay: np.ndarray, amplitude: np.ndarray) -> None:
@@ -82,14 +85,15 @@ def _turned(cycles) -> np.ndarray:
 def _cycles(chirps: Chirps, place, delay) -> np.ndarray:
     """Of the phase of the mixed signal at fine samples; delay: [3, ...] s, whose shape behind the first axis goes with that of
     the samples."""
-    waveform, start, slope, sent_start, sent_slope, _, late = chirps
+    waveform, start, slope, sent_start, sent_slope, _, late, bends = chirps
     time = (place / FINE - EDGE) / waveform.sampling_rate
     share = time * waveform.sampling_rate / max(waveform.num_samples - 1, 1)
     # The parabola through the delays at the first sample, in the middle and at the last one.
     curve = (1.0 - share) * (1.0 - 2.0 * share), 4.0 * share * (1.0 - share), share * (2.0 * share - 1.0)
     sent_time = late + time - sum(weight * one for weight, one in zip(curve, delay))
-    return (start - sent_start) * time + sent_start * (time - sent_time) + 0.5 * slope * time ** 2 \
+    cycles = (start - sent_start) * time + sent_start * (time - sent_time) + 0.5 * slope * time ** 2 \
         - 0.5 * sent_slope * sent_time ** 2
+    return cycles - sum(bend * sent_time ** power / power for power, bend in enumerate(bends, 3))
 
 
 class _Heard(NamedTuple):
@@ -105,7 +109,7 @@ class _Heard(NamedTuple):
 
 def _heard(chirps: Chirps, delay) -> _Heard:
     """Of ways with a delay [P] in s."""
-    waveform, start, slope, sent_start, sent_slope, sent_duration, late = chirps
+    waveform, start, slope, sent_start, sent_slope, sent_duration, late, _ = chirps
     begin, end, fade = delay - late, delay - late + sent_duration, np.zeros((2, len(delay)))
     margin, difference, rate = _MARGIN * waveform.sampling_rate, start - sent_start + sent_slope * begin, slope - sent_slope
     if rate == 0.0:

@@ -102,6 +102,20 @@ def test_parallel_chirps_are_a_tone_at_the_delay():
     assert 10 * np.log10(np.mean(np.abs(steady[20:-20]) ** 2) / friis(0.01, 20.0, 77e9)) == pytest.approx(0.0, abs=LEVEL)
 
 
+@pytest.mark.parametrize("error", [(-3e5,), (-3e5, 2e10), (0.0, 0.0, -4e15)])
+def test_another_radar_sends_with_the_error_of_its_frequency(error):
+    """Parallel chirps from 40.1 m: the phase of the mixed tone lacks 2 pi times the integral of the error over the way."""
+    sender = TONE.replace(receiver=ep.Receiver(frequency_error=error))
+    delay, time = np.hypot(40.0, 3.0) / C, np.arange(COUNT) / RATE
+    sent = time - delay
+    cycles = 77e9 * delay + SLOPE * delay * (time - 0.5 * delay)
+    cycles -= sum(one * sent ** (power + 1) / (power + 1) for power, one in enumerate(error))
+    expected = np.sqrt(friis(0.01, 40.0, 77e9)) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+    found = ep.interference(victim(num_chirps=1), sender)[0, 0, 0]
+    steady = slice(60, -60)
+    assert np.max(np.abs(found - expected)[steady]) < 0.02 * np.abs(expected[0])
+
+
 @pytest.mark.parametrize("early", [0.9e-6, 1.1e-6, 2.0e-6])
 def test_far_radars_are_heard_until_the_end_of_their_chirps_has_come(early):
     """From 750 m a chirp that ended before the radar's began is heard for what its delay is longer, as a tone of 2 MHz."""

@@ -71,8 +71,6 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
         trajectories.traffic.add_to(scene)
         scene.interferers = _build_interferers(settings, folder, trajectories)
         radar = _build_radar(settings.radar, folder, trajectories)
-        with blamed("radar"):
-            require_channels(radar.receiver, radar)
         if settings.mark_mirrors:
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),
@@ -173,6 +171,13 @@ _BESIDE_SENSOR = ("transmit_power", "noise_figure_db", "receiver")  # of the tab
 
 
 def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, key: str = "radar"):
+    radar = _radar_of(table, folder, trajectories, key)
+    with blamed(key):
+        require_channels(radar.receiver, radar)
+    return radar
+
+
+def _radar_of(table: RadarTable, folder: Path, trajectories: Trajectories, key: str):
     if table.sensor is not None:
         with blamed(key, file="sensor"):
             radar = load_radar(folder / table.sensor, table.board, subframe=table.subframe)

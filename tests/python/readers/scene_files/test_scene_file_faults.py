@@ -47,6 +47,8 @@ FAULTS = [
     (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
     (RADAR + "[radar.receiver]\nreceiver_phase = [0.1, 0.2, 0.3]",
      "radar: receiver.receiver_phase: must be of the shape (1,) for this radar, got an array [3] of float64"),
+    (RADAR + "[[interferers]]\nreceiver = {transmitter_gain_db = [0, 0]}\n" + RADAR.replace("[radar.", "[interferers."),
+     "interferers[0]: receiver.transmitter_gain_db: must be of the shape (1,) for this radar, got an array [2] of float64"),
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}",
      "parts: must be all selections (one partition) or all tables of selections (several), got ['a', 'b']"),
     (RADAR + "[parts]\na = 'T & R'",

@@ -52,6 +52,8 @@ def _samples(numbered):
     for number, line in numbered[1:]:
         values = dict(zip(names, _numbers(next(csv.reader([line])), names, number)))
         key = (round(values["azimuth_deg"], ANGLE_DIGITS), round(values["elevation_deg"], ANGLE_DIGITS))
+        if abs(key[1]) > 90.0:
+            raise ValueError(f"line {number}: elevation_deg must lie in [-90, 90], got {key[1]:g}; it counts from the xy-plane")
         if key in samples:
             raise ValueError(f"line {number}: direction ({key[0]:g}, {key[1]:g}) deg stands already in line "
                              f"{samples[key][0]}")
@@ -88,6 +90,11 @@ def _grid(names: list, samples: dict):
     if not samples:
         raise ValueError("holds no directions")
     azimuths, elevations = (sorted({key[axis] for key in samples}) for axis in (0, 1))
+    for name, angles in (("azimuth_deg", azimuths), ("elevation_deg", elevations)):
+        if len(angles) < 2:
+            raise ValueError(f"{name} must have at least 2 values, got {angles[0]:g} alone; one cut makes no pattern")
+    if azimuths[-1] - azimuths[0] > 360.0:
+        raise ValueError(f"azimuth_deg must cover at most 360, got {azimuths[0]:g} to {azimuths[-1]:g}")
     for elevation in elevations:
         for azimuth in azimuths:
             if (azimuth, elevation) not in samples:

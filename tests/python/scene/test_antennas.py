@@ -126,6 +126,10 @@ def test_file_means_what_its_units_say(tmp_path):
     (lambda text: text.replace("0,5,0.1,10", "0,5,0.1"), "line 5: must have 4 values, has 3"),
     (lambda text: text.replace("0,5,0.1", "0,-5,0.1"), "line 5: direction (0, -5) deg stands already in line 4"),
     (lambda text: text.rsplit("\n", 1)[0], "direction (20, 5) deg is missing"),
+    (lambda text: text.replace("0,5,0.1", "0,95,0.1"), "line 5: elevation_deg must lie in [-90, 90], got 95"),
+    (lambda text: "\n".join(text.splitlines()[:2]), "azimuth_deg must have at least 2 values, got -10 alone"),
+    (lambda text: "\n".join(text.splitlines()[:6:2]).replace(",5,", ",-5,"), "elevation_deg must have at least 2 values, got -5"),
+    (lambda text: text.replace("\n20,", "\n355,"), "azimuth_deg must cover at most 360, got -10 to 355"),
     (lambda text: text.splitlines()[0] + "".join(f"\n{a},{e},3.1,0" for a in (-90, 90, 270) for e in (-90, 0, 90)),
      "gain: must have a mean over the sphere"),
 ])

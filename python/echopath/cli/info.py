@@ -23,6 +23,7 @@ from ..readers.load import READ_RULES, READERS, is_foreign, read_model
 from ..readers.options import ReadOptions
 from ..receiver.converter import step_text
 from ..receiver.settings import receiver_text
+from ..scene.interferers import interferers_of
 from ..scene.lifetimes import scene_in_frame
 from ..scene_file import load_scene
 from ..scene_file.load import parse
@@ -125,7 +126,7 @@ def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
     scene, radar = scene_file.scene, scene_file.radar
     lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene, radar, trace.start_time),
-             *_describe_radar(radar, trace.start_time),
+             *_describe_radar(radar, trace.start_time), *_describe_interferers(scene, radar, trace.start_time),
              *report.folded_velocities(scene_in_frame(scene, radar, trace.start_time), radar,
                                        radar.middle_of_frame(trace.start_time)),
              "trace", report.line("rays", _rays_of(trace)), report.line("bounces at most", str(trace.max_bounces))]
@@ -217,6 +218,20 @@ def _describe_radar(radar, start_time: float) -> list[str]:
                         f"{waveform.velocity_resolution(radar.num_slots):.3f} m/s")]
 
 
+def _describe_interferers(scene, radar, start_time: float) -> list[str]:
+    """Other radars of a scene: their places in the middle of a frame, their chirps, how long these cross those of the radar."""
+    found = []
+    for index, one in enumerate(interferers_of(scene)):
+        place, waveform = _place(one.radar, radar.middle_of_frame(start_time)), one.radar.waveform
+        difference = abs(waveform.slope - radar.waveform.slope)
+        longest = min(waveform.chirp_duration, radar.waveform.chirp_duration)
+        crossing = min(longest, radar.waveform.sampling_rate / difference) if difference > 0.0 else longest
+        found += report.wrapped(f"interferers[{index}]", f"{place}; {waveform.start_frequency / 1e9:g} GHz + "
+                                f"{waveform.bandwidth / 1e9:g} GHz in {waveform.chirp_duration * 1e6:.4g} us, every "
+                                f"{waveform.chirp_interval * 1e6:g} us: crossings of at most {crossing * 1e6:.3g} us")
+    return found
+
+
 def _describe_converter(radar) -> list[str]:
     has_converter = radar.receiver is not None and radar.receiver.adc is not None
     return report.wrapped("converter", step_text(radar)) if has_converter else []
@@ -259,6 +274,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
     chosen = [line for selection in selections for line in _describe_selection(frame, selection)]
     lines = [str(path), *_describe_scene(frame.scene, frame.radar, frame.paths.frame.start_time),
              *_describe_radar(frame.radar, frame.paths.frame.start_time),
+             *_describe_interferers(frame.scene, frame.radar, frame.paths.frame.start_time),
              *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time), "record",
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is not None:

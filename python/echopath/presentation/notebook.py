@@ -12,6 +12,7 @@ import numpy as np
 from ..base.counts import counted
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..receiver.settings import receiver_text
+from ..scene.interferers import interferers_of, interferers_text
 from ..signals.same_radar import WAVEFORM_LISTS
 from ..weather.weather import weather_of, weather_text
 
@@ -26,8 +27,9 @@ def scene_html(scene) -> str:
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
     weather = weather_of(scene)
     air = "" if weather is None else f", {weather_text(weather)}"
+    others = f", {interferers_text(interferers_of(scene))}" if interferers_of(scene) else ""
     return _table(f"Scene: {counted(len(scene.nodes), 'node')}, {counted(len(meshes), 'mesh')}, "
-                  f"{counted(scene.num_triangles, 'triangle')}{air}",
+                  f"{counted(scene.num_triangles, 'triangle')}{air}{others}",
                   ("mesh", "triangles", "area in m²", "material", "motion"), rows, len(meshes))
 
 
@@ -108,7 +110,7 @@ def frame_html(frame) -> str:
     parts = "; ".join(f"{partition}: {', '.join(map(str, cubes))}" for partition, cubes in frame.parts.items())
     facts = {"paths": f"{frame.paths.num_paths:,}", "cube (tx x rx x chirp x sample)": shape, "parts": parts or "none",
              "noise": "none" if frame.noise_seed is None else f"seed {frame.noise_seed}",
-             "weather": weather_text(weather_of(frame.scene)),
+             "weather": weather_text(weather_of(frame.scene)), "interferers": interferers_text(interferers_of(frame.scene)),
              "labels": ", ".join(map(str, frame.labels)) or "none",
              "detections": "none asked for" if frame.detections is None else len(frame.detections)}
     stages = [(stage.name, f"{stage.seconds:.3f}", f"{stage.peak_memory / 2**20:,.0f}") for stage in frame.stages]

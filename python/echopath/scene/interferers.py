@@ -7,6 +7,7 @@ from typing import ClassVar, Literal
 from .. import _core
 from ..arguments.checks import Rule, an, one_of, real, refused
 from ..arguments.settings import Settings, settings_class
+from ..base.counts import counted
 
 Over = Literal["both", "direct", "paths"]
 
@@ -40,3 +41,8 @@ def interferers_rule(argument: str, value) -> tuple[Interferer, ...]:
 def interferers_of(scene) -> tuple[Interferer, ...]:
     """Of a scene; records keep scenes without."""
     return getattr(scene, "interferers", ())
+
+
+def interferers_text(interferers) -> str:
+    """How many other radars there are, in words."""
+    return counted(len(interferers), "other radar") if interferers else "none"

@@ -14,7 +14,7 @@ from ..base.known_attributes import known_attributes
 from ..readers.model import Model
 from ..weather import Weather
 from ..weather.weather import weather_text
-from .interferers import Interferer, interferers_of, interferers_rule
+from .interferers import Interferer, interferers_of, interferers_rule, interferers_text
 from .materials import known_material, materials
 from .node import SceneNode, lifetime_of, split_motion
 from .placements import ORIGIN, motion_ahead, placement
@@ -73,7 +73,7 @@ class Scene(_core.Scene):
     def __repr__(self) -> str:
         told = [super().__repr__().removesuffix(")")]
         told += [] if self.weather is None else [weather_text(self.weather)]
-        told += [f"{len(self.interferers)} other radars"] if self.interferers else []
+        told += [interferers_text(self.interferers)] if self.interferers else []
         return ", ".join(told) + ")"
 
     def __getstate__(self):

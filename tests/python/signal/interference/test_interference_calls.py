@@ -4,6 +4,7 @@ import pytest
 from support.radars import build_radar
 
 import echopath as ep
+from echopath.cli import main
 
 SLOW = {"num_samples": 256, "num_chirps": 16, "transmit_power": 1.0}
 RADAR = build_radar(**SLOW)
@@ -94,3 +95,19 @@ def test_a_radar_that_is_never_heard_is_named(others, told):
         frame_of(*others)
     assert len([one for one in warned if "never heard" in str(one.message)]) == 1
     assert warned[0].filename == __file__
+
+
+def test_info_and_notebooks_tell_of_other_radars(tmp_path, capsys):
+    """Slopes of 1 GHz in 12.8 us and of half of that: 20 MHz are crossed in 0.512 us."""
+    waveform = "start_frequency = {start}\nbandwidth = {band}\nnum_samples = 256\nsampling_rate = 20e6\nnum_chirps = 4\n"
+    table = "[{0}waveform]\n" + waveform + "chirp_interval = 2e-5\n[[{0}transmitters]]\nposition = [0, 0, 0]\n"
+    text = (table.format("radar.", start=77e9, band=1e9) + "[[radar.receivers]]\nposition = [0, 0, 0]\n"
+            + "[[interferers]]\nposition = [30, 2, 0]\nyaw_deg = 180\n" + table.format("interferers.", start=77.2e9, band=5e8))
+    path = tmp_path / "two.toml"
+    path.write_text(text)
+    assert main(["info", str(path)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "interferers[0] (30, 2, 0) m, yaw 180 deg, pitch 0 deg; 77.2 GHz + 0.5 GHz in 12.8 us, every 20 us" in told
+    assert "crossings of at most 0.512 us" in told
+    scene = ep.load_scene(path).scene
+    assert "1 other radar)" in repr(scene) and "1 other radar<" in scene._repr_html_()

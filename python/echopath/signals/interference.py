@@ -47,21 +47,23 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     """
     slots = radar_of_noise(radar)
     waveform, num_rx = slots.waveform, len(radar.receivers)
-    begins = start_time + np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
+    begins = np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
     for argument, one in (("radar", radar), ("other", other)):
         require_motion(argument, one, (start_time, start_time + radar.frame_duration))
     require_own_channels("other", other)
-    ways, codes = Ways(radar, other, paths, begins, replay, polarization), transmitted_code(other)
+    ways, codes = Ways(radar, other, paths, start_time + begins, replay, polarization), transmitted_code(other)
+    # Of whole frames of the other radar nothing is left: beside hours the phase of a chirp would be lost to rounding.
+    begins += np.fmod(start_time, chirps_duration(other)) - np.fmod(offset, chirps_duration(other))
     bends = _frequency_error(other)[2:]
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     edge = EDGE / waveform.sampling_rate
     for place, begin in enumerate(begins):
         delay, amplitude = ways.of(place)
         fine = np.zeros((num_rx, FINE * (waveform.num_samples + 2 * EDGE)), complex)
-        for slot in _slots_under_way(other, codes, begin - edge - offset, waveform.chirp_duration + 2.0 * edge,
+        for slot in _slots_under_way(other, codes, begin - edge, waveform.chirp_duration + 2.0 * edge,
                                      np.max(delay, initial=0.0)):
             pair = Chirps(waveform, *_chirp(waveform, place), *_sent_chirp(other, slot.index), other.waveform.chirp_duration,
-                          begin - slot.begin - offset, bends)
+                          begin - slot.begin, bends)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
                 add_crossing(fine[rx], pair, delay[tx, rx], np.conj(code) * amplitude[tx, rx])
         cube[place] = _filtered(fine, waveform)

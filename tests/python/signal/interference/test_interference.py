@@ -128,6 +128,16 @@ def test_far_radars_are_heard_until_the_end_of_their_chirps_has_come(early):
     assert np.flatnonzero(power > 0.25 * level)[-1] == pytest.approx((delay - early) * RATE, abs=1)
 
 
+@pytest.mark.parametrize("start", [0.0, 3600.1, 61200.51])
+def test_chirps_of_later_hours_have_one_phase_as_those_of_the_first(start):
+    """Parallel chirps at the rate of the radar's own: rounding of hours, 7e-12 s, would be half a turn at 77 GHz."""
+    cube = ep.interference(victim(num_chirps=16), TONE.replace(waveform=TONE.waveform.replace(num_chirps=7)), start_time=start,
+                           offset=start % TONE.waveform.chirp_interval)
+    steady = cube[0, 0, :, 100:400]
+    assert np.abs(steady).min() > 0.0
+    np.testing.assert_allclose(steady, np.broadcast_to(steady[0], steady.shape), atol=1e-5 * np.abs(steady).max())
+
+
 def test_patterns_and_motion_of_both_count():
     pattern = ep.CosinePower(2.0)
     receiver = victim(receivers=[ep.Antenna(yaw=0.5, pattern=pattern)])

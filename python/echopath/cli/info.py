@@ -23,7 +23,7 @@ from ..readers.load import READ_RULES, READERS, is_foreign, read_model
 from ..readers.options import ReadOptions
 from ..receiver.converter import step_text
 from ..receiver.settings import receiver_text
-from ..scene.interferers import interferers_of
+from ..scene.interferers import interferers_of, interferers_within
 from ..scene.lifetimes import scene_in_frame
 from ..scene_file import load_scene
 from ..scene_file.load import parse
@@ -221,7 +221,12 @@ def _describe_radar(radar, start_time: float) -> list[str]:
 def _describe_interferers(scene, radar, start_time: float) -> list[str]:
     """Other radars of a scene: their places in the middle of a frame, their chirps, how long these cross those of the radar."""
     found = []
+    sending = dict(interferers_within(scene, start_time, start_time + radar.frame_duration))
     for index, one in enumerate(interferers_of(scene)):
+        if index not in sending:
+            first, last = one.lifetime
+            found.append(report.line(f"interferers[{index}]", f"absent: it sends from {first:g} to {last:g} s"))
+            continue
         place, waveform = _place(one.radar, radar.middle_of_frame(start_time)), one.radar.waveform
         difference = abs(waveform.slope - radar.waveform.slope)
         longest = min(waveform.chirp_duration, radar.waveform.chirp_duration)

@@ -64,7 +64,7 @@ class FrameRun:
         check_partitions(self.partitions, scene)
         require_names(self.partitions)
         has_rain_echoes(scene, trace.effects)  # raises
-        require_interferers(scene, radar, trace.effects, (trace.start_time, trace.start_time + radar.frame_duration))
+        require_interferers(scene, radar, trace.effects, trace.start_time, trace.start_time + radar.frame_duration)
         self.map_settings = {"window": signal.window, "zero_pad": signal.zero_pad}
         self._advised: set[str] = set()   # names of checks, and
         self._silences: set[str] = set()  # reasons why nothing is heard, that were told of a frame

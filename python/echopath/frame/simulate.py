@@ -10,6 +10,7 @@ from ..arguments.settings import (
     Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
     SignalSettings, TraceSettings, settings_among,
 )
+from ..signals.interference_of_frame import warn_of_absent_interferers
 from ..signals.parts import Selections
 from ..tracing.traces import trace as trace_scene
 from .frame import Frame
@@ -64,6 +65,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     """
     tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
     run = FrameRun(scene, radar, tracing, signals, parts, angles, labels, detections, truth, guard)
+    warn_of_absent_interferers(scene, radar, tracing.effects, tracing.start_time, tracing.start_time + radar.frame_duration)
     frame = run.frame_of(lambda: trace_scene(scene, radar, settings=tracing, progress=progress), progress)
     run.warn_of(frame)
     return frame

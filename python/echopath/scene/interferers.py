@@ -1,15 +1,24 @@
 """Other radars of a scene."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
 from typing import ClassVar, Literal
 
 from .. import _core
-from ..arguments.checks import Rule, an, one_of, real, refused
+from ..arguments.checks import Rule, an, array, one_of, optional, real, refused
 from ..arguments.settings import Settings, settings_class
 from ..base.counts import counted
+from .node import ALWAYS
 
 Over = Literal["both", "direct", "paths"]
+
+
+def _lifetime(argument: str, value) -> tuple[float, float]:
+    begin, end = (float(time) for time in array("[2]")(argument, value))
+    if not begin < end:
+        raise refused(ValueError, argument, "a begin and an end in s, ascending", value)
+    return begin, end
 
 
 @settings_class
@@ -21,14 +30,18 @@ class Interferer(Settings):
     offset: s, by which its frames begin later than at time 0; they follow each other without a pause. A chirp is heard while
         its frequency is within the band of that of the radar; frames warn of a radar that never is
     over: "both" the direct way, where nothing stands in it, and the paths of the scene; "direct" or "paths" alone
+    lifetime: (begin, end) in s, either of which may be infinite: frames that do not lie wholly between them are without it, as
+        those without the vehicle that carries it (`Trajectory.lifetime`); None: it sends in all
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
     radar: _core.Radar
     offset: float = 0.0
     over: Over = "both"
+    lifetime: tuple[float, float] | None = None
 
-    RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"), "over": one_of(Over)}
+    RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"), "over": one_of(Over),
+                                           "lifetime": optional(_lifetime)}
 
 
 def interferers_rule(argument: str, value) -> tuple[Interferer, ...]:
@@ -41,6 +54,15 @@ def interferers_rule(argument: str, value) -> tuple[Interferer, ...]:
 def interferers_of(scene) -> tuple[Interferer, ...]:
     """Of a scene; records keep scenes without."""
     return getattr(scene, "interferers", ())
+
+
+def interferers_within(scene, begin: float, end: float) -> Iterator[tuple[int, Interferer]]:
+    """(index, Interferer) of those of a scene that send all the time from begin to end in s."""
+    rounding = sys.float_info.epsilon * max(abs(begin), abs(end))
+    for index, one in enumerate(interferers_of(scene)):
+        first, last = one.lifetime or ALWAYS
+        if first <= begin + rounding and last >= end - rounding:
+            yield index, one
 
 
 def interferers_text(interferers) -> str:

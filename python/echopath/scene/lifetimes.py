@@ -8,7 +8,6 @@ from ..arguments.names import first_names
 from ..base.callers import warn_user
 from .scene import Scene
 
-ALWAYS = -math.inf, math.inf  # s, the lifetime of what has none
 _ROUNDING = 1e-9  # relative, of a lifetime that is the duration of a frame by another sum
 
 

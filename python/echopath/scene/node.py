@@ -1,6 +1,8 @@
 """Objects of a scene, to be read and changed in place: what `scene["street/car"]` is."""
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from .. import _core
@@ -13,6 +15,7 @@ from . import placements
 from .materials import known_material
 
 ANGLE = real(unit="rad")
+ALWAYS = -math.inf, math.inf  # s, the lifetime of what has none
 
 
 class FixedArray(np.ndarray):

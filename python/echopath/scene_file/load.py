@@ -23,6 +23,7 @@ from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
 from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
+from ..trajectories import Trajectory
 from ..trajectories.files.rows import KeptRows
 from .errors import blamed, validated
 from .foreign import foreign_scene
@@ -204,15 +205,24 @@ def _build_interferers(settings: SceneTable, folder: Path, trajectories: Traject
     found = []
     for index, table in enumerate(settings.interferers):
         radar = _build_radar(table, folder, trajectories, f"interferers[{index}]")
-        found.append(Interferer(radar=radar, offset=table.offset, over=table.over))
+        carried = _trajectory(table, trajectories, f"interferers[{index}]")
+        found.append(Interferer(radar=radar, offset=table.offset, over=table.over,
+                                lifetime=None if carried is None else carried.lifetime))
     return found
+
+
+def _trajectory(table: RadarTable, trajectories: Trajectories, key: str) -> Trajectory | None:
+    """That of what carries a radar, or of the radar itself."""
+    if table.rides_on is not None:
+        return trajectories.traffic.of(table.rides_on, f"{key}.rides_on")
+    return trajectories.of(table, key)
 
 
 def _place(table: RadarTable, trajectories: Trajectories, key: str) -> dict:
     """Keywords of Radar that say where it is and how it moves."""
-    position, motion = tuple(table.position), motion_of(table.motion, f"{key}.motion") or trajectories.of(table, key)
+    position, motion = tuple(table.position), motion_of(table.motion, f"{key}.motion") or _trajectory(table, trajectories, key)
     if table.rides_on is not None:
-        position, motion = (0.0, 0.0, 0.0), trajectories.traffic.of(table.rides_on, f"{key}.rides_on").motion(position)
+        position, motion = (0.0, 0.0, 0.0), motion.motion(position)
     return {"position": position, "yaw": yaw_of(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
             "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
 

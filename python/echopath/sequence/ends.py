@@ -8,7 +8,8 @@ import numpy as np
 from .. import _core
 from ..arguments.names import first_names
 from ..base.callers import warn_user
-from ..scene.lifetimes import ALWAYS
+from ..scene.interferers import interferers_of
+from ..scene.node import ALWAYS
 
 SLOWEST = 0.1   # m/s, at an end of a way: what is slower has come to rest
 SLOWEST_TURN = 0.2  # rad/s, likewise
@@ -17,12 +18,14 @@ STEP = 1e-3     # s, within which speeds at the ends are told
 
 def warn_of_ends(scene: _core.Scene, radar: _core.Radar, begin: float, end: float) -> None:
     """Warns (RuntimeWarning) of what stands, before or behind its way, in some of the frames and moves in others without a stop;
-    and of objects on their way whose wheels, trailers or limbs do so.
+    and of objects on their way whose wheels, trailers or limbs do so. Radars are told, too, and those of interferers.
 
     begin, end: s, of the first and the last frame
     """
     tops, nodes = _tops_of(scene), scene.nodes
     ways = [] if radar.motion is None else [("the radar", radar.motion, ALWAYS)]
+    ways += [(f"interferers[{index}]", one.radar.motion, one.lifetime or ALWAYS)
+             for index, one in enumerate(interferers_of(scene)) if one.radar.motion is not None]
     ways += [(f"'{nodes[top].name}'", nodes[top].motion, scene._lifetime(top)) for top in dict.fromkeys(tops.values())]
     names = [name for name, motion, alive in ways
              if _ends_early(_curves_of(motion, "translation"), motion, _within(alive, begin, end))]

@@ -28,7 +28,7 @@ from ..frame.frame import Frame
 from ..frame.run import FrameRun, Recorded, check_receiver
 from ..scene.lifetimes import warn_of_absence, warn_of_the_unseen
 from ..scene.scene import Scene
-from ..signals.interference_of_frame import require_interferers
+from ..signals.interference_of_frame import require_interferers, warn_of_absent_interferers
 from ..signals.parts import Selections
 from ..tracing.traces import keep_geometry
 from ..weather.weather import weather_of
@@ -96,9 +96,10 @@ class Sequence(Row[Frame]):
         tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
         end = _checked_end(scene, radar, start_time, frames, interval)
         check_receiver(radar, start_time, end)
-        require_interferers(scene, radar, effects, (start_time, end))
+        require_interferers(scene, radar, effects, start_time, end)
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         warn_of_ends(scene, radar, start_time, end)
+        warn_of_absent_interferers(scene, radar, effects, start_time, end)
         if not warn_of_absence(scene, radar, start_time, end):
             warn_of_the_unseen(scene, radar, start_time, interval, frames)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval

@@ -10,7 +10,8 @@ from ..arguments.settings import TraceSettings
 from ..base.callers import warn_user
 from ..base.chirps import start_with_middle
 from ..base.antennas import polarization_of
-from ..scene.interferers import interferers_of
+from ..scene.interferers import interferers_of, interferers_within
+from ..scene.node import ALWAYS
 from ..scene.sheets import passed_field
 from ..tracing.traces import trace
 from ..transmit import signal_shape
@@ -19,21 +20,45 @@ from .interference import interference
 from .interference_ways import antennas_see_each_other, interference_radar, require_apart, require_own_channels
 
 
+_ROUNDING = 1e-9  # relative, of a lifetime that is the duration of a frame by another sum
+
+
 def has_interference(scene, effects: Choices) -> bool:
     """Whether a scene has other radars and `effects` leave them on. Raises ValueError where only the latter ask for them."""
     return is_on(effects, INTERFERENCE, bool(interferers_of(scene)), "Scene.interferers")
 
 
-def require_interferers(scene, radar: _core.Radar, effects: Choices, times) -> None:
-    """Raises ValueError, before the long work, for other radars that have no place at one of times in s, or that of the radar."""
+def require_interferers(scene, radar: _core.Radar, effects: Choices, begin: float, end: float) -> None:
+    """Raises ValueError, before the long work, for other radars that have no place at the begin of the first frame or at the end
+    of the last one (s), or that of the radar."""
     if not has_interference(scene, effects):
         return
     for index, one in enumerate(interferers_of(scene)):
         argument = f"interferers[{index}].radar"
-        require_motion(argument, one.radar, times)
         require_own_channels(argument, one.radar)
+        times = _span_of(one, begin, end)
+        if times[0] > times[1]:
+            continue
+        require_motion(argument, one.radar, times)
         if one.over != "paths":
             require_apart(radar, one.radar, times, argument)
+
+
+def warn_of_absent_interferers(scene, radar: _core.Radar, effects: Choices, begin: float, end: float) -> None:
+    """Warns (RuntimeWarning) of other radars that do not send as long as a frame within a run, from begin to end in s."""
+    if not has_interference(scene, effects):
+        return
+    for index, one in enumerate(interferers_of(scene)):
+        first, last = _span_of(one, begin, end)
+        if last - first < radar.frame_duration * (1.0 - _ROUNDING):
+            warn_user(f"interferers[{index}]: does not send from {begin:g} to {end:g} s: its lifetime is {one.lifetime[0]:g} to "
+                      f"{one.lifetime[1]:g} s")
+
+
+def _span_of(one, begin: float, end: float) -> tuple[float, float]:
+    """What of a time from begin to end (s) is within the lifetime of an Interferer; it ends before it begins where nothing is."""
+    first, last = one.lifetime or ALWAYS
+    return max(begin, first), min(end, last)
 
 
 def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, replay: str, progress=None) -> np.ndarray:
@@ -43,7 +68,8 @@ def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, replay
     progress: as in `trace`. Warns of a radar that is never heard.
     """
     cube = np.zeros(signal_shape(radar), complex)
-    for index, one in enumerate(interferers_of(scene)):
+    begin = settings.start_time
+    for index, one in interferers_within(scene, begin, begin + radar.frame_duration):
         ways = _ways_of(scene, radar, one, settings, replay, progress)
         if not any(way.any() for way in ways):
             _warn_of_silence(index, has_ways=bool(ways))

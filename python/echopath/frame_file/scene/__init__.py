@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...scene.lifetimes import ALWAYS
+from ...scene.node import ALWAYS
 from ...scene.scene import Scene
 from ..h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .deformation import read_deformation, write_deformation

@@ -6,6 +6,7 @@ from ..h5 import blames_group, read_attribute, read_group, write_attribute
 from ..radar import read_radar, write_radar
 
 NAME = "interferers"
+_LIFETIME = "lifetime_begin", "lifetime_end"  # of those that have one
 
 
 def write_interferers(file, scene) -> None:
@@ -17,6 +18,8 @@ def write_interferers(file, scene) -> None:
         write_radar(group.create_group("radar"), one.radar)
         write_attribute(group, "offset", one.offset)
         write_attribute(group, "over", one.over)
+        for name, time in zip(_LIFETIME, one.lifetime or ()):
+            write_attribute(group, name, time)
 
 
 def read_interferers(file) -> tuple[Interferer, ...]:
@@ -29,5 +32,6 @@ def read_interferers(file) -> tuple[Interferer, ...]:
 
 @blames_group
 def _one(group) -> Interferer:
+    lifetime = tuple(read_attribute(group, name, float) for name in _LIFETIME if name in group.attrs)
     return Interferer(radar=read_radar(read_group(group, "radar")), offset=read_attribute(group, "offset", float),
-                      over=read_attribute(group, "over", str))
+                      over=read_attribute(group, "over", str), lifetime=lifetime or None)

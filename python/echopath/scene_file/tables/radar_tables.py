@@ -7,6 +7,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from ...receiver.settings import receiver_rule
 from ...scene.interferers import Over
+from ...trajectories.arguments import Outside
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
 from .table import NotNegative, Number, Pitch, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 
@@ -108,6 +109,7 @@ class InterfererTable(RadarTable):
     """A radar that sends: its receivers, where it has none, are its transmitters."""
 
     offset: Number = Field(0.0, description="s, by which its frames begin later than at time 0")
+    outside: Outside | None = Field(None, description="of the file of its trajectory: it \"stands\" or is absent; none: absent")
     over: Over = Field("both", description="the direct way, the paths of the scene, or both")
 
     @model_validator(mode="before")

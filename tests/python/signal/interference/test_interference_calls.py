@@ -97,6 +97,21 @@ def test_a_radar_that_is_never_heard_is_named(others, told):
     assert warned[0].filename == __file__
 
 
+@pytest.mark.parametrize("key, outside, lifetime", [
+    ("rides_on", "", (1.0, 3.0)), ("trajectory", "", (1.0, 3.0)), ("trajectory", 'outside = "stands"\n', None)])
+def test_radars_on_vehicles_that_come_and_go_send_with_them(tmp_path, key, outside, lifetime):
+    (tmp_path / "cars.csv").write_text("time,id,x,y\n1,late,60,3\n2,late,50,3\n3,late,40,3\n0,ego,0,0\n4,ego,40,0\n")
+    waveform = "start_frequency = 77e9\nbandwidth = 1e9\nnum_samples = 64\nsampling_rate = 20e6\nnum_chirps = 4\n"
+    table = "[{0}waveform]\n" + waveform + "chirp_interval = 2e-5\n[[{0}transmitters]]\nposition = [0, 0, 0]\n"
+    given = 'rides_on = "late"\n' if key == "rides_on" else 'trajectory = "cars.csv"\nid = "late"\n'
+    text = (table.format("radar.") + '[[radar.receivers]]\nposition = [0, 0, 0]\n[[traffic]]\nfile = "cars.csv"\n'
+            + f"[[interferers]]\n{given}{outside}" + table.format("interferers."))
+    (tmp_path / "street.toml").write_text(text)
+    interferer, = ep.load_scene(tmp_path / "street.toml").scene.interferers
+    assert interferer.lifetime == lifetime
+    np.testing.assert_allclose(interferer.radar.world_from_radar(2.0)[:3, 3], [50.0, 3.0, 0.0], atol=1.0)
+
+
 def test_info_and_notebooks_tell_of_other_radars(tmp_path, capsys):
     """Slopes of 1 GHz in 12.8 us and of half of that: 20 MHz are crossed in 0.512 us."""
     waveform = "start_frequency = {start}\nbandwidth = {band}\nnum_samples = 256\nsampling_rate = 20e6\nnum_chirps = 4\n"

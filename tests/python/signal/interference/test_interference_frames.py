@@ -84,6 +84,28 @@ def test_the_direct_way_has_what_the_polarisations_share(model, expected):
     np.testing.assert_allclose(turned, expected * plain, atol=1e-9 * np.abs(plain).max())
 
 
+def test_frames_hear_those_alone_whose_lifetimes_cover_them(tmp_path, recwarn):
+    """Of three frames that last 1.9 ms each the second one alone lies between the begin and the end, beside which the other radar
+    needs no motion."""
+    way = ep.KeyframeMotion([0.09, 0.15], translations=np.zeros((2, 3)))
+    coming = ep.Interferer(radar=TONE.replace(motion=way), over="direct", lifetime=(0.09, 0.15))
+    scene = street(coming)
+    sequence = ep.Sequence(scene, victim(**SLOW), frames=3, interval=0.096, num_rays=500, guard=False, noise_seed=None)
+    sequence.save(tmp_path / "frames")
+    assert not [str(one.message) for one in recwarn if "interferers" in str(one.message)]
+    for frames in (sequence, ep.load_sequence(tmp_path / "frames")):
+        assert [frame.interference_cube.any() for frame in frames] == [False, True, False]
+        assert frames[0].scene.interferers == (coming,) == pickle.loads(pickle.dumps(frames[0].scene)).interferers
+    with pytest.warns(RuntimeWarning, match=r"^interferers\[0\]: does not send from 0.2 to 0.2.* lifetime is 0.09 to 0.15 s"):
+        assert not frame_of(scene, start_time=0.2, guard=False).interference_cube.any()
+
+
+@pytest.mark.parametrize("lifetime", [(1.0, 1.0), (2.0, 1.0), (0.0, np.nan)])
+def test_lifetimes_ascend(lifetime):
+    with pytest.raises(ValueError, match="^lifetime: must be a begin and an end in s, ascending, got"):
+        ep.Interferer(radar=TONE, lifetime=lifetime)
+
+
 def test_slants_of_45_degrees_to_the_same_side_do_not_hear_each_other_ahead():
     """As radars of oncoming traffic are built: seen from one, the slant of the other is that to the other side."""
     slant = [ep.Antenna(polarization=np.array((0.0, 1.0, 1.0)) / np.sqrt(2.0))]

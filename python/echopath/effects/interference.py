@@ -11,6 +11,8 @@ from .rules import Case, rule
 @rule(INTERFERENCE, "Scene.interferers")
 def _interference(case: Case):
     if case.interference_cube is not None:
+        if not np.any(case.interference_cube):
+            return True, "no other radar is heard in the frame"
         return True, f"{in_dbm(float(np.mean(np.abs(case.interference_cube)**2))):.1f} dBm of other radars, on the whole alone"
     if not case.interferers:
         return False, "the scene has no other radars"

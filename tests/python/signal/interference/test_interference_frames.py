@@ -95,6 +95,8 @@ def test_frames_hear_those_alone_whose_lifetimes_cover_them(tmp_path, recwarn):
     assert not [str(one.message) for one in recwarn if "interferers" in str(one.message)]
     for frames in (sequence, ep.load_sequence(tmp_path / "frames")):
         assert [frame.interference_cube.any() for frame in frames] == [False, True, False]
+        told = [next(one.reason for one in frame.effects if one.name == "interference") for frame in frames]
+        assert [one == "no other radar is heard in the frame" for one in told] == [True, False, True]
         assert frames[0].scene.interferers == (coming,) == pickle.loads(pickle.dumps(frames[0].scene)).interferers
     with pytest.warns(RuntimeWarning, match=r"^interferers\[0\]: does not send from 0.2 to 0.2.* lifetime is 0.09 to 0.15 s"):
         assert not frame_of(scene, start_time=0.2, guard=False).interference_cube.any()

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import Rule, anything, checked, real, vector
+from ..arguments.checks import Rule, anything, checked, real, refused, vector
 from ..arguments.effects import ATTENUATION, Choices, is_on
 from ..arguments.settings import Settings, settings_class
 from ..base.antennas import polarization_of
@@ -49,6 +49,13 @@ class Weather(Settings):
         "rain_mm_per_hour": real(0.0, 300.0, "mm/h"), "fog_g_per_m3": real(0.0, 10.0, "g/m^3"),
         "temperature": real(200.0, 340.0, "K"), "pressure": real(1e4, 1.2e5, "Pa"), "humidity": real(0.0, 1.0),
         "wind": _wind, "turbulence": real(0.0, 100.0, "m/s")}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        boiling = 100.0 * saturation_pressure(self.temperature, 1e-2 * self.pressure)  # Pa
+        if self.humidity * boiling > self.pressure:
+            raise refused(ValueError, "humidity", f"at most {self.pressure / boiling:.3g} at {self.temperature:g} K and "
+                          f"{self.pressure:g} Pa, where vapour is all of the air", self.humidity)
 
     @checked(self=anything)
     def attenuation_db_per_km(self, radar: _core.Radar) -> dict[str, float]:

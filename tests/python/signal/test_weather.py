@@ -247,6 +247,10 @@ def test_weather_travels_with_its_scene(tmp_path):
     assert pickle.loads(pickle.dumps(WET)) == WET == WET.replace()
     with pytest.raises(ValueError, match="^humidity: "):
         ep.Weather(humidity=60)
+    # Steam tables: at 322.15 K water boils at 117.5 hPa.
+    ep.Weather(temperature=322.15, pressure=1e4, humidity=0.84)
+    with pytest.raises(ValueError, match=r"^humidity: must be at most 0\.8[45]\d* at 322.15 K and 10000 Pa, .*, got 1"):
+        ep.Weather(temperature=322.15, pressure=1e4, humidity=1.0)
     with pytest.raises(TypeError, match="weather"):
         scene.weather = {"rain": 3}
 

@@ -6,7 +6,6 @@
 #include "echopath/base/principal_box.h"
 #include "echopath/em/surface/coherent_share.h"
 #include "echopath/scene/edges/planar_patches.h"
-#include "echopath/scene/mesh/adjacency.h"
 #include "echopath/scene/mesh/direction_count.h"
 
 namespace echopath {
@@ -46,8 +45,8 @@ class PlaneMeasure {
 
   // Measures the planes, which are flat to within a tolerance in m.
   Sizes measured(double tolerance) const {
-    const auto patches = planar_patches(vertices_, triangles_, tolerance);
-    const auto neighbours = edge_neighbours(vertices_, triangles_);
+    const TriangleContacts contacts(vertices_, triangles_, tolerance);
+    const auto patches = planar_patches(vertices_, triangles_, tolerance, contacts);
     std::vector<uint32_t> patch_of(triangles_.size(), kNoPatch);
     for (uint32_t patch = 0; patch < patches.size(); ++patch) {
       for (const uint32_t triangle : patches[patch]) patch_of[triangle] = patch;
@@ -57,7 +56,7 @@ class PlaneMeasure {
     for (const std::vector<uint32_t>& patch : patches) {
       const double area = area_of(patch);
       found.whole += area;
-      if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, neighbours, patch_of)) {
+      if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, contacts, patch_of)) {
         found.large += area;
         ++found.num_large;
       }
@@ -139,15 +138,12 @@ class PlaneMeasure {
   }
 
   // Returns the length in m of the edges that lead out of the patch.
-  double rim_of(const std::vector<uint32_t>& patch, const std::vector<std::array<uint32_t, 3>>& neighbours,
-                const std::vector<uint32_t>& patch_of) const {
+  static double rim_of(const std::vector<uint32_t>& patch, const TriangleContacts& contacts,
+                       const std::vector<uint32_t>& patch_of) {
     double length = 0.0;
     for (const uint32_t triangle : patch) {
-      for (size_t edge = 0; edge < 3; ++edge) {
-        const uint32_t next = neighbours[triangle][edge];
-        if (next != kNoTriangle && patch_of[next] == patch_of[triangle]) continue;
-        length += (vertices_[triangles_[triangle][(edge + 1) % 3]] - vertices_[triangles_[triangle][edge]]).norm();
-      }
+      const auto is_of_patch = [&](uint32_t other) { return patch_of[other] == patch_of[triangle]; };
+      length += contacts.open_length(triangle, is_of_patch);
     }
     return length;
   }

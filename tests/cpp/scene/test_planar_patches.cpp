@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "echopath/scene/edges/planar_patches.h"
@@ -42,6 +43,43 @@ TEST(PlanarPatches, JoinTrianglesWithinTheToleranceAndNoOthers) {
   EXPECT_EQ(found[1].size(), 2 * kSide * (kSide - 1));
   EXPECT_EQ(planar_patches({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}, 1e-4),
             (Patches{{0}, {1}}));  // they do not touch
+}
+
+// A sill below two strips beside each other, whose corners lie on its side, and a wall at right angles on the same line.
+TEST(PlanarPatches, GoOnWhereCornersLieOnTheSidesOfOthers) {
+  const std::vector<Vec3> vertices = {{0, 0, 0},   {9, 0, 0},   {9, 0, 1}, {0, 0, 1},   {0, 0, 1},
+                                      {3.3, 0, 1}, {3.3, 0, 4}, {0, 0, 4}, {3.3, 0, 1}, {9, 0, 1},
+                                      {9, 0, 4},   {3.3, 0, 4}, {2, 0, 1}, {7, 0, 1},   {7, -2, 1}};
+  const std::vector<Triangle> triangles = {{0, 1, 2},  {0, 2, 3},   {4, 5, 6},   {4, 6, 7},
+                                           {8, 9, 10}, {8, 10, 11}, {12, 13, 14}};
+  EXPECT_EQ(planar_patches(vertices, triangles, 1e-4), (Patches{{0, 1, 2, 3, 4, 5}, {6}}));
+  std::vector<Vec3> apart = vertices;
+  for (size_t i = 4; i < 12; ++i) apart[i].z() += 2e-4;  // a gap above the sill, wider than the tolerance
+  EXPECT_EQ(planar_patches(apart, triangles, 1e-4), (Patches{{2, 3, 4, 5}, {6}, {0, 1}}));
+}
+
+TEST(PlanarPatches, GoOnThroughEdgesOfMoreThanTwoTrianglesAndHoldThoseListedTwice) {
+  const std::vector<Vec3> cross = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  EXPECT_EQ(planar_patches(cross, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 5}}, 1e-4), (Patches{{0, 1}, {2, 3}}));
+  EXPECT_EQ(planar_patches(cross, {{0, 1, 2}, {0, 2, 1}, {0, 1, 3}}, 1e-4), (Patches{{0, 1, 2}}));
+}
+
+TEST(TriangleContacts, OpenLengthIsThatOfTheRimHoweverTheSquareIsCut) {
+  const std::vector<Vec3> vertices = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 0, 0}, {2, 2, 0}, {3, 3, 0}};
+  const std::vector<Triangle> triangles = {
+      {0, 2, 3}, {0, 4, 5}, {4, 1, 5}, {5, 1, 6}, {6, 1, 2}};  // the diagonal in three parts
+  const TriangleContacts contacts(vertices, triangles, 1e-4);
+  double length = 0.0;
+  for (uint32_t t = 0; t < triangles.size(); ++t) length += contacts.open_length(t, [](uint32_t) { return true; });
+  EXPECT_NEAR(length, 16.0, 1e-12);
+  EXPECT_NEAR(contacts.open_length(0, [](uint32_t other) { return other != 1; }), 8.0 + std::sqrt(8.0), 1e-12);
+}
+
+TEST(TriangleContacts, ATriangleListedTwiceHasTwoRims) {
+  const std::vector<Vec3> vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 1}};
+  const TriangleContacts contacts(vertices, triangles, 1e-4);
+  for (uint32_t t = 0; t < 2; ++t) EXPECT_NEAR(contacts.open_length(t, [](uint32_t) { return true; }), 12.0, 1e-12);
 }
 
 }  // namespace

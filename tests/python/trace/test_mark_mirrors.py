@@ -51,6 +51,32 @@ def test_a_frame_is_as_wide_as_what_is_about_its_hole():
     assert marked(plate(side, hole=side - 1.98 * ZONE)) == ()
 
 
+def in_strips(side: float, heights=(0.0, 0.17, 0.6, 1.0)) -> ep.Mesh:
+    """The plate cut as walls around windows are: strips of unlike parts, whose corners lie on the sides of the next strip."""
+    whole = plate(side).vertices
+    low, across, up = whole[0], whole[1] - whole[0], whole[3] - whole[0]
+    vertices, triangles = [], []
+    for strip, (begin, end) in enumerate(zip(heights[:-1], heights[1:])):
+        cuts = np.linspace(0.0, 1.0, 2 + 2 * strip)
+        for left, right in zip(cuts[:-1], cuts[1:]):
+            first = len(vertices)
+            vertices += [low + x * across + z * up for x, z in ((left, begin), (right, begin), (right, end), (left, end))]
+            triangles += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
+    return ep.Mesh(vertices, triangles)
+
+
+def test_how_a_file_cuts_a_wall_into_triangles_does_not_count():
+    assert marked(in_strips(2.02 * ZONE)) == ("plate",)
+    assert marked(in_strips(1.98 * ZONE)) == ()
+
+
+def test_triangles_that_a_file_lists_twice_are_as_wide_as_by_themselves():
+    for factor, names in ((2.02, ("plate",)), (1.98, ())):
+        once = plate(factor * ZONE)
+        twice = np.concatenate([once.triangles, once.triangles[:, ::-1]])
+        assert marked(ep.Mesh(once.vertices, twice)) == names
+
+
 def test_rough_smooth_thin_and_deforming_surfaces_stay():
     side = 3.0 * ZONE
     wavelength = ep.speed_of_light / FREQUENCY

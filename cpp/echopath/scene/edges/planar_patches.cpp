@@ -6,16 +6,16 @@
 #include <numeric>
 
 #include "echopath/base/plane.h"
-#include "echopath/scene/mesh/adjacency.h"
 
 namespace echopath {
 namespace {
 
 class PatchFinder {
  public:
-  PatchFinder(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, double tolerance)
-      : vertices_(vertices), triangles_(triangles), tolerance_(tolerance), neighbours_(edge_neighbours(vertices, triangles)),
-        is_taken_(triangles.size()) {}
+  PatchFinder(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, double tolerance,
+              const TriangleContacts& contacts)
+      : vertices_(vertices), triangles_(triangles), tolerance_(tolerance), contacts_(contacts), is_taken_(triangles.size()) {
+  }
 
   std::vector<std::vector<uint32_t>> find() {
     std::vector<std::vector<uint32_t>> patches;
@@ -48,8 +48,8 @@ class PatchFinder {
     for (size_t before = 0; before < patch.size();) {
       before = patch.size();
       for (size_t i = 0; i < patch.size(); ++i) {
-        for (const uint32_t next : neighbours_[patch[i]]) {
-          if (next == kNoTriangle || is_taken_[next] || !lies_in(plane, next)) continue;
+        for (const uint32_t next : contacts_.touching(patch[i])) {
+          if (is_taken_[next] || !lies_in(plane, next)) continue;
           is_taken_[next] = true;
           patch.push_back(next);
         }
@@ -87,7 +87,7 @@ class PatchFinder {
   const std::vector<Vec3>& vertices_;
   const std::vector<Triangle>& triangles_;
   double tolerance_;
-  std::vector<std::array<uint32_t, 3>> neighbours_;
+  const TriangleContacts& contacts_;
   std::vector<bool> is_taken_;
 };
 
@@ -95,7 +95,12 @@ class PatchFinder {
 
 std::vector<std::vector<uint32_t>> planar_patches(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                                   double tolerance) {
-  return PatchFinder(vertices, triangles, tolerance).find();
+  return planar_patches(vertices, triangles, tolerance, TriangleContacts(vertices, triangles, tolerance));
+}
+
+std::vector<std::vector<uint32_t>> planar_patches(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                                                  double tolerance, const TriangleContacts& contacts) {
+  return PatchFinder(vertices, triangles, tolerance, contacts).find();
 }
 
 }  // namespace echopath

@@ -7,6 +7,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from .. import _core
+from ..base.folder_kinds import folder_hint
 from .number_rules import Rule, is_number
 from .shown import refused, writable
 
@@ -98,7 +99,7 @@ def file(argument: str, value) -> str:
     """The name of a file, which is no folder."""
     name = path(argument, value)
     if os.path.isdir(name):
-        raise refused(_core.FileError, argument, "the name of a file, not of a folder", value)
+        raise refused(_core.FileError, argument, f"the name of a file, not of a folder{folder_hint(name)}", value)
     return name
 
 

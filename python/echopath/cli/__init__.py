@@ -1,4 +1,4 @@
-"""The command line: echopath demo | run | view | info | scene | labels | dataset | bench."""
+"""The command line: echopath demo | run | view | info | scene | labels | dataset | dataset-report | bench."""
 from __future__ import annotations
 
 import os

@@ -12,6 +12,7 @@ from ..arguments.checks import refused
 from ..arguments.shown import shown
 from ..base.counts import counted
 from ..base.files import write_texts
+from ..base.folder_kinds import folder_hint
 from ..scene_file.load import parse
 from .template import Template
 
@@ -167,7 +168,7 @@ def open_template(folder: Path) -> Template:
     """The template of a dataset. Raises ep.FileError naming the folder where there is none."""
     path = folder / TEMPLATE
     if not path.exists():
-        raise _core.FileError(f"{folder}: is no dataset, it has no {TEMPLATE}")
+        raise _core.FileError(f"{folder}: is no dataset, it has no {TEMPLATE}{folder_hint(folder)}")
     return Template(path, _folder_of_files(folder))
 
 

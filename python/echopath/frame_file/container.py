@@ -2,9 +2,11 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from pathlib import Path
 
 from .. import _core
 from ..base.files import written_whole
+from ..base.folder_kinds import folder_hint
 from .h5 import read_attribute, write_attribute, writing
 from .opening import reading
 
@@ -42,8 +44,10 @@ def our_file(path, kind: str = FRAME):
                                   f"{OLD_LAYOUT if version < SCHEMA_VERSION else ''}")
         found = read_attribute(file, "format", str).removeprefix("echopath ")
         if found != kind:
+            beside = folder_hint(Path(path).parent) if found == FRAME else ""
             raise _core.FileError(_OTHER_KIND.get(found, f"is an HDF5 file, but no {kind} file of echopath")
-                                  + (f"; '{path}/frames/000000' is its first frame" if "frames" in file else ""))
+                                  + (f"; '{path}/frames/000000' is its first frame" if "frames" in file else "")
+                                  + beside)
         yield file
 
 

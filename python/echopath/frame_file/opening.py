@@ -58,9 +58,11 @@ def reading(path):
             raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run "
                                   f"{quote(str(path))} --out DIR` makes DIR/frame.h5 of it") from None
         if place.is_file() and place.suffix.lower() not in SUFFIXES:
-            raise _core.FileError(f"{path}: not a frame file (.h5); of a model, `echopath scene {quote(str(path))} --out "
-                                  "SCENE.toml` makes a scene file, and `echopath run SCENE.toml --out DIR` the frame of "
-                                  "that") from None
+            from ..readers.load import READERS
+
+            way = (f"; `echopath scene {quote(str(path))} --out SCENE.toml` makes a scene file of a model, and `echopath run "
+                   "SCENE.toml --out DIR` the frame of that" if place.suffix.lower() in READERS else "")
+            raise _core.FileError(f"{path}: not a frame file (.h5){way}") from None
         if place.is_dir():
             raise _core.FileError(f"{path}: a folder, where a frame file (.h5) is asked for, as those in it may be") from None
         raise _core.FileError(f"{path}: damaged or not an HDF5 file ({first_line(error)})") from error

@@ -89,7 +89,8 @@ def reader_of(path: Path) -> str:
     if module is None and path.is_dir():
         return "frames"
     if module is None:
-        raise refused(ValueError, "path", f"a file of the kinds {', '.join(READERS)}, or a folder of OBJ files", str(path))
+        hint = "; ep.load_scene reads scene files" if path.suffix.lower() == ".toml" else ""
+        raise refused(ValueError, "path", f"a file of the kinds {', '.join(READERS)}, or a folder of OBJ files{hint}", str(path))
     if path.is_dir():
         raise _core.FileError(f"{path}: is a directory")
     if not path.is_file():  # devices and pipes have no end

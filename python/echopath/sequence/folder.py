@@ -8,6 +8,7 @@ from pathlib import Path
 from .. import _core
 from ..arguments.checks import refused
 from ..base.files import require_writable, written_whole
+from ..base.folder_kinds import folder_hint
 from ..frame.frame import Frame
 from ..frame_file.h5 import writing
 from ..frame_file.opening import is_cut_off
@@ -50,6 +51,8 @@ class FolderStore:
         """Of which sequence it is. Raises ep.FileError."""
         if self.path.is_file():
             raise _core.FileError(f"{self.path}: must be a folder of frames, or one file of them (.h5), got another file")
+        if self.path.is_dir() and not self.head.exists():
+            raise _core.FileError(f"{self.head}: no such file{folder_hint(self.path)}")
         return read_contents(self.head)
 
     def writing(self, contents: Contents, is_shared: bool) -> AbstractContextManager[None]:

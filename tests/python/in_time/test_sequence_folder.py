@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import echopath as ep
+from echopath import dataset
 from echopath.sequence import folder_lock
 from support.frames_in_time import INTERVAL, KILL_SOON, make_radar, make_scene, make_sequence
 
@@ -223,3 +224,23 @@ def test_a_damaged_head_is_named_with_what_to_do(tmp_path, name, damaged, share)
     words = str(told.value)
     assert f"({tmp_path / damaged}: damaged or not an HDF5 file" in words and "move what is there away" in words
     assert "/." not in words.replace(str(tmp_path), "")
+
+
+def test_who_reads_a_folder_is_told_to_those_who_ask_it_for_something_else(tmp_path):
+    """Of frames in time, of a dataset and of a run; that of anything else has nothing to tell."""
+    made, other, empty = tmp_path / "frames", tmp_path / "dataset", tmp_path / "empty"
+    make_sequence(frames=1).save(made, keep="maps")
+    for folder in (other, empty):
+        folder.mkdir()
+    (other / "dataset.toml").write_text("[dataset]\nscenes = 1\n")
+    reads_frames = "; the folder holds frames in time, which ep.load_sequence reads"
+    with pytest.raises(ep.FileError, match=f"^path: must be the name of a file, not of a folder{reads_frames}, got"):
+        ep.load_frame(made)
+    with pytest.raises(ep.FileError, match=f"is no dataset, it has no dataset.toml{reads_frames}$"):
+        dataset.open(made)
+    with pytest.raises(ep.FileError, match="no such file; the folder holds a dataset, which echopath.dataset.open reads$"):
+        ep.load_sequence(other)
+    with pytest.raises(ep.FileError, match="sequence.h5: no such file$"):
+        ep.load_sequence(empty)
+    with pytest.raises(ep.FileError, match="not a sequence: ep.load_frame reads it; the folder holds frames in time, which"):
+        ep.load_sequence(made / "frame_0000.h5")

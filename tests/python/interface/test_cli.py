@@ -394,7 +394,7 @@ def test_a_model_in_the_place_of_a_frame_is_told(tmp_path):
     (tmp_path / "car.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\n")
     done = call("labels", tmp_path / "car.obj", "--out", tmp_path / "out")
     words = " ".join(done.stderr.split())
-    assert done.returncode == 2 and "car.obj: not a frame file (.h5); of a model, `echopath scene" in words
+    assert done.returncode == 2 and "car.obj: not a frame file (.h5); `echopath scene" in words
 
 
 @pytest.mark.hard

@@ -98,7 +98,7 @@ class Dataset:
             return self._with(self.numbers[place])
         if isinstance(place, (list, tuple, np.ndarray)) and np.ndim(place):
             return self._with([self._number(one) for one in _PLACES("place", place).tolist()])
-        number = self._number(_place(place))
+        number = self._number(_whole("place", "a whole number, a slice or places [N]", place))
         scene, at = divmod(number, self.template.settings.frames)
         return DatasetFrame(number, scene, at, self.template.split_of(scene), self._source.frame(scene, at))
 
@@ -163,7 +163,7 @@ class Dataset:
         return self.template.classes(scene, tuple(pair for one in asked for pair in one.get("objects") or ()))
 
     def _check_scene(self, scene: int) -> None:
-        if not 0 <= scene < self.template.settings.scenes:
+        if not 0 <= _whole("scene", "a whole number", scene) < self.template.settings.scenes:
             raise IndexError(f"scene: must be from 0 to {self.template.settings.scenes - 1}, got {scene}")
 
     def to_xarray(self) -> XarrayDataset:
@@ -191,12 +191,12 @@ def dataset_rule(argument: str, value: Any) -> Dataset:
     return value
 
 
-def _place(value: Any) -> int:
-    """A whole number. Raises TypeError naming `place` for anything else."""
+def _whole(argument: str, rule: str, value: Any) -> int:
+    """A whole number. Raises TypeError naming the argument and the rule for anything else."""
     try:
         return operator.index(value)
     except TypeError:
-        raise refused(TypeError, "place", "a whole number, a slice or places [N]", value) from None
+        raise refused(TypeError, argument, rule, value) from None
 
 
 @checked(folder=folder_rule)

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -56,6 +56,12 @@ class FrameMaps:
         if self.kept_truth is None:
             raise refused(ValueError, "frame", "of a run with truth=True", self)
         return self.kept_truth
+
+    if not TYPE_CHECKING:  # to checkers of types all names would be attributes
+        def __getattr__(self, name: str):
+            is_of_frames = hasattr(Frame, name) or name in Frame.__dataclass_fields__
+            hint = "; small files have maps and labels alone, those of keep='all' the whole frame" if is_of_frames else ""
+            raise AttributeError(f"'FrameMaps' object has no attribute '{name}'{hint}")
 
     def __repr__(self) -> str:
         power = "no power" if self.power is None else f"power [{len(self.velocity)}, {len(self.range)}]"

@@ -80,6 +80,8 @@ material = "metal"
                                                                               "box": "truck"}
     assert set(known.values()) == {"cyclist", "truck", "static"}
     assert {one.name for one in opened[0].frame.labels["parts"].objects} <= set(known)
+    with pytest.raises(TypeError, match="scene: must be a whole number, got '0'"):
+        opened.sequence("0")
     with pytest.raises(IndexError, match="scene: must be from 0 to 0, got 1"):
         opened.classes(1)
 

@@ -127,6 +127,9 @@ def test_frames_have_the_names_and_the_values_of_their_small_files(folders):
             np.testing.assert_array_equal(own, kept)
         elif name not in ("labels", "detections"):
             assert own == kept
+    for name, told in (("cube", "'cube'; small files have maps and labels alone"), ("cubes", "'cubes'$")):
+        with pytest.raises(AttributeError, match=f"^'FrameMaps' object has no attribute {told}"):
+            getattr(maps, name)
 
 
 def test_the_power_of_a_frame_is_the_mean_square_of_its_map_over_the_channels():

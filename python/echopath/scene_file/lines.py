@@ -23,7 +23,8 @@ def key_lines(text: str) -> dict[str, int]:
     for number, line in enumerate(text.split("\n"), 1):
         if (header := _HEADER.match(line)) and (words := _words(header[2])):
             table = _with_places(words, counts, header[1] == "[[")
-            lines.setdefault(table, number)
+            for end in range(1, len(words) + 1):
+                lines.setdefault(_with_places(words[:end], counts), number)
         elif (assigned := _ASSIGNED.match(line)) and (words := _words(assigned[1])):
             lines.setdefault(".".join([table, *words] if table else words), number)
     return lines
@@ -60,6 +61,8 @@ def settings_told(path: Path, typed: Collection[str] = ()) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
+        if not path.is_file():  # a pipe is read once
+            raise
         lines = key_lines(path.read_text(encoding="utf-8-sig"))
         fault = with_table(str(error), lines)
         if fault == str(error) or fault.partition(": ")[0].rpartition(".")[2] in typed:
@@ -86,7 +89,7 @@ def _words(key: str) -> list[str]:
     return words
 
 
-def _with_places(words: list[str], counts: Counter[str], is_entry: bool) -> str:
+def _with_places(words: list[str], counts: Counter[str], is_entry: bool = False) -> str:
     """The path of a header; counts: of the entries of arrays before, to which one is added where the header is an entry."""
     path = ""
     for index, word in enumerate(words):

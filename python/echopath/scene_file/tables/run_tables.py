@@ -9,7 +9,7 @@ from ...arguments.checks import MOST_NEIGHBOURS, map_window, window
 from ...arguments.effects import effects_rule
 from ...arguments.gates import gate
 from ...arguments.settings import (
-    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, LabelSettings, Plane, Polarization, Replay,
+    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay,
     Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from ...spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
@@ -39,9 +39,9 @@ class TraceTable(Table):
     scatterers: Scatterers = Field(
         TraceSettings.scatterers, description="of rough surfaces: where rays meet them, points that are the same in every frame, "
                                               "or these for frames in a row alone")
-    edges: Edges = Field(
+    edges: Annotated[Any, by_check(TraceSettings.RULES["edges"])] = Field(
         TraceSettings.edges, description="also find the echoes of sharp edges, or where they stand out of the noise")
-    faint_power: Annotated[FaintPower, by_check(TraceSettings.RULES["faint_power"])] = Field(
+    faint_power: Annotated[Any, by_check(TraceSettings.RULES["faint_power"])] = Field(
         TraceSettings.faint_power, description="W, the most of a diffuse path that stands for others; 0: all are kept")
     effects: Annotated[Any, by_check(effects_rule)] = Field(
         TraceSettings.effects, description="name of an effect of the weather = true, false or \"auto\"")

@@ -9,6 +9,7 @@ import threading
 import pytest
 
 import echopath as ep
+from echopath.scene_file.lines import settings_told
 from support.files.scene_files import RADAR, fault_of, mesh_object, without_line
 
 CIRCLE = "".join(f"[[radar.receivers]]\nposition = [0.0, {0.01 * math.cos(0.7 * i)}, {1.0 + 0.01 * math.sin(0.7 * i)}]\n"
@@ -25,6 +26,8 @@ FAULTS = [
     ("guard = 'off'\n" + RADAR, "guard: must be true or false, got 'off'"),
     ("guard = 0\n" + RADAR, "guard: must be true or false, got 0"),
     (RADAR + "[tracer]\nnum_rays = 3", "tracer: unknown key; did you mean 'trace'?"),
+    (RADAR + "[trace]\nedges = 'yes'", "trace.edges: must be True, False or 'auto', got 'yes'"),
+    (RADAR + "[trace]\nfaint_power = 'all'", "trace.faint_power: must be a number or 'auto', got 'all'"),
     (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
     (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),
     (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be 'rect', 'hann', 'hamming', 'blackman_harris' or "
@@ -109,6 +112,7 @@ LINES = {
     "what the core refuses of a key": ("\n[[objects]]\ngroup = true\nparent = 'nobody'\nname = 'a'\n", 4),
     "a table below an object": (
         "\n[[objects]]\nname = 'a'\ngroup = true\n[objects.motion]\nkind = 'linear'\nvelocity = [1, 2]\n", 7),
+    "a table whose parent is misspelt": ("\n[part.route]\na = 'T . R'\n", 2),
     "within a value": ("\n[[objects]]\nname = 'a'\ngroup = true\nmotion = {kind = 'linear', velocity = [1, 2]}\n", 5),
     "a key that is missing, at its table": ("\n[parts]\n[sequence]\nframes = 3\n", 3),
     "a part in quotes": ("\n[parts]\na = 'T . R'\n\"my part\" = 'T R R'\n", 4),
@@ -133,6 +137,17 @@ def test_a_pipe_is_read_once(tmp_path):
     writer = threading.Thread(target=(tmp_path / "pipe").write_text, args=("\n[trace]\nnum_ray = 5\n" + RADAR,))
     writer.start()
     assert fault_of(tmp_path / "pipe").startswith(f"{tmp_path / 'pipe'}: line 3: trace.num_ray: ")
+    writer.join()
+
+
+def test_settings_of_a_pipe_that_a_run_refuses_are_told_without_the_line(tmp_path):
+    """It has been read, and would wait for ever to be read again."""
+    os.mkfifo(tmp_path / "pipe")
+    writer = threading.Thread(target=(tmp_path / "pipe").write_text, args=("[labels]\nerrors = true\n",))
+    writer.start()
+    with pytest.raises(ValueError, match="^errors: need batches$"), settings_told(tmp_path / "pipe"):
+        raise ValueError("errors: need batches")
+    (tmp_path / "pipe").read_text()
     writer.join()
 
 

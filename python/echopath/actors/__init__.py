@@ -19,3 +19,8 @@ from .vehicles.vans import van
 __all__ = ["Actor", "Part", "bicycle", "box", "capsule", "captured_pedestrian", "car", "child", "cyclist", "dihedral", "dog",
            "drone", "ellipsoid", "ground", "guard_rail", "motorcycle", "parked_row", "pedestrian", "plate", "pole",
            "runner", "sphere", "standing_person", "traffic_sign", "tree", "trihedral", "truck", "van", "wall"]
+
+
+def __dir__() -> list[str]:
+    """What users need, as completion at a prompt shows it; the modules behind it are there, but do not show."""
+    return __all__

@@ -10,3 +10,8 @@ from .template import DatasetTable, DrawnScene, Template
 
 __all__ = ["Dataset", "DatasetFrame", "DatasetTable", "DrawnScene", "Forecast", "MadeScene", "SceneRecord", "Template", "make",
            "open", "write_carrada", "write_osi", "write_radar_scenes", "write_report"]
+
+
+def __dir__() -> list[str]:
+    """What users need, as completion at a prompt shows it; the modules behind it are there, but do not show."""
+    return __all__

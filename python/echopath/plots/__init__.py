@@ -22,3 +22,8 @@ __all__ = ["Drive", "Driving", "colour_limits", "draw_angle_spectrum", "draw_det
            "draw_range_azimuth", "draw_range_doppler", "draw_spectrogram_labels", "draw_time_map", "draw_tracks",
            "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers", "plot_partition",
            "plot_range_azimuth", "plot_range_doppler", "plot_scene", "power_dbm", "save_png", "show"]
+
+
+def __dir__() -> list[str]:
+    """What users need, as completion at a prompt shows it; the modules behind it are there, but do not show."""
+    return __all__

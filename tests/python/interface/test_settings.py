@@ -109,3 +109,6 @@ def test_what_shows_is_what_users_need():
     assert set(shown) == {*ep.__all__, "__version__", "dataset"} and "plots" in shown and ep.plots.plot_range_doppler
     modules = {name for name in shown if inspect.ismodule(getattr(ep, name))}
     assert modules == {"actors", "dataset", "plots"}
+    for name in modules:
+        module = getattr(ep, name)
+        assert dir(module) == sorted(module.__all__) and not any(inspect.ismodule(getattr(module, one)) for one in dir(module))

@@ -33,7 +33,7 @@ Target target_of(const Scene& scene) {
   std::vector<Vec3> points;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
-    require(!node.material->mirror, "scene", "must have no mirrors, which have no cross section, mesh", node.name);
+    require(!node.material->mirror, "scene", "must have no mesh marked mirror, which has no cross section", node.name);
     for (const Vec3& vertex : pose.world_vertices(id)) points.push_back(vertex);
   }
   for (const Vec3& point : points) box.extend(point);

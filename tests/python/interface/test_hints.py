@@ -231,3 +231,15 @@ def test_a_faulty_text_of_paths_names_its_argument(scene):
         paths.select("nonsense")
     with pytest.raises(ValueError, match=r"^parts\['a'\]: path expression: expected"):
         paths.partition({"a": "T ("})
+
+
+def test_meshes_that_load_model_may_read_are_told_so(tmp_path):
+    with pytest.raises(ep.FileError, match=r"unknown mesh format '.xml', known are .*\.off; load_model reads more kinds$"):
+        ep.load_mesh(tmp_path / "street.xml")
+
+
+def test_a_mirror_among_what_has_a_cross_section_is_named():
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(4.0, 2.0), name="wall", material=ep.materials["concrete"].replace(mirror=True))
+    with pytest.raises(ValueError, match="^scene: must have no mesh marked mirror, which has no cross section, got wall$"):
+        ep.rcs(scene, frequency=77e9, incidence=(-1, 0, 0), num_rays=64)

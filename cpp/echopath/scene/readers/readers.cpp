@@ -32,7 +32,7 @@ const Reader& reader_of(const std::string& path) {
     if (reader.extension == extension) return reader;
     known.append(known.empty() ? "" : ", ").append(reader.extension);
   }
-  throw FileError(path + ": unknown mesh format '" + extension + "', known are " + known);
+  throw FileError(path + ": unknown mesh format '" + extension + "', known are " + known + "; load_model reads more kinds");
 }
 
 void check_unit(double unit) {

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -158,11 +158,13 @@ COMMON: dict[str, Rule] = {
 }
 
 
-def checked(settings: Mapping[str, type] | None = None, **rules: Rule) -> Callable[
+def checked(settings: Mapping[str, type] | None = None, within: Mapping[str, Iterable[str]] | None = None,
+            **rules: Rule) -> Callable[
         [Callable[Parameters, Result]], Callable[Parameters, Result]]:
     """Decorator: the arguments of a call pass their rules; unknown keywords are refused with the nearest right one.
 
     rules: of the function's arguments; those that it shares with others may be left to COMMON
+    within: {argument: the keys of the dict that it may be}, to which unknown keywords may belong
     settings: {argument: class of settings}: an argument that holds a settings object gives the keywords that the call
         leaves out
     """
@@ -174,7 +176,7 @@ def checked(settings: Mapping[str, type] | None = None, **rules: Rule) -> Callab
 
         @functools.wraps(function)
         def call(*values: Any, **given: Any) -> Result:
-            refuse_unknown(callee, given, order)
+            refuse_unknown(callee, given, order, within)
             for argument, kind in (settings or {}).items():
                 given = _spread(argument, kind, given, order)
             refuse_misplaced(callee, signature, values, given)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ParamSpec, TypeVar
 
 from .. import _core
@@ -13,15 +13,19 @@ Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 
 
-def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str]) -> None:
+def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str],
+                   within: Mapping[str, Iterable[str]] | None = None) -> None:
     """Raises TypeError naming the first of `words` that is not in `known`, and the one that was meant, or all of them.
 
     callee: name of the function, as its caller sees it; words, known: names of keywords
+    within: {one of `known`: the keys of the dict that it may be}, of which the word may be one
     """
     known, words = list(known), list(words)
     for word in words:
         if word not in known:
             readable = str(word).encode("utf-8", "backslashreplace").decode("utf-8")
+            if homes := [f"{name}={{'{word}': ...}}" for name, keys in (within or {}).items() if word in keys]:
+                raise TypeError(f"{callee}: unknown keyword '{readable}', it belongs to {' or '.join(homes)}")
             left = [name for name in known if name not in words and name != "self"]
             meant = _core.meant_name(readable, left)
             hint = f", the nearest right one is '{meant}'" if meant else f"; its arguments are {', '.join(left)}" if left else ""

@@ -9,6 +9,7 @@ from ..arguments.checks import refused
 from ..arguments.part_names import REST, require_names
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.stages import StageClock
+from ..detections.checks import RULES as DETECTION_RULES
 from ..detections.checks import checked_keywords
 from ..guard import check_planes, check_rays, check_signal, warn_of
 from ..labels.annotate import label_frame, owners_of_cubes
@@ -35,6 +36,8 @@ from .detections import detect_frame
 from .frame import Frame, with_spectra
 from .memory import require_memory
 
+# Keywords of `simulate` that may be dicts, and their keys, which are taken for its own.
+WITHIN = {"labels": LabelSettings.RULES, "detections": DETECTION_RULES, "truth": ("objects",)}
 _FAMILIES = object()  # a view that has the name of no partition
 
 

@@ -14,11 +14,11 @@ from ..signals.interference_of_frame import warn_of_absent_interferers
 from ..signals.parts import Selections
 from ..tracing.traces import trace as trace_scene
 from .frame import Frame
-from .run import FrameRun
+from .run import WITHIN, FrameRun
 
 
-@checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES, parts=anything,
-         angles=anything, labels=anything, detections=anything, truth=anything, guard=flag)
+@checked({"trace": TraceSettings, "signal": SignalSettings}, WITHIN, **TraceSettings.RULES, **SignalSettings.RULES,
+         parts=anything, angles=anything, labels=anything, detections=anything, truth=anything, guard=flag)
 def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | None = TraceSettings.num_rays,
              max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
              start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,

@@ -25,7 +25,7 @@ from ..base.counts import counted
 from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
-from ..frame.run import FrameRun, Recorded, check_receiver
+from ..frame.run import WITHIN, FrameRun, Recorded, check_receiver
 from ..scene.lifetimes import warn_of_absence, warn_of_the_unseen
 from ..scene.scene import Scene
 from ..signals.interference_of_frame import require_interferers, warn_of_absent_interferers
@@ -72,7 +72,7 @@ class Sequence(Row[Frame]):
     nothing is heard is told once.
     """
 
-    @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
+    @checked({"trace": TraceSettings, "signal": SignalSettings}, WITHIN, **TraceSettings.RULES, **SignalSettings.RULES,
              self=anything, frames=count(1, LONGEST), interval=real(unit="s"), parts=anything, angles=anything,
              labels=anything, detections=anything, truth=anything, guard=flag)
     def __init__(self, scene: _core.Scene, radar: _core.Radar, *, frames: int, interval: float,

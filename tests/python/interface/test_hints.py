@@ -2,6 +2,7 @@
 import copy
 import dataclasses
 import pickle
+import re
 import weakref
 
 import numpy as np
@@ -243,3 +244,12 @@ def test_a_mirror_among_what_has_a_cross_section_is_named():
     scene.add(ep.actors.wall(4.0, 2.0), name="wall", material=ep.materials["concrete"].replace(mirror=True))
     with pytest.raises(ValueError, match="^scene: must have no mesh marked mirror, which has no cross section, got wall$"):
         ep.rcs(scene, frequency=77e9, incidence=(-1, 0, 0), num_rays=64)
+
+
+@pytest.mark.parametrize("word, home", [
+    ("errors", "labels={'errors': ...}"), ("false_alarm_rate", "detections={'false_alarm_rate': ...}"),
+    ("objects", "labels={'objects': ...} or detections={'objects': ...} or truth={'objects': ...}")])
+def test_keywords_of_a_dict_among_the_keywords_are_told_where_they_belong(scene, word, home):
+    for call, more in ((ep.simulate, {}), (ep.Sequence, {"frames": 2, "interval": 1.0})):
+        with pytest.raises(TypeError, match=rf"^{call.__name__}: unknown keyword '{word}', it belongs to {re.escape(home)}$"):
+            call(scene, RADAR, **{word: True}, **more)

@@ -55,8 +55,8 @@ py::tuple partition_groups(const Paths& paths, const SelectionPairs& parts) {
 // Power of a path, to be compared with powers in W.
 struct Power {};
 
-// Refuses what else stands beside & or |: these bind tighter than comparisons, so that Python reads `a & ep.num_bounces == 1`
-// as `(a & ep.num_bounces) == 1`.
+// Refuses what else stands beside & or |: these bind tighter than comparisons, so that Python reads
+// `a & ep.num_bounces == 1` as `(a & ep.num_bounces) == 1`.
 [[noreturn]] void refuse_beside_operator(const char* argument, py::handle value) {
   refuse_type(argument,
               "what they join is a Selection or its text, and a comparison stands in parentheses, as in ep.hits('wall') & "

@@ -63,7 +63,7 @@ def _receiver(case: Case):
 
 @rule("polarised fields", "trace.polarization", "Antenna.polarization")
 def _polarization(case: Case):
-    need = need_of_field_vectors(case.scene, case.wavelength, antennas_of(case.radar))
+    need = need_of_field_vectors(case.scene, case.wavelength, case.radar, case.time)
     if case.model == FIELD_VECTORS:
         return True, need or 'polarization = "jones"'
     reason = "each hit takes the TE or TM coefficient nearer to the polarization"

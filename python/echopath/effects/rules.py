@@ -14,7 +14,6 @@ from ..arguments.names import MOST_NAMES, first_names
 from ..arguments.settings import Edges, FaintPower
 from ..base.made_by import made_by
 from ..scene.interferers import interferers_of
-from ..base.antennas import antennas_of
 from ..tracing.polarization import COHERENT_SHARE, chosen_model, coherent_share
 from ..weather.weather import weather_of
 
@@ -69,8 +68,13 @@ class Case:
     @cached_property
     def model(self) -> str:
         """Of the polarisation: "scalar" or "jones"."""
-        return chosen_model(self.settings.polarization, self.scene, self.wavelength, antennas_of(self.radar),
+        return chosen_model(self.settings.polarization, self.scene, self.wavelength, self.radar, self.time,
                             argument="polarization")
+
+    @cached_property
+    def time(self) -> float:
+        """s, at which rays see the scene."""
+        return self.radar.middle_of_frame() if self.paths is None else self.paths.frame.trace_time
 
     @property
     def num_meshes(self) -> int:

@@ -150,8 +150,7 @@ def _edges(case: Case):
                                   and not material.mirror)
     if len(conductors) == 0:
         return False, "no material reflects like a conductor but flagged mirrors"
-    time = case.paths.frame.trace_time if case.paths else case.radar.middle_of_frame()
-    power, noise = strongest_edge(case.scene, case.radar, time)
+    power, noise = strongest_edge(case.scene, case.radar, case.time)
     asked = case.settings.edges
     is_on = edges_matter(power, noise) if asked == "auto" else asked
     found = _found_edges(case.paths) if is_on and case.paths else _expected_edge(power, noise)

@@ -10,7 +10,6 @@ import numpy as np
 from .. import _core
 from ..signals.parts import ONLY_PARTITION, Parts, check_partitions
 from ..tracing.faint_paths import faint_power_of
-from ..base.antennas import antennas_of
 from ..tracing.polarization import chosen_model
 from ..transmit.signals import decompose_slots, synthesize_slots
 from ..weather.weather import attenuation_of
@@ -143,5 +142,5 @@ class KeptSignal:
 
     def _model(self, scene: _core.Scene, radar: _core.Radar) -> str:
         wavelength = _core.speed_of_light / radar.waveform.start_frequency
-        return chosen_model(self._trace_keywords["polarization"], scene, wavelength, antennas_of(radar),
-                            argument="polarization")
+        middle = radar.middle_of_frame(self._trace_keywords["start_time"])
+        return chosen_model(self._trace_keywords["polarization"], scene, wavelength, radar, middle, argument="polarization")

@@ -20,7 +20,6 @@ from .edge_paths import warn_of_edge_paths
 from .edges import looks_for_edges
 from .faint_paths import faint_power_of
 from .lost_rays import warn_of_record
-from ..base.antennas import antennas_of
 from .polarization import FIELD_VECTORS, SCALAR, chosen_model
 from .tessellation import warn_of_coarse_meshes
 
@@ -115,7 +114,8 @@ def traced(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, o
     if is_first:
         warn_of_bodies(scene, radar, start_time)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
-    model = chosen_model(settings.polarization, scene, wavelength, antennas_of(radar), argument="polarization")
+    model = chosen_model(settings.polarization, scene, wavelength, radar, radar.middle_of_frame(start_time),
+                         argument="polarization")
     paths = _core.trace(scene, radar, num_rays=settings.num_rays, max_bounces=settings.max_bounces, seed=settings.seed,
                         start_time=start_time, polarization=model, footprint=settings.footprint, sampler=settings.sampler,
                         num_batches=settings.batches or 1, target_error_db=settings.target_error_db,

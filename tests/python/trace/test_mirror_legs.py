@@ -41,7 +41,8 @@ def echo_over_direct(points, normal, max_bounces):
 def patch_in_corner(centre, side, max_bounces):
     """Traced and expected echo over the direct one, in dB."""
     scene = corner(patch=(plate(centre, (-1, 0, 0), side), lambert(.5)))
-    paths = ep.trace(scene, make_radar(ANTENNA), num_rays=6000, max_bounces=max_bounces).select("T .* 'patch' .* R")
+    paths = ep.trace(scene, make_radar(ANTENNA), num_rays=6000, max_bounces=max_bounces,
+                     polarization="scalar").select("T .* 'patch' .* R")
     mesh_id = next(mesh.id for mesh in paths.scene.meshes if mesh.name == "patch")
     found = power_by_hit(paths, mesh_id) / power_by_hit(paths.select("T 'patch' R"), mesh_id)
     steps = side * ((np.arange(40) + .5) / 40 - .5)

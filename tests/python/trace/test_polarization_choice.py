@@ -89,3 +89,39 @@ def test_a_dihedral_turns_the_polarisation_as_its_fold_lies(tilt):
         assert found < 1e-4 * 8 * np.pi * SIDE ** 4 / WAVELENGTH ** 2
         assert ep.rcs(dihedral(tilt), frequency=FREQUENCY, incidence=(-1, 0, 0), max_bounces=2, num_rays=1 << 14,
                       model="scalar") > 0.5 * 8 * np.pi * SIDE ** 4 / WAVELENGTH ** 2  # blind to it
+
+
+FLOOR = ep.Mesh([(-20, -30, 0), (60, -30, 0), (60, 30, 0), (-20, 30, 0)], [[0, 1, 2], [0, 2, 3]])
+ROLLED = (np.cos(np.pi / 4), np.sin(np.pi / 4), 0.0, 0.0)  # a quarter of a turn about the boresight
+
+
+@pytest.mark.parametrize("distance, height", [(20.0, 0.52), (30.0, 0.5)])
+@pytest.mark.parametrize("antenna, sign, model", [({}, 1.0, "jones"), ({"orientation": ROLLED}, -1.0, "scalar"),
+                                                  ({"polarization": (0, 1, 0)}, -1.0, "scalar")])
+def test_a_metal_floor_mirrors_upright_waves_with_the_other_sign_than_level_ones(distance, height, antenna, sign, model):
+    """A small rough patch as high as the radar is seen by (1 + sign e^{-jk(d' - d)} d / d')^2 of its field."""
+    radar = build_radar(transmitters=[ep.Antenna(**antenna)], receivers=[ep.Antenna(**antenna)], position=(0, 0, height))
+    scene = ep.Scene()
+    scene.add(FLOOR, name="floor", material=ep.Material.metal(mirror=True))
+    scene.add(shapes.plate(0.005, 0.005), name="patch", material=ep.Material(reflectivity=1.0, scattering=1.0),
+              position=(distance, 0, height), yaw=np.pi)
+    paths = ep.trace(scene, radar, num_rays=2000)
+    assert paths.frame.polarization == model
+    whole, direct = (ep.received_power(paths.select(one)).power for one in ("T .* 'patch' .* R", "T 'patch' R"))
+    image = np.hypot(distance, 2.0 * height)
+    expected = abs(1.0 + sign * distance / image * np.exp(-2j * np.pi / WAVELENGTH * (image - distance))) ** 4
+    if expected > 1.0:
+        assert 10 * np.log10(whole / direct / expected) == pytest.approx(0.0, abs=0.2)
+    else:
+        assert whole < 0.2 * direct  # in a null, which the patch fills a little
+
+
+def test_metal_walls_beside_upright_antennas_need_no_field_vectors():
+    scene = scene_of(LAMBERT)
+    scene.add(shapes.wall(20.0, 20.0), name="wall", material=ep.Material.metal(mirror=True), position=(10, 5, -10))
+    assert model_of(scene) == "scalar"
+    slanted = ep.Antenna(polarization=np.array((0.0, 1.0, 1.0)) / np.sqrt(2.0))
+    assert model_of(scene, build_radar(transmitters=[slanted], receivers=[slanted])) == "jones"
+    (effect,) = [one for one in ep.effects(scene, build_radar(transmitters=[slanted], receivers=[slanted]))
+                 if one.name == "polarised fields"]
+    assert effect.modelled and effect.reason == "flagged mirrors of metal whose normals lie along the polarisation: wall"

@@ -53,8 +53,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     start_time: s, first sample of the frame
     polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as
         co-polarised), "jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more), or "auto": field vectors
-        where the scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas
-        of several polarisations; `paths.effects` tells which and why
+        where the scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, metal
+        mirrors met in TM, as floors below upright antennas, or antennas of several polarisations; `paths.effects` tells
     footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a
         flatter second order, for curved surfaces whose edges make the echo (a dish along its axis)
     sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"

@@ -42,6 +42,12 @@ def look_of(antenna) -> tuple:
     return antenna.pattern, antenna.orientation.tolist(), np.asarray(antenna.polarization).tolist()
 
 
+def one_of_each_look(antennas) -> list[int]:
+    """Indices of one antenna of each pattern, orientation and polarisation."""
+    looks = [look_of(one) for one in antennas]
+    return [index for index, look in enumerate(looks) if look not in looks[:index]]
+
+
 def antennas_of(radar) -> list:
     """Transmitters and receivers."""
     return [*radar.transmitters, *radar.receivers]

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.settings import FRAME_KEYWORDS
-from ..base.antennas import look_of
+from ..base.antennas import one_of_each_look
 from ..frame.frame import Frame
 from ..labels.ghost_names import ghost_name
 from ..labels.planes import with_receivers
@@ -44,7 +44,7 @@ def _in_phase(frame: Frame, of_paths: Families, channel) -> np.ndarray:
     """Sum [F] in sqrt(W) of the most that the paths of each family have at the begin, the middle and the end of the frame, for
     antennas of every kind."""
     paths, radar = frame.paths, frame.radar
-    senders, receivers = ([asked] if asked is not None else _one_of_each_look(antennas) for asked, antennas in
+    senders, receivers = ([asked] if asked is not None else one_of_each_look(antennas) for asked, antennas in
                           zip(channel or (None, None), (radar.transmitters, radar.receivers)))
     most = np.zeros(paths.num_paths)
     for tx in senders:
@@ -52,12 +52,6 @@ def _in_phase(frame: Frame, of_paths: Families, channel) -> np.ndarray:
             for amplitude in paths._echoes_at_receivers(time, tx, receivers)[1]:
                 np.maximum(most, np.abs(amplitude), out=most)
     return np.bincount(of_paths.family_of_path, most, len(of_paths))
-
-
-def _one_of_each_look(antennas) -> list[int]:
-    """Indices of one antenna of each pattern, orientation and polarisation."""
-    looks = [look_of(one) for one in antennas]
-    return [index for index, look in enumerate(looks) if look not in looks[:index]]
 
 
 def _cubes(frame: Frame, of_paths: Families, parts: list, channel) -> list:

@@ -39,8 +39,9 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
         1024 drawn by the seed of the trace, which have the power of all of them; None: the direct way alone. A trace has no
         direct way: the two signals add up
     start_time: s, first sample of the frame; offset: s, by which frames of the other radar begin later than at time 0
-    replay: of those paths, as in `synthesize`; polarization: of the direct way, as in `trace`: "scalar": all antennas count as
-        co-polarised; that of paths is that of their trace
+    replay: of those paths, as in `synthesize`; polarization: of the direct way, that of paths is that of their trace: "scalar":
+        all antennas count as co-polarised; "auto": by the size of what they share; "jones": with its sign, to be added to paths
+        of such a trace
     Returns the cube before `demultiplex`, [tx, rx, chirp, sample] or [1, rx, slots, sample], in sqrt(W). As a part of its own
     beside the others, {"interference": cube}, it is named by labels of detections. Raises TypeError or ValueError naming the
     argument.

@@ -17,6 +17,7 @@ from ..tracing.traces import trace
 from ..transmit import signal_shape
 from ..weather.weather import attenuation_of
 from .interference import interference
+from .interference_paths import powers_over_looks
 from .interference_ways import antennas_see_each_other, interference_radar, require_apart, require_own_channels
 
 
@@ -80,9 +81,13 @@ def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, replay
 def _ways_of(scene, radar, one, settings: TraceSettings, replay: str, progress) -> list:
     """Signals of an Interferer in sqrt(W) over the direct way and over the paths of the scene, without those that it has not."""
     timing, ways = {"start_time": settings.start_time, "offset": one.offset}, []
+    paths = None if one.over == "direct" else _one_way_paths(scene, radar, one.radar, settings, progress)
+    # Beside fields of paths that are vectors the direct one has its sign, too; scalar ones have none of the antennas.
+    follows = settings.polarization == "auto" and paths is not None and paths.frame.polarization == "jones"
+    polarization = "jones" if follows else settings.polarization
     if one.over != "paths" and (share := _direct_share(scene, radar, one.radar, settings)) > 0.0:
-        ways.append(share * interference(radar, one.radar, **timing, polarization=settings.polarization))
-    if one.over != "direct" and (paths := _one_way_paths(scene, radar, one.radar, settings, progress)).power.any():
+        ways.append(share * interference(radar, one.radar, **timing, polarization=polarization))
+    if paths is not None and powers_over_looks(paths).any():
         ways.append(interference(radar, one.radar, paths, **timing, replay=replay))
     return ways
 

@@ -1,8 +1,11 @@
 """A few of the one-way paths of a trace that stand for all of them."""
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
+from ..base.antennas import one_of_each_look
 from ..paths.subset import subset
 
 HELD, MOST_PATHS = 0.999, 1024  # share of the power of a trace, and of its paths: each is a crossing of its own in every chirp
@@ -11,7 +14,8 @@ HELD, MOST_PATHS = 0.999, 1024  # share of the power of a trace, and of its path
 def few_paths(paths) -> tuple:
     """Paths that stand for all of those of a trace, and what to multiply their amplitudes by [P].
 
-    The strongest that hold HELD of the power at the trace time, as they are, where MOST_PATHS or fewer do. Otherwise a sample of
+    The strongest that hold HELD of the power at the trace time, in the mean over antennas that look different ways, as they are,
+    where MOST_PATHS or fewer do. Otherwise a sample of
     about MOST_PATHS drawn by the seed of the trace. Diffuse paths, whose phases are random, are kept with a chance p in
     proportion to their power and multiplied by 1/sqrt(p): their power is whole. The others add up as fields: p is in proportion
     to their amplitude, the factor 1/p, and the field is that of all in the mean over seeds.
@@ -19,7 +23,7 @@ def few_paths(paths) -> tuple:
     """
     if paths.num_paths == 0:
         return paths, np.ones(0)
-    powers = paths.power
+    powers = powers_over_looks(paths)
     falling = np.sort(powers)[::-1]
     count = int(np.searchsorted(np.cumsum(falling), HELD * falling.sum())) + 1
     if count <= MOST_PATHS:
@@ -28,6 +32,13 @@ def few_paths(paths) -> tuple:
     chance, scale = _chances(powers, paths.diffuse != 0)
     keep = _drawn(chance, paths.lengths([paths.frame.trace_time], 0, 0)[0], paths.frame.seed)
     return subset(paths, keep), scale[keep]
+
+
+def powers_over_looks(paths) -> np.ndarray:
+    """W [P] at the trace time, in the mean over pairs of antennas, of which those that look the same way count once."""
+    pairs = list(product(*(one_of_each_look(antennas) for antennas in (paths.radar.transmitters, paths.radar.receivers))))
+    fields = [paths.amplitudes([paths.frame.trace_time], tx, rx)[0] for tx, rx in pairs]
+    return np.mean(np.abs(fields) ** 2, axis=0)
 
 
 def _chances(powers, is_diffuse) -> tuple:

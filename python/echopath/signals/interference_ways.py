@@ -73,13 +73,14 @@ class Ways:
     """Delays and amplitudes of all ways from the transmitters of another radar to the receivers, in each chirp.
 
     radar: that receives; other: that sends; paths: of a trace between them, None: the direct way; begins: [N] s, of the chirps
-    replay: of the paths, as in `synthesize`; polarization: of the direct way, "scalar": its antennas count as co-polarised
+    replay: of the paths, as in `synthesize`; polarization: of the direct way, "jones": its field vectors,
+        "auto": the size of what they share alone, "scalar": antennas count as co-polarised
     Raises ValueError for paths between other antennas.
     """
 
     def __init__(self, radar, other, paths, begins, replay: str, polarization: str = "auto"):
         self._radar, self._other, self._begins, self._replay = radar, other, begins, replay
-        self._is_polarised = polarization != "scalar"
+        self._polarization = polarization
         self._paths, self._scale = (None, None) if paths is None else few_paths(paths)
         self._kept = range(0), None, None  # chirps, their delays and amplitudes
         if paths is not None:
@@ -118,8 +119,9 @@ class Ways:
         ahead = apart / distance[..., None]
         gains = (_fields(other.transmitters, sent[1], ahead)
                  * np.swapaxes(_fields(radar.receivers, heard[1], -np.swapaxes(ahead, 0, 1)), 0, 1))
-        if self._is_polarised:
-            gains = gains * _match(other.transmitters, radar.receivers, sent[1], heard[1], ahead)
+        if self._polarization != "scalar":
+            match = _match(other.transmitters, radar.receivers, sent[1], heard[1], ahead)
+            gains = gains * (match if self._polarization == "jones" else np.abs(match))
         amplitude = np.sqrt(other.transmit_power) * gains * wavelength / (4.0 * np.pi * distance)
         return distance[..., None] / _core.speed_of_light, amplitude[..., None]
 

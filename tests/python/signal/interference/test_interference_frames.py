@@ -108,6 +108,39 @@ def test_lifetimes_ascend(lifetime):
         ep.Interferer(radar=TONE, lifetime=lifetime)
 
 
+@pytest.mark.parametrize("height", [0.7, 0.73])
+@pytest.mark.parametrize("polarization, sign", [((0, 0, 1), 1.0), ((0, 1, 0), -1.0)])
+def test_a_metal_floor_adds_to_the_direct_way_as_its_polarisation_asks(polarization, sign, height):
+    """Two ways of an oncoming radar, direct and over the floor: |1 + sign r / r' e^{-jk(r' - r)}| of the direct field, with the
+    sign of the field along the floor and across it."""
+    antennas = [ep.Antenna(polarization=polarization)]
+    slow = {"num_samples": 256, "bandwidth": 50e6, "transmitters": antennas, "receivers": antennas}
+    radar, sender = build_radar(**slow, position=(0, 0, 0.5)), build_radar(**slow, position=(20, 0, height), yaw=np.pi)
+    scene = ep.Scene(interferers=[ep.Interferer(radar=sender, offset=2e-6)])  # a beat amid the band
+    scene.add(ep.Mesh([(-20, -30, 0), (60, -30, 0), (60, 30, 0), (-20, 30, 0)], [[0, 1, 2], [0, 2, 3]]), name="floor",
+              material=ep.Material.metal(mirror=True))
+    found = frame_of(scene, radar, noise_seed=None, guard=False).interference_cube[0, 0, 0, 100]
+    slope, first = radar.waveform.slope, radar.waveform.start_frequency
+    k = 2 * np.pi / ep.speed_of_light * (first + slope * (100 / radar.waveform.sampling_rate - 2e-6))
+    ways = np.hypot(20.0, np.array([height - 0.5, height + 0.5]))
+    expected = abs(np.sum(np.array([1.0, sign]) * np.exp(-1j * k * ways) / ways)) * ep.speed_of_light / first / (4 * np.pi) * 0.1
+    assert 20 * np.log10(abs(found) / expected) == pytest.approx(0.0, abs=LEVEL)
+
+
+def test_other_radars_are_heard_whichever_of_their_antennas_looks_at_the_scene():
+    """The one that looks at a rough wall as the first or the second of two: speckle of other phases, of the same power."""
+    beams = [ep.Antenna((0, 0.01 * n, 0), yaw=side * np.pi / 2, pattern=ep.CosinePower(8)) for n, side in enumerate((1, -1))]
+    scene, powers = ep.Scene(), []
+    rough = ep.Material(reflectivity=0.5, scattering=1.0)
+    scene.add(ep.actors.wall(60.0, 6.0), name="wall", material=rough, position=(10, 8, -3))
+    for antennas in (beams, beams[::-1]):
+        sender = build_radar(transmitters=antennas, num_chirps=4, num_samples=128, position=(20, 0, 0))
+        scene.interferers = [ep.Interferer(radar=sender, over="paths")]
+        frame = frame_of(scene, build_radar(num_chirps=8, num_samples=128), noise_seed=None, guard=False)
+        powers.append(np.mean(np.abs(frame.interference_cube) ** 2))
+    assert 10 * np.log10(powers[1] / powers[0]) == pytest.approx(0.0, abs=3.0)
+
+
 def test_slants_of_45_degrees_to_the_same_side_do_not_hear_each_other_ahead():
     """As radars of oncoming traffic are built: seen from one, the slant of the other is that to the other side."""
     slant = [ep.Antenna(polarization=np.array((0.0, 1.0, 1.0)) / np.sqrt(2.0))]

@@ -102,6 +102,13 @@ def test_frames_hear_those_alone_whose_lifetimes_cover_them(tmp_path, recwarn):
         assert not frame_of(scene, start_time=0.2, guard=False).interference_cube.any()
 
 
+def test_sequences_warn_of_another_radar_whose_way_ends_among_their_frames():
+    way = ep.Trajectory([(30, 3), (25, 3)], speed=10.0)
+    parked = street(ep.Interferer(radar=TONE.replace(position=(0, 0, 0), motion=way.motion()), over="direct"))
+    with pytest.warns(RuntimeWarning, match=r"^interferers\[0\] stands still in some of the frames, for want of a way"):
+        ep.Sequence(parked, victim(**SLOW), frames=3, interval=0.48, num_rays=500, guard=False)
+
+
 @pytest.mark.parametrize("lifetime", [(1.0, 1.0), (2.0, 1.0), (0.0, np.nan)])
 def test_lifetimes_ascend(lifetime):
     with pytest.raises(ValueError, match="^lifetime: must be a begin and an end in s, ascending, got"):

@@ -52,12 +52,13 @@ def _conductors_met_in_tm(scene, radar, time: float) -> list[int]:
     if len(found) == 0:
         return []
     fields = np.array([polarization_of(antenna) for antenna in antennas_of(radar)]) @ radar.world_from_radar(time)[:3, :3].T
-    return [mesh for mesh in found if np.max(np.abs(_normals(scene, mesh, time) @ fields.T)) > ALONG_NORMAL]
+    meshes = scene.meshes
+    return [index for index in found if np.max(np.abs(_normals(scene, meshes[index], time) @ fields.T)) > ALONG_NORMAL]
 
 
-def _normals(scene, mesh: int, time: float) -> np.ndarray:
-    """Unit normals [F, 3] of a mesh in the world at a time in s."""
-    corners = np.asarray(scene.world_vertices(mesh, time))[scene.meshes[mesh].triangles]
+def _normals(scene, mesh, time: float) -> np.ndarray:
+    """Unit normals [F, 3] of a SceneMesh in the world at a time in s."""
+    corners = np.asarray(scene.world_vertices(mesh.id, time))[mesh.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return normals / np.linalg.norm(normals, axis=1)[:, None]
 

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 
 from .. import _core
 from ..arguments.effects import RAIN_ECHOES, Choices, is_on
+from ..base.antennas import one_of_each_look
 from ..base.rotations import matrices
 from ..paths.absent import NO_BATCH, NO_STRATUM
 from ..paths.subset import HIT
@@ -43,12 +45,17 @@ def rain_cube(scene, radar: _core.Radar, *, start_time: float, seed: int, effect
 
 
 def rain_paths(scene, radar: _core.Radar, *, start_time: float, seed: int, effects: Choices = (), polarization: str = "scalar"):
-    """Paths over drops that nothing of the scene hides, None where there are none; arguments as of `rain_cube`."""
+    """Paths over drops that nothing of the scene hides, None where there are none, or where no antennas see the same; arguments
+    as of `rain_cube`."""
     weather = scene.weather
     random = np.random.default_rng([_STREAM, seed, np.float64(start_time).view(np.uint64)])
     middle = radar.middle_of_frame(start_time)
     transmitter, receiver = (_mean_position(radar, antennas, middle) for antennas in (radar.transmitters, radar.receivers))
-    points, volumes = _places(radar, middle, transmitter, random)
+    directions = _sphere(random)
+    gains = _two_way_gains(radar, directions, middle)
+    if not gains.any():
+        return None
+    points, volumes = _places(radar, transmitter, directions, gains, random)
     seen = points[:, 2] > -math.inf
     for antenna in (transmitter, receiver):
         seen &= _core.are_clear(scene, time=middle, origin=antenna, points=points)
@@ -61,11 +68,12 @@ def rain_paths(scene, radar: _core.Radar, *, start_time: float, seed: int, effec
 
 
 def rain_power(radar: _core.Radar, weather: Weather, attenuation: float) -> float:
-    """Mean power in W that the rain in the radar's ranges sends back between the first antennas where nothing hides it: the
-    radar equation of a volume; attenuation: Np/m."""
+    """Mean power in W that the rain in the radar's ranges sends back where nothing hides it, between the antennas that hear most
+    of it: the radar equation of a volume; attenuation: Np/m."""
     directions = _sphere(np.random.default_rng(_STREAM))
-    solid = 4.0 * math.pi * np.mean(_gains(radar, radar.transmitters[0], directions, 0.0)
-                                    * _gains(radar, radar.receivers[0], directions, 0.0))
+    sent, heard = ([_gains(antennas[index], directions) for index in one_of_each_look(antennas)]
+                   for antennas in (radar.transmitters, radar.receivers))
+    solid = 4.0 * math.pi * max(np.mean(one * other) for one, other in product(sent, heard))
     ranges = np.geomspace(NEAREST, min(radar.waveform.max_range, FARTHEST), 2000)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     density = np.exp(-4.0 * attenuation * ranges) / ranges**2
@@ -78,12 +86,9 @@ def _sphere(random):
     return directions / np.linalg.norm(directions, axis=1)[:, None]
 
 
-def _places(radar, time: float, origin, random):
-    """Points [N, 3] in m with the volumes [N] in m^3 that they stand for: evenly over ranges, and over directions as both
-    antennas see them."""
+def _places(radar, origin, directions, gains, random):
+    """Points [N, 3] in m with the volumes [N] in m^3 that they stand for: evenly over ranges, and over directions by gains."""
     farthest = min(radar.waveform.max_range, FARTHEST)
-    directions = _sphere(random)
-    gains = _gains(radar, radar.transmitters[0], directions, time) * _gains(radar, radar.receivers[0], directions, time)
     drawn = random.choice(CANDIDATES, NUM_DROPS, p=gains / gains.sum())
     per_direction = CANDIDATES * gains / (4.0 * math.pi * gains.sum())  # 1/sr
     ranges = NEAREST + (farthest - NEAREST) * (np.arange(NUM_DROPS) + random.random(NUM_DROPS)) / NUM_DROPS
@@ -91,10 +96,17 @@ def _places(radar, time: float, origin, random):
     return origin + ranges[:, None] * directions[drawn], volumes
 
 
-def _gains(radar, antenna, directions, time: float):
-    """Power gain of an antenna toward directions [N, 3] in world axes."""
-    own = directions @ radar.world_from_radar(time)[:3, :3] @ matrices(antenna.orientation)
-    return np.abs(antenna.pattern.field(own))**2
+def _two_way_gains(radar, directions, time: float):
+    """Sum over pairs of antennas, of which those that look the same way count once, toward directions [N, 3] in world axes."""
+    directions = directions @ radar.world_from_radar(time)[:3, :3]
+    sent, heard = (sum(_gains(antennas[index], directions) for index in one_of_each_look(antennas))
+                   for antennas in (radar.transmitters, radar.receivers))
+    return sent * heard
+
+
+def _gains(antenna, directions):
+    """Power gain of an antenna toward directions [N, 3] in the radar's axes."""
+    return np.abs(antenna.pattern.field(directions @ matrices(antenna.orientation)))**2
 
 
 def _mean_position(radar, antennas, time: float):

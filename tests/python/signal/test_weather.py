@@ -275,3 +275,28 @@ def test_scene_files_have_weather(tmp_path):
     read = ep.load_scene(tmp_path / "wet.toml")
     assert read.scene.weather == ep.Weather(rain_mm_per_hour=12, wind=(1, 2, 0))
     assert read.trace.effects == ((RAIN_ECHOES, False),)
+
+
+def test_rain_is_heard_by_every_pair_of_antennas_that_look_the_same_way():
+    """Beams to the left and to the right in one radar: each hears what it does in a radar of its own, by the radar equation of a
+    volume, and across nothing is heard, whichever stands first."""
+    beams = [ep.Antenna((0, 0.01 * n, 0), yaw=side * np.pi / 2, pattern=ep.CosinePower(8)) for n, side in enumerate((1, -1))]
+    scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=20.0, humidity=0.0))
+    for receivers, heard in ((beams, np.eye(2)), (beams[::-1], 1.0 - np.eye(2))):
+        radar = build_radar(transmitters=beams, receivers=receivers, num_samples=32, num_chirps=1, bandwidth=125e6)
+        cubes = [rain_echoes.rain_cube(scene, radar, start_time=0.1 * frame, seed=1) for frame in range(2)]
+        wavelength = ep.speed_of_light / radar.waveform.start_frequency
+        solid = 18.0 ** 2 * 2.0 * np.pi / 17.0  # of a gain of 18 cos^8, squared
+        expected = (radar.transmit_power * wavelength ** 2 * scene.weather.rain_reflectivity(radar) * solid / (4.0 * np.pi) ** 3
+                    * (1.0 / rain_echoes.NEAREST - 1.0 / radar.waveform.max_range))
+        assert rain_echoes.rain_power(radar, scene.weather, 0.0) == pytest.approx(expected, rel=0.05)
+        powers = np.mean(np.abs(cubes) ** 2, axis=(0, 3, 4)) / expected
+        np.testing.assert_allclose(10 * np.log10(powers[heard > 0.0]), 0.0, atol=3.0)  # speckle
+        assert np.all(powers[heard == 0.0] < 1e-9)
+
+
+def test_antennas_that_look_away_from_each_other_hear_no_rain():
+    away = [ep.Antenna(yaw=side * np.pi / 2, pattern=ep.CosinePower(8)) for side in (1, -1)]
+    radar = build_radar(transmitters=away[:1], receivers=away[1:], num_chirps=2)
+    assert not rain_echoes.rain_cube(ep.Scene(weather=WET), radar, start_time=0.0, seed=1).any()
+    assert rain_echoes.rain_power(radar, WET, 0.0) == pytest.approx(0.0, abs=1e-30)

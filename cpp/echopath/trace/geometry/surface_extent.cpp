@@ -49,12 +49,13 @@ bool SurfaceAround::is_wall(const RayHit& met) const {
   return std::ranges::any_of(std::array{2.0, 3.0, 4.0}, [&](double n) { return std::abs(angle - kPi / n) < kSameAngle; });
 }
 
-// Returns where something that rises from the surface stands in the way, or `reach` if nothing is nearer.
-double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
+// Returns where something that rises from the surface stands in the way; no wall, at `reach`, if nothing is nearer.
+SurfaceEnd SurfaceAround::nearest_wall(const Vec3& along, double reach) const {
   RayHit met;
   ++num_queries_;
   const bool meets = geometry_.intersect_near(above(along, 0.0), along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
-  return meets && is_wall(met) ? std::min(met.distance, reach) : reach;
+  if (!meets || !is_wall(met) || met.distance >= reach) return {reach};
+  return {met.distance, true, met.normal};
 }
 
 bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height) const {
@@ -94,9 +95,9 @@ double SurfaceAround::end_of_triangle_at(const Vec3& along, double distance) con
 
 SurfaceEnd SurfaceAround::find_end(const Vec3& along, double reach) const {
   double known = distance_to_rim(along);  // the surface goes on so far
-  double beyond = distance_to_wall(along, reach);
-  const bool is_wall = beyond < reach;
-  if (is_wall && (known >= beyond || is_at(along, std::max(beyond - 2.0 * gap_, 0.0)))) return {beyond, true};
+  const SurfaceEnd wall = nearest_wall(along, reach);
+  double beyond = wall.distance;
+  if (wall.is_wall && (known >= beyond || is_at(along, std::max(beyond - 2.0 * gap_, 0.0)))) return wall;
   const double step = 4.0 * geometry_.lift();
   for (;;) {
     // A triangle right behind the rim may be narrower than the gap.

@@ -6,8 +6,9 @@
 namespace echopath {
 
 struct SurfaceEnd {
-  double distance = 0.0;  // m, along the surface
-  bool is_wall = false;   // something rises from it there (the inside of a corner): it ends, but has no edge
+  double distance = 0.0;     // m, along the surface
+  bool is_wall = false;      // something rises from it there (the inside of a corner): it ends, but has no edge
+  Vec3 wall = Vec3::Zero();  // unit normal of what rises there, toward the point
 };
 
 // Measures distances to the edges of a triangle.
@@ -57,7 +58,7 @@ class SurfaceAround {
   SurfaceEnd find_end(const Vec3& along, double reach) const;
 
  private:
-  double distance_to_wall(const Vec3& along, double reach) const;
+  SurfaceEnd nearest_wall(const Vec3& along, double reach) const;
   double end_of_triangle_at(const Vec3& along, double distance) const;
   bool is_in_plane(const Hit& hit) const;
   bool is_wall(const RayHit& met) const;

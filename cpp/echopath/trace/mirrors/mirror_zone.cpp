@@ -96,12 +96,19 @@ class AxisCover {
     return width >= ample || mirror_.is_at(ways[0], ample) || mirror_.is_at(ways[1], ample);
   }
 
-  // Returns whether the wall at an end is as high as the farther antenna, unfolded, stands above the surface: no ray between
-  // the antennas and the surface beyond the wall is higher where it meets the wall.
+  // Returns whether the wall at an end rises as far as the waves between the antennas, unfolded, and the zone beyond the wall
+  // cross it.
   bool rises(const Vec3& way, const SurfaceEnd& end) const {
     const MirrorView& view = lit_.view;
-    const double height = -view.point.normal.dot(view.arrival) * std::max(view.before, view.behind);
-    return mirror_.wall_rises(way, end.distance, height);
+    const Vec3 &normal = view.point.normal, foot = view.point.position + end.distance * way;
+    const double beyond = (kAmple * axis_.half - end.distance) * std::abs(way.dot(end.wall));  // m, behind the wall
+    const Vec3 departure = view.arrival - 2.0 * view.arrival.dot(normal) * normal;
+    double height = 0.0;
+    for (const Vec3& antenna : {Vec3(-view.before * view.arrival), Vec3(view.behind * departure)}) {
+      const double apart = end.wall.dot(view.point.position + antenna - foot);
+      if (apart > 0.0 && beyond > 0.0) height = std::max(height, normal.dot(antenna) * beyond / (apart + beyond));
+    }
+    return height == 0.0 || mirror_.wall_rises(way, end.distance, height);
   }
 
   double half_covered(const SurfaceEnd& end) const {

@@ -156,13 +156,13 @@ TEST(MirrorZone, AStripIsNarrowerThanTheZoneOfASlantingWave) {
   EXPECT_EQ(plates.num_queries(), num_of_slanting) << "the triangle holds the whole zone: this needs no ray";
 }
 
-// The floor of a square well between walls of 0.2 m.
-Plates well(double side) {
+// The floor of a square well between walls.
+Plates well(double side, double depth = 0.2) {
   Plates plates;
   plates.add("floor", Vec3(-0.5 * side, -0.5 * side, 0), Vec3(side, 0, 0), Vec3(0, side, 0));
   for (const double end : {-0.5, 0.5}) {
-    plates.add("x" + std::to_string(end), Vec3(end * side, -0.5 * side, 0), Vec3(0, side, 0), Vec3(0, 0, 0.2));
-    plates.add("y" + std::to_string(end), Vec3(-0.5 * side, end * side, 0), Vec3(side, 0, 0), Vec3(0, 0, 0.2));
+    plates.add("x" + std::to_string(end), Vec3(end * side, -0.5 * side, 0), Vec3(0, side, 0), Vec3(0, 0, depth));
+    plates.add("y" + std::to_string(end), Vec3(-0.5 * side, end * side, 0), Vec3(side, 0, 0), Vec3(0, 0, depth));
   }
   return plates;
 }
@@ -175,6 +175,15 @@ TEST(MirrorZone, AFloorBetweenWallsEndsAtThem) {
   Plates plates = well(kHalfOfWell);
   plates.look_at(1e-4, 2e-4);
   EXPECT_NEAR(plates.cover(kHigh, kHigh).share, 0.25, 1e-4);
+}
+
+// Waves to 1/0.7 half zones, half of one of which lies before the wall, cross it at 1 - 0.5 * 0.7 of their way down.
+TEST(MirrorZone, AFloorGoesOnBehindWallsThatRiseIntoTheWavesToItsZone) {
+  for (const double share : {0.99, 1.01}) {
+    Plates plates = well(kHalfOfWell, share * 0.65 * kHigh);
+    plates.look_at(1e-4, 2e-4);
+    EXPECT_NEAR(plates.cover(kHigh, kHigh).share, share < 1.0 ? 0.25 : 1.0, 1e-4);
+  }
 }
 
 // Facades that rise above the antennas behind the walls of a well, all around it, make its floor no larger.

@@ -280,6 +280,51 @@ def test_a_corner_counts_once(depth):
     assert 20 * np.log10(abs(field) / expected) == pytest.approx(0.0, abs=0.1)
 
 
+GROUND = [(-40, -40, 0), (15, -40, 0), (15, 7, 0), (-40, 7, 0)]
+WALLS = {"long": [(15, -13, 0), (15, 7, 0), (15, 7, 9), (15, -13, 9)], "short": [(5, 7, 0), (15, 7, 0), (15, 7, 9), (5, 7, 9)]}
+
+
+def echo_of_corner(num_bounces, transmitter, receiver, *, one_mesh):
+    """The field of what bounces so often where a ground and two walls of metal meet, at right angles, over that of the image in
+    endless ones, and the number of images in it. Of fewer than three bounces it is over the ground and the long wall."""
+    corner = np.array([15.0, 7.0 if num_bounces == 3 else 0.5 * (transmitter[1] + receiver[1]), 0.0])
+    faces = {"ground": GROUND, **WALLS}
+    scene = ep.Scene()
+    if one_mesh:
+        triangles = np.concatenate([[[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]] for k in range(3)])
+        scene.add(ep.Mesh(np.concatenate(list(faces.values())), triangles), name="corner", material="metal")
+    else:
+        for name, corners in faces.items():
+            scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name=name, material="metal")
+    paths = ep.trace(scene, radar(transmitter, receiver), num_rays=50_000, max_bounces=num_bounces, polarization="scalar")
+    image = np.array(receiver) * [-1, -1 if num_bounces == 3 else 1, -1] + [30.0, 14.0 if num_bounces == 3 else 0.0, 0.0]
+    unfolded = np.linalg.norm(image - transmitter)
+    lengths = np.asarray(paths.lengths([paths.frame.trace_time], 0, 0))[0]
+    found = (np.asarray(paths.num_bounces) == num_bounces) & (np.abs(lengths - 2.0 * np.linalg.norm(corner - transmitter)) < 0.15)
+    wavenumber = 2 * np.pi * 77e9 / ep.speed_of_light
+    field = np.sum(np.asarray(paths.amplitude)[found] * np.exp(-1j * wavenumber * lengths[found]))
+    by_images = np.count_nonzero(np.asarray(paths.stratum)[found] == NO_STRATUM)
+    return abs(field) * 4 * np.pi * unfolded / (ep.speed_of_light / 77e9 * np.sqrt(paths.radar.transmit_power)), by_images
+
+
+@pytest.mark.parametrize("one_mesh", [False, True])
+@pytest.mark.parametrize("num_bounces", [2, 3])
+def test_an_antenna_sees_itself_in_a_corner(num_bounces, one_mesh):
+    """The bounces are at one point of the edge, where both orders have half of the path: rays alone were up to 4 dB off."""
+    for place in ((4.554, -4.493, 0.561), (9.75, 2.882, 1.667), (1.0, -3.0, 1.5)):
+        field, by_images = echo_of_corner(num_bounces, place, place, one_mesh=one_mesh)
+        assert by_images == 2 and field == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("place, beside", [
+    ((4.1, 1.5, 1.3), (-0.06, -0.03, 0.001)),    # the short wall is no longer than the antenna is away from the long one
+    ((4.2, -3.0, 2.0), (-0.05, -0.025, 0.007)),  # next to no ray has the order of the path
+    ((2.0, 3.5, 1.9), (0.07, -0.06, 0.04))])
+def test_antennas_beside_each_other_see_one_image_in_a_corner_of_three_planes(place, beside):
+    field, by_images = echo_of_corner(3, place, tuple(np.add(place, beside)), one_mesh=False)
+    assert by_images == 1 and field == pytest.approx(1.0, abs=1e-3)
+
+
 def wedge_on_a_floor(half_deg):
     """Two metal walls of 6 x 8 m that meet on the z axis, open toward +x by twice the angle, and a floor at z = -0.3 m."""
     scene = ep.Scene()

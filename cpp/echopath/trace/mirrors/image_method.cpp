@@ -1,5 +1,7 @@
 #include "echopath/trace/mirrors/image_method.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -30,10 +32,12 @@ std::optional<ImagePath> ImageMethod::path_over(const std::vector<int>& sequence
 
 // Follows the sequence to a receiver; sets hits and points of the path and returns true where it gets through.
 bool ImageMethod::follow(const Vec3& receiver, ImagePath& path) {
-  if (!find_points(sequence_, receiver, points_)) return false;
+  if (!find_points_toward(receiver, sequence_, points_)) return false;
   std::vector<Hit> hits;
+  Vec3 from = settings_.transmitter;
   for (size_t k = 0; k < points_.size(); ++k) {
-    const Vec3 from = k == 0 ? settings_.transmitter : lifted_toward(k - 1, points_[k]);
+    // Of bounces at a common edge one looks at all from where the wave comes.
+    if (k > 0 && (points_[k] - points_[k - 1]).norm() >= kAtEdge) from = lifted_toward(k - 1, points_[k]);
     const std::optional<Hit> hit = locator_.locate(chain_of(mirrors_, sequence_)[k], from, points_[k]);
     if (!hit) return false;
     hits.push_back(*hit);
@@ -44,7 +48,14 @@ bool ImageMethod::follow(const Vec3& receiver, ImagePath& path) {
   return true;
 }
 
-bool ImageMethod::find_points(const std::vector<int>& sequence, const Vec3& receiver, std::vector<Vec3>& points) const {
+bool ImageMethod::find_points(const std::vector<int>& sequence, std::vector<Vec3>& points) const {
+  return std::ranges::any_of(std::array{0.0, 1.0, -1.0}, [&](double side) {
+    return find_points_toward(settings_.receiver + side * kAside * kAsideDirection, sequence, points);
+  });
+}
+
+bool ImageMethod::find_points_toward(const Vec3& receiver, const std::vector<int>& sequence,
+                                     std::vector<Vec3>& points) const {
   points.resize(sequence.size());
   return !find_reflections(chain_of(mirrors_, sequence), settings_.transmitter, receiver, points.data());
 }

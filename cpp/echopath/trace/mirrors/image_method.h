@@ -46,11 +46,13 @@ class ImageMethod {
       : geometry_(geometry), mirrors_(mirrors), locator_(locator), settings_(settings) {}
   // Returns the path over the mirrors of these indices, in travel order; nothing where there is none.
   std::optional<ImagePath> path_over(const std::vector<int>& sequence);
-  // Finds the specular points toward a receiver on the planes, wherever these end; returns false where there are none.
-  bool find_points(const std::vector<int>& sequence, const Vec3& receiver, std::vector<Vec3>& points) const;
+  // Finds the specular points on the planes, wherever these end; returns false where there are none. Of a path through an
+  // edge they are those toward a receiver a little beside the true one.
+  bool find_points(const std::vector<int>& sequence, std::vector<Vec3>& points) const;
   int64_t num_queries() const { return num_queries_; }
 
  private:
+  bool find_points_toward(const Vec3& receiver, const std::vector<int>& sequence, std::vector<Vec3>& points) const;
   bool follow(const Vec3& receiver, ImagePath& path);
   Vec3 lifted_toward(size_t k, const Vec3& target) const;
   bool sees_all(const Vec3& receiver);

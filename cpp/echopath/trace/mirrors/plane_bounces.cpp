@@ -1,6 +1,11 @@
 #include "echopath/trace/mirrors/plane_bounces.h"
 
 namespace echopath {
+namespace {
+
+constexpr double kMovedOff = 8.0;  // lifts
+
+}  // namespace
 
 void PlaneBounces::add(const Hit& hit, const Vec3& point, const Vec3& normal) {
   RayHit bounce;
@@ -9,6 +14,22 @@ void PlaneBounces::add(const Hit& hit, const Vec3& point, const Vec3& normal) {
   bounce.normal = lit_normal(point - (points_.empty() ? from_ : points_.back().position), normal);
   bounce.curvature = Mat3::Zero();
   points_.push_back(bounce);
+  beside_.push_back(bounce);
+  move_off_edges();
+}
+
+// Moves the last point, and those that lie where it does, along their planes off each other's.
+void PlaneBounces::move_off_edges() {
+  const double aside = kMovedOff * geometry_.lift();
+  const auto move = [&](RayHit& point, const Vec3& off) {
+    const Vec3 along = off - off.dot(point.normal) * point.normal;
+    if (along.norm() > 1e-6) point.position += aside * along.normalized();
+  };
+  for (size_t k = 0; k + 1 < points_.size(); ++k) {
+    if ((points_[k].position - points_.back().position).norm() > aside) continue;
+    move(beside_[k], points_.back().normal);
+    move(beside_.back(), points_[k].normal);
+  }
 }
 
 MirrorView PlaneBounces::view(size_t bounce) const {
@@ -23,17 +44,16 @@ MirrorView PlaneBounces::view(size_t bounce) const {
   const Vec3 arrival = leg.normalized();
   for (size_t k = bounce + 1; k < points_.size(); ++k) behind += length_to(points_[k].position);
   behind += length_to(to_);
-  return {points_[bounce], arrival, before, behind};
+  return {beside_[bounce], arrival, before, behind};
 }
 
-std::complex<double> PlaneBounces::field_beside_edges(const EmbreeScene& geometry, double wavelength,
-                                                      int64_t& num_queries) const {
+std::complex<double> PlaneBounces::field_beside_edges(double wavelength, int64_t& num_queries) const {
   std::complex<double> field = 1.0;
   for (size_t k = 0; k < points_.size(); ++k) {
     Plane next;
     const bool is_last = k + 1 == points_.size();
     if (!is_last) next = {points_[k + 1].position, points_[k + 1].normal};
-    field *= field_of_flat_mirror(geometry, view(k), wavelength, num_queries, is_last ? nullptr : &next);
+    field *= field_of_flat_mirror(geometry_, view(k), wavelength, num_queries, is_last ? nullptr : &next);
   }
   return field;
 }

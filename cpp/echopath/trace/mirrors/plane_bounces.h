@@ -7,20 +7,26 @@
 
 namespace echopath {
 
-// Holds where a path from antenna to antenna bounces off planes, in the order of travel.
+// Holds where a path from antenna to antenna bounces off planes, in the order of travel. Of bounces at a common edge the
+// surfaces are looked at from beside it, by some spacings of single precision, in which rays know where the edge is.
 class PlaneBounces {
  public:
-  PlaneBounces(const Vec3& from, const Vec3& to) : from_(from), to_(to) {}
+  // The geometry must outlive it.
+  PlaneBounces(const EmbreeScene& geometry, const Vec3& from, const Vec3& to) : geometry_(geometry), from_(from), to_(to) {}
   // `normal` is that of the plane, unit, on either side.
   void add(const Hit& hit, const Vec3& point, const Vec3& normal);
   // Returns a bounce as the wave sees it that comes from one antenna and goes to the other. It refers to the bounce.
   MirrorView view(size_t bounce) const;
   // Returns the field of the path over that of endless planes (field_of_flat_mirror); e^{+jwt}.
-  std::complex<double> field_beside_edges(const EmbreeScene& geometry, double wavelength, int64_t& num_queries) const;
+  std::complex<double> field_beside_edges(double wavelength, int64_t& num_queries) const;
 
  private:
+  void move_off_edges();
+
+  const EmbreeScene& geometry_;
   Vec3 from_, to_;
   std::vector<RayHit> points_;
+  std::vector<RayHit> beside_;  // the same, moved off the other planes at an edge
 };
 
 }  // namespace echopath

@@ -13,15 +13,32 @@ namespace {
 constexpr double kSamePoint = 1e-3;                            // m: paths whose points lie so near to each other are one
 constexpr double kNearSheet = 4.0;                             // tolerances: from so near a sheet is looked at
 constexpr double kAboutCorner = 4.0;                           // half Fresnel zones between bounces at the same corner
+constexpr size_t kMostInAnyOrder = 4;                          // bounces of a chain whose other orders are tried, too
 constexpr size_t kMostTriedPoints = 1 << 20;                   // 24 MiB
 const Vec3 kLine = Vec3(0.5127, 0.6271, 0.5864).normalized();  // along no wall
 constexpr double kZoneShare = 1.0 - 1e-9;                      // of the Fresnel zone that each surface must cover
 
-// Shoots a ray at the point.
+// Shoots a ray at the point, or right beside it: at edges and corners, which rays know in single precision, what is beside
+// the point tells whether the surface is there.
 class RayLocator final : public PointLocator {
  public:
   RayLocator(const EmbreeScene& geometry, double tolerance) : geometry_(geometry), tolerance_(tolerance) {}
   std::optional<Hit> locate(const Mirror& mirror, const Vec3& from, const Vec3& point) const override {
+    std::optional<Hit> hit = met_at(mirror, from, point);
+    const Vec3 first = mirror.normal.unitOrthogonal(), second = mirror.normal.cross(first);
+    for (int k = 0; k < kLooksBeside && !hit; ++k) {
+      const double angle = kTwoPi * (k + 0.5) / kLooksBeside, aside = kAsideOfEdge * geometry_.lift();
+      hit = met_at(mirror, from, point + aside * (std::cos(angle) * first + std::sin(angle) * second));
+    }
+    return hit;
+  }
+
+ private:
+  static constexpr auto kHit = EmbreeScene::Verdict::kHit;
+  static constexpr int kLooksBeside = 8;
+  static constexpr double kAsideOfEdge = 4.0;  // lifts
+
+  std::optional<Hit> met_at(const Mirror& mirror, const Vec3& from, const Vec3& point) const {
     const Vec3 line = point - from;
     const double length = line.norm();
     RayHit met;
@@ -36,9 +53,6 @@ class RayLocator final : public PointLocator {
     }
     return met.hit;
   }
-
- private:
-  static constexpr auto kHit = EmbreeScene::Verdict::kHit;
 
   // Looks at the sheet from right before it, because others may lie on the way.
   bool meets_sheet(const Mirror& sheet, const Vec3& from, const Vec3& direction, double length, RayHit& met) const {
@@ -140,29 +154,35 @@ std::vector<int> PlaneImages::planes_of(Facets chain) {
 }
 
 // Returns whether a path through these points was tried before, as far as there is room to remember it.
-bool PlaneImages::is_known(Facets chain, const std::vector<Vec3>& points) {
+bool PlaneImages::is_known(const std::vector<int>& sequence, const std::vector<Vec3>& points) {
   std::vector<uint32_t> meshes;
-  for (const Facet& facet : chain) meshes.push_back(facet.mesh_id);
+  std::vector<Vec3> places = points;  // planes of one mesh through one edge differ by their normals
+  for (size_t k = 0; k < sequence.size(); ++k) {
+    const Mirror& plane = planes_[sequence[k]];
+    meshes.push_back(plane.mesh_id);
+    places.push_back(points[k] + (plane.normal.dot(kLine) < 0 ? -plane.normal : plane.normal));
+  }
   const double place = kLine.dot(points.front());  // points lie no nearer to each other than their places
   if (const auto tried = tried_.find(meshes); tried != tried_.end()) {
     const auto begin = tried->second.lower_bound(place - kSamePoint), end = tried->second.upper_bound(place + kSamePoint);
-    if (std::any_of(begin, end, [&](const auto& old) { return is_near(points, old.second); })) return true;
+    if (std::any_of(begin, end, [&](const auto& old) { return is_near(places, old.second); })) return true;
   }
   if (num_tried_points_ > kMostTriedPoints) return false;
-  num_tried_points_ += points.size();
-  tried_[meshes].emplace(place, points);
+  num_tried_points_ += places.size();
+  tried_[meshes].emplace(place, std::move(places));
   return false;
 }
 
 // Returns the share of its field that the edges of its surfaces leave to a path; nothing where one does not cover its
 // Fresnel zone.
-std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
-  PlaneBounces bounces(settings_.transmitter, settings_.receiver);
-  for (size_t k = 0; k < path.points.size(); ++k) bounces.add(path.hits[k], path.points[k], planes_[k].normal);
+std::optional<std::complex<double>> PlaneImages::field_beside_edges(const std::vector<int>& sequence, const ImagePath& path,
+                                                                    int64_t& num_queries) const {
+  PlaneBounces bounces(geometry_, settings_.transmitter, settings_.receiver);
+  for (size_t k = 0; k < path.points.size(); ++k) bounces.add(path.hits[k], path.points[k], planes_[sequence[k]].normal);
   for (size_t k = 0; k < path.points.size(); ++k) {
     if (cover_of_zone(geometry_, bounces.view(k), nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
   }
-  return bounces.field_beside_edges(geometry_, wavelength_, num_queries);
+  return bounces.field_beside_edges(wavelength_, num_queries);
 }
 
 bool PlaneImages::is_same_plane(const Mirror& plane, const Mirror& other) const {
@@ -184,31 +204,36 @@ std::vector<int> PlaneImages::joined(const std::vector<int>& sequence) {
 
 PathBlock PlaneImages::find(const Job* job) {
   PathBlock block;
-  const RayLocator locator(geometry_, tolerance_);
-  std::vector<Vec3> points;
   sort_chains();
   for (const RayChain& of_ray : chains_) {
     if (job) job->throw_if_cancelled();
-    const Facets chain = facets_of(of_ray);
-    const std::vector<int> sequence = planes_of(chain);
-    if (sequence.empty()) continue;
-    ImageMethod images(geometry_, planes_, locator, settings_);
-    if (!images.find_points(sequence, settings_.receiver, points) || is_known(chain, points)) continue;
-    std::optional<ImagePath> path = images.path_over(sequence);
-    block.statistics.num_queries += images.num_queries();
-    if (!path) continue;
-    const std::optional<std::complex<double>> share = field_beside_edges(*path, block.statistics.num_queries);
-    if (!share) continue;
-    path->weight *= *share;
-    if (!bounces_at_corner(path->points)) path->share = 1.0;
-    const std::vector<int> planes = joined(sequence);
-    if (!sequences_.insert(planes).second) continue;
-    add_path(*path, block);
-    if (*share != 1.0) block.rows.flags[block.rows.size() - 1] |= beside_edge_flags(*share);
-    leave_out(planes, path->points);
+    std::vector<int> order = planes_of(facets_of(of_ray));  // ascending
+    if (order.empty()) continue;
+    do try_order(order, block);
+    while (order.size() <= kMostInAnyOrder && std::ranges::next_permutation(order).found);
   }
   find_triangles();
   return block;
+}
+
+// Writes the path over some of planes_ to the block, unless there is none or it is there already.
+void PlaneImages::try_order(const std::vector<int>& sequence, PathBlock& block) {
+  const RayLocator locator(geometry_, tolerance_);
+  ImageMethod images(geometry_, planes_, locator, settings_);
+  std::vector<Vec3> points;
+  if (!images.find_points(sequence, points) || is_known(sequence, points)) return;
+  std::optional<ImagePath> path = images.path_over(sequence);
+  block.statistics.num_queries += images.num_queries();
+  if (!path) return;
+  const std::optional<std::complex<double>> share = field_beside_edges(sequence, *path, block.statistics.num_queries);
+  if (!share) return;
+  path->weight *= *share;
+  if (!bounces_at_corner(path->points)) path->share = 1.0;
+  const std::vector<int> planes = joined(sequence);
+  if (!sequences_.insert(planes).second) return;
+  add_path(*path, block);
+  if (*share != 1.0) block.rows.flags[block.rows.size() - 1] |= beside_edge_flags(*share);
+  leave_out(planes, path->points);
 }
 
 // Leaves out the sequence, and its other orders of bounces that lie about a corner: what rays send over those by physical

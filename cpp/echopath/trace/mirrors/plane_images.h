@@ -3,12 +3,13 @@
 //
 // Rays show the way: a coherent ray whose hits reflect it to within a few spacings of rays of the receiver names the planes
 // of one path (its chain), as in the method of shooting and bouncing rays with a sphere around the receiver. The image
-// method finds the path itself, to rounding. It counts where each of its surfaces is larger than its Fresnel zone
-// (mirror_zone.h): then the field is that of geometrical optics, with what the edges near its points leave of it
-// (field_of_flat_mirror), and the echoes by physical optics that rays send over the same planes in the same order are left
-// out, because they add up to the same field. Everything else stays with the rays: smaller surfaces, planes without a point
-// of reflection, diffuse echoes, paths that meet anything else. Source: Schaubach, Davis, Rappaport 1992 (sphere around the
-// receiver).
+// method finds the path itself, to rounding, in the order of the chain or in another one: about a corner rays come back in
+// all orders, and the one that the path has may be that of next to none of them. It counts where each of its surfaces is
+// larger than its Fresnel zone (mirror_zone.h): then the field is that of geometrical optics, with what the edges near its
+// points leave of it (field_of_flat_mirror), and the echoes by physical optics that rays send over the same planes in the
+// same order are left out, because they add up to the same field. Everything else stays with the rays: smaller surfaces,
+// planes without a point of reflection, diffuse echoes, paths that meet anything else. Source: Schaubach, Davis, Rappaport
+// 1992 (sphere around the receiver).
 #include <compare>
 #include <cstdint>
 #include <map>
@@ -49,8 +50,10 @@ class PlaneImages {
   Facets facets_of(const RayChain& chain) const { return {facets_.data() + chain.first, chain.count}; }
   void sort_chains();
   std::vector<int> planes_of(Facets chain);
-  bool is_known(Facets chain, const std::vector<Vec3>& points);
-  std::optional<std::complex<double>> field_beside_edges(const ImagePath& path, int64_t& num_queries) const;
+  void try_order(const std::vector<int>& sequence, PathBlock& block);
+  bool is_known(const std::vector<int>& sequence, const std::vector<Vec3>& points);
+  std::optional<std::complex<double>> field_beside_edges(const std::vector<int>& sequence, const ImagePath& path,
+                                                         int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
   void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points);
@@ -64,7 +67,8 @@ class PlaneImages {
   std::vector<Facet> facets_;  // of all rays with chains, which the chains of a ray share
   std::vector<RayChain> chains_;
   std::vector<Mirror> planes_;  // of the chain at hand
-  // These are the points of the sequences tried, by their meshes and by where the first of them lies along a line.
+  // These are the points of the sequences tried and places beside them along the normals, by their meshes and by where the
+  // first point lies along a line.
   std::map<std::vector<uint32_t>, std::multimap<double, std::vector<Vec3>>> tried_;
   size_t num_tried_points_ = 0;
   std::vector<Mirror> joined_;            // planes of the paths found

@@ -16,7 +16,7 @@ std::optional<EdgeShare> find_edge_share(const EmbreeScene& geometry, const Loca
   LegTester tester(geometry, path, hits);
   tester.test_images(start, end);
   if (!tester.meets_all_images()) return std::nullopt;
-  PlaneBounces bounces(start, end);
+  PlaneBounces bounces(geometry, start, end);
   for (int k = 0; k < path.count; ++k) bounces.add(tester.image_hit(k), tester.image_point(k), hits[k].normal);
   EdgeShare found;
   for (int k = 0; k < path.count; ++k) {
@@ -27,7 +27,7 @@ std::optional<EdgeShare> find_edge_share(const EmbreeScene& geometry, const Loca
     found.slide = std::max(found.slide, zones.norm());
   }
   int64_t num_queries = 0;  // of which no statistics are kept here
-  found.share = bounces.field_beside_edges(geometry, wavelength, num_queries);
+  found.share = bounces.field_beside_edges(wavelength, num_queries);
   return found;
 }
 

@@ -48,7 +48,8 @@ def require_apart(radar, other, times, argument: str) -> None:
 def antennas_see_each_other(radar, other, time: float, polarization: str) -> bool:
     """Whether any transmitter of the other radar and any receiver of this one have gain toward each other at a time in s, in a
     polarisation that they share; polarization: as in `trace`."""
-    return bool(Ways(radar, other, None, np.array([time]), "material", polarization).of(0)[1].any())
+    times = np.array([time])
+    return bool(Ways(radar, other, None, times, "material", polarization).direct(times)[1].any())
 
 
 def _require_far(distance, wavelength: float, argument: str) -> None:
@@ -101,7 +102,7 @@ class Ways:
         waveform = self._radar.waveform
         duration = (waveform.num_samples - 1) / waveform.sampling_rate
         times = (begins[:, None] + duration * np.array([0.0, 0.5, 1.0])).ravel()
-        found = self._direct(times) if self._paths is None else self._traced(times)
+        found = self.direct(times) if self._paths is None else self._traced(times)
         return tuple(one.reshape(*one.shape[:2], len(begins), 3, one.shape[-1]) for one in found)
 
     def _traced(self, times) -> tuple:
@@ -109,7 +110,8 @@ class Ways:
         delays, amplitudes = self._paths._placed_echoes(times, between, self._replay)
         return delays, amplitudes * self._scale
 
-    def _direct(self, times) -> tuple:
+    def direct(self, times) -> tuple:
+        """(delay in s, amplitude in sqrt(W)) of the direct way at times [T] in s, both [tx, rx, T, 1]."""
         radar, other, wavelength = self._radar, self._other, _wavelength(self._other)
         heard, sent = (_placed_at(one, antennas, times) for one, antennas in
                        ((radar, radar.receivers), (other, other.transmitters)))

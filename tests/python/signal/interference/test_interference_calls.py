@@ -80,6 +80,15 @@ def test_another_radar_in_the_place_of_the_radar_is_refused():
         ep.interference(RADAR, passing)
 
 
+def test_motions_need_cover_no_more_than_the_frame():
+    """Of a single chirp, behind whose end nothing is known."""
+    radar = build_radar(num_samples=128, num_chirps=1)
+    way = ep.KeyframeMotion([0.0, radar.frame_duration], translations=[(0, 0, 0), (0, 0, 1e-6)])
+    other = radar.replace(position=(30, 0, 0), motion=way)
+    frame = ep.simulate(scene_of(ep.Interferer(radar=other)), radar.replace(motion=way), num_rays=100, guard=False)
+    assert frame.interference_cube.any()
+
+
 @pytest.mark.parametrize("others, told", [
     # Chirps of 0.9 of the slope, which begin after this radar's, are below them ever after; the other one crosses them.
     ([direct(waveform=RADAR.waveform.replace(bandwidth=1.1e9)),

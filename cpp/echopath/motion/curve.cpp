@@ -123,6 +123,11 @@ CurvePlace place_on(const Curve& curve, const Playback& playback, double time) {
   return {next - 1, next, std::clamp((time - begin) / step, 0.0, 1.0)};
 }
 
+double time_at_rest(double time) {
+  require(std::isfinite(time), "time", "must be finite", time);
+  return 0.0;
+}
+
 std::array<double, 4> curve_weights(const Curve& curve, const CurvePlace& place) {
   const double s = place.s;
   if (place.k == place.next || curve.interpolation == CurveInterpolation::kStep) return {1.0, 0.0, 0.0, 0.0};

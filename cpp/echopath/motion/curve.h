@@ -52,6 +52,9 @@ struct CurvePlace {
   double s = 0.0;
 };
 CurvePlace place_on(const Curve& curve, const Playback& playback, double time);
+// Returns the one time, s, at which constant curves are read: between equal keys a sum differs in its last bits. Raises
+// invalid_argument unless `time` (s) is finite.
+double time_at_rest(double time);
 
 // Returns the weights of value k, out-tangent k, value next and in-tangent next, by which a column has its value at the
 // place: linear between keys, or Hermite. Tangents weigh 0 unless the curve has them.

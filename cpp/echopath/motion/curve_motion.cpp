@@ -81,6 +81,7 @@ KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSp
 struct CurveMotion::Data {
   MotionCurves curves;
   Playback playback;
+  bool rests;
 };
 
 CurveMotion::CurveMotion(MotionCurves curves, const Playback& playback) {
@@ -93,13 +94,16 @@ CurveMotion::CurveMotion(MotionCurves curves, const Playback& playback) {
     normalise_keys(*curves.rotation);
   }
   if (curves.scale) curves.scale->validate("scale", 3);
-  data_ = std::make_shared<const Data>(Data{std::move(curves), playback});
+  const auto is_constant = [](const std::optional<Curve>& curve) { return !curve || curve->is_constant(); };
+  const bool rests = is_constant(curves.translation) && is_constant(curves.rotation) && is_constant(curves.scale);
+  data_ = std::make_shared<const Data>(Data{std::move(curves), playback, rests});
 }
 
 CurveMotion::~CurveMotion() = default;
 
 Transform CurveMotion::at(double time) const {
-  const auto& [curves, playback] = *data_;
+  const auto& [curves, playback, rests] = *data_;
+  if (rests) time = time_at_rest(time);
   Transform transform = Transform::Identity();
   if (curves.translation) transform.translation() = vector_at(*curves.translation, playback, time);
   if (curves.rotation) transform.linear() = rotation_at(*curves.rotation, playback, time).toRotationMatrix();
@@ -108,7 +112,7 @@ Transform CurveMotion::at(double time) const {
 }
 
 std::vector<double> CurveMotion::breakpoints(const TimeSpan& during) const {
-  const auto& [curves, playback] = *data_;
+  const auto& [curves, playback, rests] = *data_;
   std::vector<double> times;
   for (const std::optional<Curve>* curve : {&curves.translation, &curves.rotation, &curves.scale}) {
     if (*curve) playback.append_times((*curve)->times, during, times);
@@ -120,14 +124,10 @@ std::vector<double> CurveMotion::breakpoints(const TimeSpan& during) const {
 
 bool CurveMotion::is_rigid() const { return !data_->curves.scale; }
 
-bool CurveMotion::rests() const {
-  const MotionCurves& curves = data_->curves;
-  const auto is_constant = [](const std::optional<Curve>& curve) { return !curve || curve->is_constant(); };
-  return is_constant(curves.translation) && is_constant(curves.rotation) && is_constant(curves.scale);
-}
+bool CurveMotion::rests() const { return data_->rests; }
 
 double CurveMotion::turn_rate(const TimeSpan& during) const {
-  const auto& [curves, playback] = *data_;
+  const auto& [curves, playback, rests] = *data_;
   double fastest = 0.0;
   if (curves.translation) fastest = curve_turn_rate(*curves.translation, playback, during);
   if (curves.scale) fastest = std::max(fastest, curve_turn_rate(*curves.scale, playback, during));

@@ -21,7 +21,7 @@ class Deformation {
   // Returns the times (s) where the deformation is not smooth, as Motion::breakpoints does.
   virtual std::vector<double> breakpoints(const TimeSpan& during = {}) const = 0;
   virtual TimeSpan span() const = 0;
-  // Tells whether at(t) is the same at all times of the span, as Motion::rests does.
+  // Tells whether at(t) has the same bits at all times of the span, as Motion::rests does.
   virtual bool rests() const { return false; }
   // Returns the bound of Motion::turn_rate for the fastest vertex, rad/s.
   virtual double turn_rate(const TimeSpan& during) const = 0;
@@ -39,6 +39,7 @@ class VertexSequence : public Deformation {
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
   TimeSpan span() const override;
+  bool rests() const override;  // all frames are equal
   double turn_rate(const TimeSpan& during) const override;
   const std::vector<double>& times() const;
   const std::vector<std::vector<Vec3>>& vertices() const;

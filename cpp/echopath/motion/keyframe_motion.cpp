@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -32,11 +31,6 @@ std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num
   return rotations;
 }
 
-template <class Value>
-bool all_equal(const std::vector<Value>& samples) {
-  return std::ranges::adjacent_find(samples, std::ranges::not_equal_to()) == samples.end();
-}
-
 // Returns the second derivatives of `samples` at the knots, in the same type.
 template <class Value>
 std::vector<Value> key_curvatures(const SplineKnots& knots, const std::vector<Value>& samples, int64_t width) {
@@ -58,6 +52,7 @@ struct KeyframeMotion::Data {
   SplineKnots knots;
   std::vector<Vec3> translations, translation_curvature;
   std::vector<Quaternion> rotations, rotation_curvature;
+  bool rests;
 
   Vec3 translation(const SplineKnots::Weights& w) const {
     if (translations.empty()) return Vec3::Zero();
@@ -104,14 +99,15 @@ KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> tran
   rotations = continuous(std::move(rotations), knots.times().size());
   std::vector<Vec3> translation_curvature = key_curvatures(knots, translations, 3);
   std::vector<Quaternion> rotation_curvature = key_curvatures(knots, rotations, 4);
+  const bool rests = all_equal(translations) && all_equal(rotations);
   data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(translations), std::move(translation_curvature),
-                                            std::move(rotations), std::move(rotation_curvature)});
+                                            std::move(rotations), std::move(rotation_curvature), rests});
 }
 
 KeyframeMotion::~KeyframeMotion() = default;
 
 Transform KeyframeMotion::at(double time) const {
-  const SplineKnots::Weights weights = data_->knots.weights(time);
+  const SplineKnots::Weights weights = data_->knots.weights(time, data_->rests);
   Transform transform = Transform::Identity();
   transform.translation() = data_->translation(weights);
   transform.linear() = data_->rotation(weights).toRotationMatrix();
@@ -119,7 +115,7 @@ Transform KeyframeMotion::at(double time) const {
 }
 
 std::vector<double> KeyframeMotion::breakpoints(const TimeSpan&) const { return data_->knots.breakpoints(); }
-bool KeyframeMotion::rests() const { return all_equal(data_->translations) && all_equal(data_->rotations); }
+bool KeyframeMotion::rests() const { return data_->rests; }
 TimeSpan KeyframeMotion::span() const { return data_->knots.span(); }
 
 double KeyframeMotion::turn_rate(const TimeSpan& during) const {

@@ -31,10 +31,11 @@ struct MorphTargets::Data {
   std::vector<double> extents;  // [K] m
   Curve weights;
   Playback playback;
+  bool rests;
 
   std::vector<double> shares(double time) const {
     std::vector<double> shares(targets.size());
-    evaluate(weights, playback, time, shares);
+    evaluate(weights, playback, rests ? time_at_rest(time) : time, shares);
     return shares;
   }
 
@@ -59,8 +60,9 @@ MorphTargets::MorphTargets(std::vector<Vec3> vertices, std::vector<std::vector<V
   weights.validate("weights", targets.size());
   playback.validate();
   std::vector<double> extents = extents_of(targets);
+  const bool rests = weights.is_constant();
   data_ = std::make_shared<const Data>(
-      Data{std::move(vertices), std::move(targets), std::move(extents), std::move(weights), playback});
+      Data{std::move(vertices), std::move(targets), std::move(extents), std::move(weights), playback, rests});
 }
 
 MorphTargets::~MorphTargets() = default;
@@ -88,6 +90,8 @@ std::vector<double> MorphTargets::breakpoints(const TimeSpan& during) const {
   data_->playback.append_times(data_->weights.times, during, times);
   return times;
 }
+
+bool MorphTargets::rests() const { return data_->rests; }
 
 double MorphTargets::turn_rate(const TimeSpan& during) const {
   return curve_turn_rate(data_->weights, data_->playback, during, data_->extents);

@@ -20,7 +20,7 @@ class MorphTargets : public Deformation {
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
   TimeSpan span() const override { return {}; }
-  bool rests() const override { return weights().is_constant(); }
+  bool rests() const override;  // all weights are constant
   double turn_rate(const TimeSpan& during) const override;
   const std::vector<Vec3>& vertices() const;
   const std::vector<std::vector<Vec3>>& targets() const;

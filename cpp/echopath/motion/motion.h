@@ -30,7 +30,7 @@ class Motion {
   }
   // Tells whether at(t) keeps lengths at every time. Others move joints of a Skin, but no nodes.
   virtual bool is_rigid() const { return true; }
-  // Tells whether at(t) is the same at all times of the span, as it is at a speed of 0: what such a motion moves, stands.
+  // Tells whether at(t) has the same bits at all times of the span, as at a speed of 0: what such a motion moves, stands.
   virtual bool rests() const { return false; }
   virtual TimeSpan span() const { return {}; }
   // Returns a bound (rad/s) of how fast the motion oscillates within `during`: the larger of its angular speed and, where it

@@ -136,8 +136,9 @@ void SplineKnots::solve_columns(const std::vector<const double*>& rows, const st
   }
 }
 
-SplineKnots::Weights SplineKnots::weights(double time) const {
+SplineKnots::Weights SplineKnots::weights(double time, bool at_rest) const {
   time = time_inside(time, span());
+  if (at_rest) time = times_.front();
   const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
   const auto k = static_cast<size_t>(after - times_.begin()) - 1;
   const double h = step_[k];

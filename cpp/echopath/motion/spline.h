@@ -1,6 +1,8 @@
 #pragma once
 // Interpolates over knot times, for everything that is sampled: positions, quaternions, vertices.
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "echopath/motion/motion.h"
@@ -29,8 +31,9 @@ class SplineKnots {
     double value[2];
     double curvature[2];  // s^2
   };
-  // Raises invalid_argument outside span(), but forgives rounding errors of the time.
-  Weights weights(double time) const;
+  // Raises invalid_argument outside span(), but forgives rounding errors of the time. Samples at rest, which are all equal,
+  // have the weights of the first knot at all times: between knots their sum would differ in its last bits.
+  Weights weights(double time, bool at_rest) const;
 
   bool has_curvature() const { return interpolation_ == Interpolation::kCubic && times_.size() > 2; }
   // Computes the second derivatives (per s^2) of the splines through `width` columns of samples: rows [T] point to `width`
@@ -47,6 +50,11 @@ class SplineKnots {
   std::vector<double> step_;                     // [T-1] s
   std::vector<double> lower_, inverse_, upper_;  // [T] rows 1..T-2 of the factored tridiagonal matrix
 };
+
+template <class Sample>
+bool all_equal(const std::vector<Sample>& samples) {
+  return std::ranges::adjacent_find(samples, std::ranges::not_equal_to()) == samples.end();
+}
 
 // Holds the indices of the knots between which a span of time lies, as far as there are knots.
 struct KnotRange {

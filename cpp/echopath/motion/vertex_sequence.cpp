@@ -38,6 +38,7 @@ Frames frame_curvatures(const SplineKnots& knots, const Frames& frames) {
 struct VertexSequence::Data {
   SplineKnots knots;
   Frames frames, curvature;  // curvature: second derivatives [T][V] in m/s^2, empty where linear
+  bool rests;
 
   Vec3 vertex(const SplineKnots::Weights& w, size_t i) const {
     Vec3 value = w.value[0] * frames[w.k][i] + w.value[1] * frames[w.k + 1][i];
@@ -50,7 +51,8 @@ VertexSequence::VertexSequence(std::vector<double> times, Frames vertices, Inter
   SplineKnots knots(std::move(times), interpolation);
   check_frames(vertices, knots.times().size());
   Frames curvature = frame_curvatures(knots, vertices);
-  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(curvature)});
+  const bool rests = all_equal(vertices);
+  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(curvature), rests});
 }
 
 VertexSequence::~VertexSequence() = default;
@@ -58,14 +60,14 @@ VertexSequence::~VertexSequence() = default;
 int64_t VertexSequence::num_vertices() const { return std::ssize(data_->frames.front()); }
 
 std::vector<Vec3> VertexSequence::at(double time) const {
-  const SplineKnots::Weights weights = data_->knots.weights(time);
+  const SplineKnots::Weights weights = data_->knots.weights(time, data_->rests);
   std::vector<Vec3> out(data_->frames.front().size());
   for (size_t i = 0; i < out.size(); ++i) out[i] = data_->vertex(weights, i);
   return out;
 }
 
 void VertexSequence::at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const {
-  const SplineKnots::Weights weights = data_->knots.weights(time);
+  const SplineKnots::Weights weights = data_->knots.weights(time, data_->rests);
   const size_t num_vertices = data_->frames.front().size();
   out.resize(indices.size());
   for (size_t i = 0; i < indices.size(); ++i) {
@@ -76,6 +78,7 @@ void VertexSequence::at(double time, const std::vector<uint32_t>& indices, std::
 
 std::vector<double> VertexSequence::breakpoints(const TimeSpan&) const { return data_->knots.breakpoints(); }
 TimeSpan VertexSequence::span() const { return data_->knots.span(); }
+bool VertexSequence::rests() const { return data_->rests; }
 
 double VertexSequence::turn_rate(const TimeSpan& during) const {
   const std::vector<double>& times = data_->knots.times();

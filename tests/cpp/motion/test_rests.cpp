@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <stdexcept>
 
 #include "echopath/motion/curve_motion.h"
+#include "echopath/motion/deformation.h"
 #include "echopath/motion/morph_targets.h"
 #include "echopath/motion/skin.h"
 
@@ -57,6 +60,48 @@ TEST(Rests, OfASkinAllItsJointsAndItsShapeDo) {
   EXPECT_TRUE(skin(0.0, 0.0).rests());
   EXPECT_FALSE(skin(1.0, 0.0).rests());
   EXPECT_FALSE(skin(0.0, 1.0).rests());
+}
+
+TEST(Rests, OfVertexSequencesTheirFramesAreAllEqual) {
+  const std::vector<Vec3> there = {{0.1, 0.2, 0.3}, {1, 0, 0.7}};
+  std::vector<Vec3> elsewhere = there;
+  elsewhere[1].z() += 1e-9;
+  EXPECT_TRUE(VertexSequence({0, 1, 3}, {there, there, there}).rests());
+  EXPECT_FALSE(VertexSequence({0, 1, 3}, {there, there, elsewhere}).rests());
+}
+
+// Frames are the same alone and in a row, to the last bit, though sums of equal keys round differently from time to time.
+TEST(Rests, AreAtTheSamePlaceToTheLastBit) {
+  const Vec3 place(0.1, -0.7, 1.3);
+  const Quaternion turned = Quaternion(0.3, 0.5, -0.2, 0.7).normalized();
+  const auto curve = [](const auto& columns, CurveInterpolation way) {
+    const std::vector<double> one(columns.data(), columns.data() + columns.size());
+    Curve made{{0.0, 0.3, 0.7}, {}, way};
+    for (int k = 0; k < 3; ++k) made.values.insert(made.values.end(), one.begin(), one.end());
+    if (way == CurveInterpolation::kHermite) made.in_tangents = made.out_tangents = std::vector(made.values.size(), 0.0);
+    return made;
+  };
+  std::vector<std::unique_ptr<const Motion>> motions;
+  for (const Interpolation way : {Interpolation::kCubic, Interpolation::kLinear}) {
+    motions.push_back(std::make_unique<KeyframeMotion>(std::vector{0.0, 0.3, 0.4, 0.7}, std::vector(4, place),
+                                                       std::vector(4, turned), way));
+  }
+  const Eigen::Vector4d rotation(turned.w(), turned.x(), turned.y(), turned.z());
+  for (const CurveInterpolation way : {CurveInterpolation::kLinear, CurveInterpolation::kHermite}) {
+    for (const double period : {0.0, 0.7}) {
+      const MotionCurves curves{curve(place, way), curve(rotation, way), curve(place, way)};
+      motions.push_back(std::make_unique<CurveMotion>(curves, Playback{0.1, period}));
+    }
+  }
+  const std::vector<Vec3> vertices = {place, 3 * place};
+  const VertexSequence sequence({0.0, 0.3, 0.4, 0.7}, std::vector(4, vertices));
+  const MorphTargets morphs(vertices, Shapes{vertices}, curve(Eigen::Vector<double, 1>(0.3), CurveInterpolation::kLinear));
+  for (double time = 0.0; time <= 0.7; time += 0.013) {
+    for (const auto& motion : motions) EXPECT_EQ(motion->at(time).matrix(), motion->at(0.0).matrix()) << time;
+    EXPECT_EQ(sequence.at(time), sequence.at(0.0)) << time;
+    EXPECT_EQ(morphs.at(time), morphs.at(0.0)) << time;
+  }
+  EXPECT_THROW(motions[2]->at(NAN), std::invalid_argument);
 }
 
 }  // namespace

@@ -205,3 +205,16 @@ def test_what_has_a_motion_at_rest_stands_still():
     alone = ep.Sequence(room(), RADAR, frames=2, interval=INTERVAL, num_rays=2_000, noise_seed=None)[1].cube
     beside = ep.Sequence(parked, at_rest, frames=2, interval=INTERVAL, num_rays=2_000, noise_seed=None)[1].cube
     np.testing.assert_array_equal(beside, alone)
+
+
+def test_a_frame_has_the_same_bits_alone_where_keyframes_rest():
+    """Sums of equal keys had differed in their last bits from frame to frame, and with them the rays that the first one set."""
+    scene, turned = room(), np.array([0.3, 0.5, -0.2, 0.7])
+    scene["globe"].motion = ep.KeyframeMotion([-1.0, 0.03, 0.17, 2.0], np.tile((1 / 30, -1 / 35, 0.01), (4, 1)),
+                                              np.tile(turned / np.linalg.norm(turned), (4, 1)))
+
+    def frames(places) -> list[bytes]:
+        sequence = ep.Sequence(scene, RADAR, frames=3, interval=INTERVAL, num_rays=20_000, noise_seed=None, guard=False)
+        return [sequence[place].cube.tobytes() for place in places]
+
+    assert frames([2, 1, 0]) == frames([0, 1, 2])[::-1]

@@ -166,6 +166,12 @@ class Seams {
   FoundEdges found_;
 };
 
+// Returns the place of a node, whose motion may rest, in the frame of its parent.
+Transform place_at_rest(const Node& node) {
+  const TimeSpan span = node.motion ? node.motion->span() : TimeSpan{};
+  return moved(node.placement, node.motion.get(), std::clamp(0.0, span.begin, span.end));
+}
+
 // Returns the surfaces that touch others, group by group.
 std::vector<std::vector<Placed>> touching_groups(const Scene& scene) {
   std::vector<Placed> all;
@@ -189,11 +195,11 @@ std::pair<int, Transform> place_in_group(const Scene& scene, uint32_t mesh_id) {
   int node = scene.meshes()[mesh_id].node;
   for (; node >= 0; node = scene.nodes()[node].parent) {
     const Node& at = scene.nodes()[node];
-    if (at.motion) {
+    if (moves(at.motion)) {
       place = Transform(at.placement.linear()) * place;  // motion.h: moved
       break;
     }
-    place = at.placement * place;
+    place = place_at_rest(at) * place;
   }
   return {node, place};
 }

@@ -8,8 +8,8 @@
 
 namespace echopath {
 
-// Returns the node that moves a mesh, -1 where there is none, and the place of the mesh in the frame of all that this node
-// moves.
+// Returns the node that moves a mesh, -1 where there is none or all motions rest, and the place of the mesh in the frame of
+// all that this node moves.
 std::pair<int, Transform> place_in_group(const Scene& scene, uint32_t mesh_id);
 
 // Holds what seams make of the edges of a scene.

@@ -101,6 +101,17 @@ TEST_F(SceneEdgesTest, OnlyMeshesThatStayTogetherAreOneSurface) {
   EXPECT_EQ(edges.body_of(2), 2u);
 }
 
+TEST_F(SceneEdgesTest, MeshesWhoseMotionsRestStayTogether) {
+  const auto lowered = std::make_shared<const KeyframeMotion>(std::vector{3.0, 4.0}, std::vector(2, Vec3(0, 0, -2)),
+                                                              std::vector<Quaternion>());
+  add("floor", quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+      add_group("slab", std::make_shared<LinearMotion>(Vec3::Zero())));
+  add("wall", quad({0, 0, 2}, {0, 1, 2}, {0, 1, 3}, {0, 0, 3}), add_group("panel", lowered));
+  const SceneEdges edges(scene_);
+  EXPECT_NEAR(length(edges, 0, false), 1.0, 1e-9);
+  EXPECT_EQ(edges.body_of(1), 0u);
+}
+
 TEST_F(SceneEdgesTest, OtherMaterialsTakeNoPart) {
   add("floor", quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}));
   metal_.mirror = true;

@@ -121,6 +121,20 @@ def test_they_are_in_a_town_of_more_things_than_get_rays_of_their_own():
     assert max(differences(scene, frames=3, num_rays=3_000, max_bounces=1, moving="town/ball")) < 1e-9
 
 
+def test_they_are_in_a_town_of_which_a_truck_hides_some_things_for_a_time():
+    """Of more than 256 things those in sight have rays of their own; signs that the truck hid gave theirs to others: -46 dB."""
+    scene = ep.Scene()
+    scene.add(name="town")
+    for k, angle in enumerate(np.linspace(-np.pi, np.pi, 300, endpoint=False)):
+        distance = 8 + 10 * (k * 0.618 % 1)
+        scene.add(ep.actors.plate(0.3, 0.3), name=f"{'ahead' if abs(angle) < 1 else 'behind'}_{k}", parent="town",
+                  yaw=angle - np.pi, position=(distance * np.cos(angle), distance * np.sin(angle), 1),
+                  material=ep.materials["wood"].replace(scattering=0.4))
+    scene.add(ep.actors.box(size=(0.4, 3.0, 2.2)), name="truck_ahead", position=(5, -2, 0), material="metal",
+              motion=ep.LinearMotion(velocity=(0, 30.0, 0)))
+    assert max(differences(scene, frames=3, num_rays=3_000, max_bounces=1, moving="*ahead*")) < 1e-9
+
+
 @pytest.mark.parametrize("rays", [{"num_rays": 20_000}, {"target_error_db": 1.0, "max_rays": 40_000}])
 def test_a_frame_in_which_nothing_moves_has_their_rays_alone(rays):
     scene = ep.Scene()

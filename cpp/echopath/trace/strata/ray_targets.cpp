@@ -167,13 +167,24 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
   out.any_still_unaimed = out.any_still_unaimed || out.num_left_out > 0;
 }
 
+// Marks the nodes at or below which a mesh of an object stands still [node].
+std::vector<bool> nodes_that_hold(const std::vector<bool>& still_meshes, const Scene& scene) {
+  std::vector<bool> found(scene.nodes().size(), false);
+  for (uint32_t id = 0; id < still_meshes.size(); ++id) {
+    if (!still_meshes[id] || scene.node_of(id).material->mirror) continue;
+    for (int node = scene.meshes()[id].node; node >= 0 && !found[node]; node = scene.nodes()[node].parent)
+      found[node] = true;
+  }
+  return found;
+}
+
 // Finds the targets of one object after the other.
 class TargetSearch {
  public:
   TargetSearch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                const RayTargetSettings& settings, RayTargets& out)
       : scene_(scene), geometry_(geometry), settings_(settings), finder_(scene, mirrors, settings),
-        is_still_(scene.still_meshes()), holds_still_(nodes_with_still_meshes(scene)), out_(out) {}
+        is_still_(scene.still_meshes()), holds_still_(nodes_that_hold(is_still_, scene)), out_(out) {}
 
   void take(const SceneObject& object) {
     SceneObject still{object.node, {}}, rest{object.node, {}};
@@ -304,6 +315,19 @@ class TargetSearch {
     }
   }
 
+  // Returns whether a ray from the transmitter whose first hit is `met` meets something else before the target, within
+  // `reach` (m). What moves does not hide what is to have the same rays in all frames.
+  bool is_hidden(const Target& target, const Vec3& direction, double reach, RayHit met) const {
+    const bool passes_what_moves = settings_.is_steady && !target.moves;
+    auto verdict = EmbreeScene::Verdict::kHit;
+    while (verdict == EmbreeScene::Verdict::kHit && met.distance < reach) {
+      if (!passes_what_moves || is_still_[met.hit.mesh_id]) return out_.object_of_mesh[met.hit.mesh_id] != target.object;
+      const double begin = geometry_.behind(met.distance, met.reported);
+      verdict = geometry_.intersect_from_surface(settings_.transmitter, direction, met, Sees::kOpaque, begin);
+    }
+    return false;
+  }
+
   // Returns whether a ray to any of kLooks vertices, evenly taken of all, meets the target or what lies behind it.
   bool is_in_sight(Target& target) const {
     const std::vector<Vec3>& vertices = target.vertices();
@@ -320,9 +344,8 @@ class TargetSearch {
       EmbreeScene::PacketHits hits;
       geometry_.intersect(settings_.transmitter, directions, kPacketSize, hits);
       for (int lane = 0; lane < kPacketSize; ++lane) {
-        const bool meets_other = hits.verdicts[lane] == EmbreeScene::Verdict::kHit && hits.distance[lane] < reach[lane] &&
-                                 out_.object_of_mesh[hits.met[lane].mesh_id] != target.object;
-        if (!meets_other) return true;
+        const bool meets_any = hits.verdicts[lane] == EmbreeScene::Verdict::kHit;
+        if (!meets_any || !is_hidden(target, packed(directions.at(lane)), reach[lane], hits[lane])) return true;
       }
     }
     return false;

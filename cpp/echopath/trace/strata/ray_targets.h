@@ -16,7 +16,7 @@ namespace echopath {
 // strongest echoes by their size and distance, and of more than 256 images of them those over the fewest mirrors, and
 // likewise of those that move; rays of the field of view meet the others. Where rays are steady, what stands still in an
 // object is a target without what moves in it, such as the pole of a fan, and the highest nodes below which all moves are
-// others.
+// others; what moves then hides nothing that stands still.
 struct RayTarget {
   Stratum stratum;  // holds the target; without rays
   int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh

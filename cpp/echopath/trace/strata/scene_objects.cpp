@@ -24,19 +24,6 @@ std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object)
   return found.found();
 }
 
-std::vector<bool> nodes_with_still_meshes(const Scene& scene) {
-  const std::vector<bool> still = scene.still_meshes();
-  std::vector<bool> found(scene.nodes().size(), false);
-  for (const SceneObject& object : objects_of(scene)) {
-    for (const uint32_t id : object.mesh_ids) {
-      if (!still[id]) continue;
-      for (int node = scene.meshes()[id].node; node >= 0 && !found[node]; node = scene.nodes()[node].parent)
-        found[node] = true;
-    }
-  }
-  return found;
-}
-
 Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids) {
   Eigen::AlignedBox3d box;
   for (const uint32_t id : mesh_ids) {

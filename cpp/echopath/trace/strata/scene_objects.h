@@ -25,9 +25,6 @@ std::vector<SceneObject> objects_of(const Scene& scene);
 // child of that node. Its parts may have parts in turn; that of a node without children is the object itself.
 std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object);
 
-// Marks the nodes at or below which a mesh that is not flagged a mirror stands still [node] (Scene::still_meshes).
-std::vector<bool> nodes_with_still_meshes(const Scene& scene);
-
 // Returns the vertices of a mesh in the axes of the caller.
 using VerticesOf = std::function<const std::vector<Vec3>&(uint32_t mesh_id)>;
 

@@ -232,3 +232,14 @@ def test_a_frame_has_the_same_bits_alone_where_keyframes_rest():
         return [sequence[place].cube.tobytes() for place in places]
 
     assert frames([2, 1, 0]) == frames([0, 1, 2])[::-1]
+
+
+def test_keyframes_that_trace_anew_find_the_scatterers_of_the_record():
+    """Rays of images over a mirror that moves had counted as those of what stands still, which then had other scatterers."""
+    scene = room()
+    scene["wall"].motion = ep.LinearMotion(velocity=(0.5, 0, 0))
+    boxes = [ep.simulate(scene, RADAR, num_rays=num_rays, scatterers="surface", noise_seed=None, guard=False, tolerance=1e-12,
+                         retrace=retrace, parts={"boxes": "T 'box*' R"}).parts["parts"]["boxes"]
+             for num_rays in (2_000, 20_000) for retrace in ("never", "always")]
+    for once, anew in (boxes[:2], boxes[2:]):
+        assert np.abs(anew - once).max() < 1e-9 * np.abs(once).max()

@@ -166,7 +166,6 @@ void put_in(const StillRays& still, LaunchGuide& guide) {
   for (const auto& [name, rays] : still.guide.shares) guide.shares[name] = rays;
   std::erase_if(guide.foci, [&](const LaunchFocus& focus) { return still.holds(focus.of); });
   guide.foci.insert(guide.foci.begin(), still.guide.foci.begin(), still.guide.foci.end());
-  guide.still_rays = still.num_rays();
 }
 
 }  // namespace

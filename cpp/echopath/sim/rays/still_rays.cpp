@@ -5,15 +5,18 @@
 #include <utility>
 #include <vector>
 
-#include "echopath/trace/strata/scene_objects.h"
-
 namespace echopath {
 
 StillRays::StillRays(LaunchGuide of_standing_scene) : guide(std::move(of_standing_scene)) {
   std::erase_if(guide.shares, [](const auto& share) { return share.second == 0.0; });
   std::erase_if(guide.foci, [&](const LaunchFocus& focus) { return !holds(focus.of); });
-  for (const auto& [name, share] : guide.shares) guide.still_rays += share;
-  for (const LaunchFocus& focus : guide.foci) guide.still_rays += focus.share;
+}
+
+double StillRays::num_rays() const {
+  double sum = 0.0;
+  for (const auto& [name, share] : guide.shares) sum += share;
+  for (const LaunchFocus& focus : guide.foci) sum += focus.share;
+  return sum;
 }
 
 LaunchGuide StillRays::taken_from(LaunchGuide whole) const {
@@ -29,16 +32,6 @@ std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, cons
   Scene still(scene);
   still.keep_meshes(stands);
   return still;
-}
-
-LaunchGuide guide_like(const Paths& paths) {
-  LaunchGuide guide = guide_like(paths.frame.strata);
-  if (!has_steady_rays(*paths.scene, paths.radar, paths.frame.scatterers)) return guide;
-  const std::vector<bool> still = nodes_with_still_meshes(*paths.scene);
-  for (const Stratum& stratum : paths.frame.strata) {
-    if (stratum.object < 0 || still[stratum.object]) guide.still_rays += static_cast<double>(stratum.num_rays);
-  }
-  return guide;
 }
 
 std::shared_ptr<const StillRays> KeptStillRays::get(const std::function<StillRays()>& find) {

@@ -24,16 +24,13 @@ struct StillRays {
   explicit StillRays(LaunchGuide of_standing_scene);
   bool any() const { return !guide.shares.empty(); }
   bool holds(const std::string& stratum) const { return guide.shares.contains(stratum); }
-  double num_rays() const { return guide.still_rays; }
+  double num_rays() const;
   LaunchGuide taken_from(LaunchGuide whole) const;  // leaves the rays of what moves alone
 };
 
 // Returns the scene without what moves or has a lifetime; nothing where a trace has no steady rays (has_steady_rays), the
 // settings have a guide, or all of the scene changes.
 std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, const TraceSettings& settings);
-
-// Returns the guide that repeats the launch of a record, with the points of rough surfaces that it had.
-LaunchGuide guide_like(const Paths& paths);
 
 // Keeps the StillRays of the first trace for the traces after it, which are those of the same scene, radar and settings but
 // for the start. Thread-safe.

@@ -5,7 +5,6 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/power/faint_paths.h"
-#include "echopath/sim/rays/still_rays.h"
 #include "echopath/trace/trace.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/surface/new_surface.h"
@@ -96,7 +95,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
   if (retrace_ == Retrace::kAlways) {
     TraceSettings settings = settings_like(paths_.frame);
     settings.start_time = stretch.start_time;
-    settings.guide = guide_like(paths_);
+    settings.guide = guide_like(paths_.frame.strata);
     return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
   }
   std::vector<Paths> records;

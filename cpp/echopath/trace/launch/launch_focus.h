@@ -19,9 +19,6 @@ struct LaunchFocus {
 struct LaunchGuide {
   RayShares shares;
   std::vector<LaunchFocus> foci;
-  // Rays of what stands still, which has the points of so many (LaunchPlan::default_density) however many there are for what
-  // moves; 0: of its share of all rays.
-  double still_rays = 0.0;
 
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;

@@ -161,11 +161,22 @@ std::vector<int64_t> LaunchShares::rays(const std::vector<FocusOfTarget>& foci, 
   return rays;
 }
 
+// Returns the rays of what stands still where they are steady: the same in all frames, whatever others there are.
+double LaunchShares::rays_of_still(const std::vector<Stratum>& strata) const {
+  const auto stands = [&](size_t k) { return k < found_.targets.size() ? !found_.targets[k].moves : field_.still; };
+  double sum = 0.0;
+  for (size_t k = 0; settings_.is_steady && k < strata.size(); ++k) {
+    const size_t owner = strata[k].is_focus() ? static_cast<size_t>(strata[k].focus_of) : k;
+    if (stands(owner)) sum += static_cast<double>(strata[k].num_rays);
+  }
+  return sum;
+}
+
 std::vector<double> LaunchShares::default_densities(const std::vector<Stratum>& strata) const {
   if (is_by_object()) return mean_densities(strata);
   const std::vector<double> shares = of_rule();
   const auto all = static_cast<double>(settings_.num_rays);
-  const double own = settings_.guide.still_rays, for_still = own > 0.0 ? own / (1.0 - kMovingShare) : all;
+  const double own = rays_of_still(strata), for_still = own > 0.0 ? own / (1.0 - kMovingShare) : all;
   std::vector<double> densities(strata.size(), 0.0);
   const auto set = [&](size_t stratum, double rays) { densities[stratum] = rays / strata[stratum].solid_angle(); };
   for (size_t k = 0; k < found_.targets.size(); ++k) set(k, shares[k] * (found_.targets[k].moves ? all : for_still));

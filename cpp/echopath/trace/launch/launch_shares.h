@@ -37,6 +37,7 @@ class LaunchShares {
   double field_share() const;
   double moving_share() const;
   std::vector<double> of_rule() const;
+  double rays_of_still(const std::vector<Stratum>& strata) const;
 
   const Scene& scene_;
   const RayTargets& found_;

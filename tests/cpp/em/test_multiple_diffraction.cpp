@@ -75,6 +75,23 @@ TEST(MultipleDiffraction, IsReciprocal) {
   }
 }
 
+// An antenna beside another one sees the edge from off the cone about the way that the points were found for. Its field is
+// nearly that over the points of its own cone, which lie 2.5 mm aside; it had grown as one over the height above the face.
+TEST(MultipleDiffraction, AntennasBesideTheConeHaveNearlyTheSameFieldAtEveryHeightOverTheFace) {
+  const auto edges = strip(0.5);
+  std::array<DiffractingEdge, 2> own = edges;
+  own[0].point.z() = 0.0025;
+  for (const double height : {0.0, 1e-5, 1e-3, 1e-2, 0.3}) {
+    const Vec3 antenna(-3.0, height, 0.0175);
+    const auto strength = [&](const std::array<DiffractingEdge, 2>& points) {
+      const Vec3 way = points[0].point - antenna, in = way.normalized();
+      const FieldVector electric = Vec3::UnitZ().cross(-in).normalized().cast<Complex>();
+      return std::abs(MultipleDiffraction::over(points, kWavenumber)->enter(in, electric, way.norm()));
+    };
+    EXPECT_NEAR(strength(edges), strength(own), 0.01 * strength(own)) << height;
+  }
+}
+
 // Along a sheet with its electric field across it a wave passes as if nothing were there. Physical optics doubles it on the
 // lit side, in the limit; what the near edge sends over the face is the wave itself, and takes that away.
 TEST(MultipleDiffraction, SeenAlongItselfAnEdgeSendsAsMuchAsTheWave) {

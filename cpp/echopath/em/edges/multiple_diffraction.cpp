@@ -18,6 +18,14 @@ Vec3 beside(const Vec3& direction, const Vec3& along, const Vec3& normal) {
   return (along + kBeside * normal).normalized();
 }
 
+// Returns the direction on Keller's cone about the way `along` at the angle of `in` about the edge, on which coefficients hang
+// alone. Antennas of an array, and those that have moved since the trace, see the edge from beside that cone.
+Vec3 on_cone(const Vec3& in, const Vec3& along, const Vec3& edge) {
+  const double cosine = along.dot(edge), sine = along.cross(edge).norm();
+  const Vec3 across = in - in.dot(edge) * edge;
+  return cosine * edge + sine * across.stableNormalized();
+}
+
 // Returns the row that makes from an incident field the strength of the wave along a face, over the factor of its spread.
 // `coefficient` is grazing_coefficient.
 Vec3 strength_row(const Wedge& wedge, const Vec3& in, const Vec3& along, const Vec3& normal, double coefficient) {
@@ -93,10 +101,10 @@ double MultipleDiffraction::detour(const Vec3& in, double distance) const {
 std::complex<double> MultipleDiffraction::enter(const Vec3& in, const FieldVector& field, double distance) const {
   const Link& link = links_.front();
   const Wedge& wedge = edges_.front().wedge;
-  const Vec3 travel = beside(in, link.along, -link.normal);
+  const Vec3 travel = beside(on_cone(in, link.along, axis_of(wedge)), link.along, -link.normal);
   const double coefficient =
       grazing_coefficient(wedge.exterior_angle, angle_about(wedge, -travel), angle_of_face(wedge, link.from));
-  const Vec3 row = strength_row(wedge, travel, link.along, link.normal, coefficient);
+  const Vec3 row = strength_row(wedge, in, link.along, link.normal, coefficient);
   const double apart = link.length * distance / (link.length + distance);
   const std::complex<double> shadow = transition(wavenumber_ * apart * (1.0 - travel.dot(link.along)));
   const double of_sphere = std::sqrt(distance / (distance + length_));

@@ -325,6 +325,43 @@ def test_antennas_beside_each_other_see_one_image_in_a_corner_of_three_planes(pl
     assert by_images == 1 and field == pytest.approx(1.0, abs=1e-3)
 
 
+def echo_of_road_and_wall(ends, begins):
+    """The mean field over 1 GHz of both orders of a road up to x = `ends` and a wall at x = 15 m from z = `begins` on, over that
+    of the image in their corner, and how many paths have the order that the image has not. Half zones are of 15 cm."""
+    scene = ep.Scene()
+    scene.add(ep.Mesh([(-40, -40, 0), (ends, -40, 0), (ends, 40, 0), (-40, 40, 0)], [[0, 1, 2], [0, 2, 3]]), name="road",
+              material="metal")
+    scene.add(ep.Mesh([(15, -30, begins), (15, 30, begins), (15, 30, 9), (15, -30, 9)], [[0, 1, 2], [0, 2, 3]]), name="wall",
+              material="metal")
+    antennas = np.array([[3.0, 1.0, 1.2], [3.0, 1.1, 1.27]])
+    paths = ep.trace(scene, radar(*antennas), num_rays=100_000, max_bounces=2, polarization="scalar").select("T . . R")
+    lengths = np.asarray(paths.lengths([paths.frame.trace_time], 0, 0))[0]
+    wavelength = ep.speed_of_light / 77e9
+    wavenumbers = 2.0 * np.pi * (77e9 + np.linspace(0.0, 1e9, 41)) / ep.speed_of_light
+    fields = np.exp(-1j * np.outer(wavenumbers, lengths)) @ np.asarray(paths.amplitude)
+    unfolded = np.linalg.norm(antennas[0] - antennas[1] * [-1, 1, -1] - [30, 0, 0])
+    endless = wavelength * np.sqrt(paths.radar.transmit_power) / (4 * np.pi * unfolded)
+    others = min(paths.select(f"T '{one}' '{two}' R").num_paths for one, two in (("road", "wall"), ("wall", "road")))
+    return 20.0 * np.log10(np.sqrt(np.mean(np.abs(fields) ** 2)) / endless), others
+
+
+@pytest.mark.parametrize("ends, begins", [(15.0, 0.0), (15.0, 0.001), (14.999, 0.0)])
+def test_a_crack_of_a_millimetre_between_a_road_and_a_wall_takes_nothing(ends, begins):
+    """Half of the field had been lost to it."""
+    level, others = echo_of_road_and_wall(ends, begins)
+    assert level == pytest.approx(0.0, abs=LEVEL_TOLERANCE_DB) and others == 0
+
+
+@pytest.mark.parametrize("ends, begins, strip", [(15.0, 0.004, 0.004), (14.99, 0.0, 0.001)])
+def test_beside_wider_cracks_both_orders_have_their_part(ends, begins, strip):
+    """The image has one edge there, and rays of the other order bring what is beyond. Both orders lack the strip, in m as the
+    antennas see it: without exp(-j pi x^2) over as much about x = 0 in half zones, whose integral is (1 - j) / sqrt(2)."""
+    level, others = echo_of_road_and_wall(ends, begins)
+    assert others > 0
+    truth = 20.0 * np.log10(abs(1.0 - 2.0 * strip / 0.153 * np.exp(0.25j * np.pi)))
+    assert level == pytest.approx(truth, abs=0.5)  # rays sample their part
+
+
 def wedge_on_a_floor(half_deg):
     """Two metal walls of 6 x 8 m that meet on the z axis, open toward +x by twice the angle, and a floor at z = -0.3 m."""
     scene = ep.Scene()

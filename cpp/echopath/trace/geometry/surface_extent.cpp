@@ -51,9 +51,15 @@ bool SurfaceAround::is_wall(const RayHit& met) const {
 
 // Returns where something that rises from the surface stands in the way; no wall, at `reach`, if nothing is nearer.
 SurfaceEnd SurfaceAround::nearest_wall(const Vec3& along, double reach) const {
+  const SurfaceEnd wall = wall_at_height(gap_, along, reach);
+  return wall.is_wall || crack_ <= gap_ ? wall : wall_at_height(crack_, along, reach);
+}
+
+SurfaceEnd SurfaceAround::wall_at_height(double height, const Vec3& along, double reach) const {
   RayHit met;
   ++num_queries_;
-  const bool meets = geometry_.intersect_near(above(along, 0.0), along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
+  const Vec3 from = point_.position + height * point_.normal;
+  const bool meets = geometry_.intersect_near(from, along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
   if (!meets || !is_wall(met) || met.distance >= reach) return {reach};
   return {met.distance, true, met.normal};
 }
@@ -94,23 +100,33 @@ double SurfaceAround::end_of_triangle_at(const Vec3& along, double distance) con
 }
 
 SurfaceEnd SurfaceAround::find_end(const Vec3& along, double reach) const {
-  double known = distance_to_rim(along);  // the surface goes on so far
   const SurfaceEnd wall = nearest_wall(along, reach);
-  double beyond = wall.distance;
-  if (wall.is_wall && (known >= beyond || is_at(along, std::max(beyond - 2.0 * gap_, 0.0)))) return wall;
+  const auto reaches_wall = [&] {
+    return distance_to_rim(along) >= wall.distance || is_at(along, std::max(wall.distance - 2.0 * gap_, 0.0));
+  };
+  if (wall.is_wall && reaches_wall()) return wall;
+  const double end = end_before(wall.distance, along);
+  const double across = (wall.distance - end) * std::abs(along.dot(wall.wall));  // m, of the crack before the wall
+  if (wall.is_wall && across <= crack_) return wall;
+  return {end};
+}
+
+// Returns where the surface ends; no farther than `beyond`.
+double SurfaceAround::end_before(double beyond, const Vec3& along) const {
+  double known = distance_to_rim(along);  // the surface goes on so far
   const double step = 4.0 * geometry_.lift();
   for (;;) {
     // A triangle right behind the rim may be narrower than the gap.
     double next = end_of_triangle_at(along, known + step);
     if (next < 0) next = end_of_triangle_at(along, known + gap_);
-    if (next < 0) return {known, false};
+    if (next < 0) return known;
     known = std::max(next, known + step);
-    if (known >= beyond) return {beyond, false};
+    if (known >= beyond) return beyond;
     if (beyond - known < 4.0 * gap_) continue;
     const double middle = 0.5 * (known + beyond), end = end_of_triangle_at(along, middle);
     if (end < 0) beyond = middle;
     else known = std::max(end, middle);
-    if (known >= beyond) return {beyond, false};
+    if (known >= beyond) return beyond;
   }
 }
 

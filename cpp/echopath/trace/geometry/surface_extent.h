@@ -32,13 +32,14 @@ enum class Extent { kBent, kPlane };
 // `gap` (m); of a plane, all their corners lie so near to it. Holes between the point and the place in question may be
 // overlooked. `along` is a unit tangent. Its rays are added to num_queries; they meet sheets where the point lies on one.
 // `next` is the plane, if any, that a wave meets next, whose corner with this one is no edge of this one: it counts there.
+// Corners whose planes end within `crack` (m) of each other are closed.
 // All arguments must outlive it.
 class SurfaceAround {
  public:
   SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries,
-                Extent extent = Extent::kBent, const Plane* next = nullptr)
-      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), extent_(extent), next_(next),
-        sees_(geometry.is_sheet(point.hit.mesh_id) ? Sees::kAll : Sees::kOpaque), num_queries_(num_queries) {}
+                Extent extent = Extent::kBent, const Plane* next = nullptr, double crack = 0.0)
+      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), crack_(crack), extent_(extent),
+        next_(next), sees_(geometry.is_sheet(point.hit.mesh_id) ? Sees::kAll : Sees::kOpaque), num_queries_(num_queries) {}
 
   // Returns how far the point's own triangle goes on.
   double distance_to_rim(const Vec3& along) const { return rim_.distance(point_.position, along); }
@@ -59,6 +60,8 @@ class SurfaceAround {
 
  private:
   SurfaceEnd nearest_wall(const Vec3& along, double reach) const;
+  SurfaceEnd wall_at_height(double height, const Vec3& along, double reach) const;
+  double end_before(double beyond, const Vec3& along) const;
   double end_of_triangle_at(const Vec3& along, double distance) const;
   bool is_in_plane(const Hit& hit) const;
   bool is_wall(const RayHit& met) const;
@@ -68,7 +71,7 @@ class SurfaceAround {
   const EmbreeScene& geometry_;
   const RayHit& point_;
   TriangleRim rim_;
-  double gap_;
+  double gap_, crack_;
   Extent extent_;
   const Plane* next_;
   Sees sees_;

@@ -50,6 +50,10 @@ struct ZoneTarget {
 ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,
                         int64_t& num_queries);
 
+// Returns the width in m of cracks along the inside of a corner that count as none, as between a road and a house of another
+// model.
+double widest_crack(const MirrorView& view, double wavelength);
+
 // Returns the field that a flat mirror sends to a point over that of an endless one; e^{+jwt}.
 //
 // It is Kirchhoff's integral by stationary phase in polar coordinates about the point of reflection, 1 - <exp(-j pi r^2)>:

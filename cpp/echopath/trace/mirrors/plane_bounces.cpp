@@ -3,7 +3,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kMovedOff = 8.0;  // lifts
+constexpr double kParallel = 1e-3;  // sine
+constexpr double kMovedOff = 8.0;   // lifts
 
 }  // namespace
 
@@ -30,6 +31,23 @@ void PlaneBounces::move_off_edges() {
     move(beside_[k], points_.back().normal);
     move(beside_.back(), points_[k].normal);
   }
+}
+
+bool PlaneBounces::is_corner_closed(size_t bounce, double wavelength, int64_t& num_queries) const {
+  return reaches_plane(bounce, bounce + 1, wavelength, num_queries) &&
+         reaches_plane(bounce + 1, bounce, wavelength, num_queries);
+}
+
+// Returns whether the plane of a bounce goes on from its point to that of another one; parallel ones do not end at each other.
+bool PlaneBounces::reaches_plane(size_t bounce, size_t other, double wavelength, int64_t& num_queries) const {
+  const RayHit& point = beside_[bounce];
+  const Plane plane{points_[other].position, points_[other].normal};
+  const Vec3 toward = plane.normal.dot(point.normal) * point.normal - plane.normal;
+  const double steepness = toward.norm();
+  if (steepness < kParallel) return true;
+  const double gap = geometry_.plane_tolerance(wavelength), crack = widest_crack(view(bounce), wavelength);
+  const SurfaceAround surface(geometry_, point, gap, num_queries, Extent::kPlane, &plane, crack);
+  return surface.find_end(toward / steepness, plane.height(point.position) / steepness + 2.0 * crack + 4.0 * gap).is_wall;
 }
 
 MirrorView PlaneBounces::view(size_t bounce) const {

@@ -15,12 +15,16 @@ class PlaneBounces {
   PlaneBounces(const EmbreeScene& geometry, const Vec3& from, const Vec3& to) : geometry_(geometry), from_(from), to_(to) {}
   // `normal` is that of the plane, unit, on either side.
   void add(const Hit& hit, const Vec3& point, const Vec3& normal);
+  size_t size() const { return points_.size(); }
   // Returns a bounce as the wave sees it that comes from one antenna and goes to the other. It refers to the bounce.
   MirrorView view(size_t bounce) const;
   // Returns the field of the path over that of endless planes (field_of_flat_mirror); e^{+jwt}.
   std::complex<double> field_beside_edges(double wavelength, int64_t& num_queries) const;
+  // Returns whether the planes of a bounce and of the next one meet in a corner without a crack, as far as a few rays can tell.
+  bool is_corner_closed(size_t bounce, double wavelength, int64_t& num_queries) const;
 
  private:
+  bool reaches_plane(size_t bounce, size_t other, double wavelength, int64_t& num_queries) const;
   void move_off_edges();
 
   const EmbreeScene& geometry_;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/mirrors/plane_bounces.h"
 
 namespace echopath {
 namespace {
@@ -175,11 +174,9 @@ bool PlaneImages::is_known(const std::vector<int>& sequence, const std::vector<V
 
 // Returns the share of its field that the edges of its surfaces leave to a path; nothing where one does not cover its
 // Fresnel zone.
-std::optional<std::complex<double>> PlaneImages::field_beside_edges(const std::vector<int>& sequence, const ImagePath& path,
+std::optional<std::complex<double>> PlaneImages::field_beside_edges(const PlaneBounces& bounces,
                                                                     int64_t& num_queries) const {
-  PlaneBounces bounces(geometry_, settings_.transmitter, settings_.receiver);
-  for (size_t k = 0; k < path.points.size(); ++k) bounces.add(path.hits[k], path.points[k], planes_[sequence[k]].normal);
-  for (size_t k = 0; k < path.points.size(); ++k) {
+  for (size_t k = 0; k < bounces.size(); ++k) {
     if (cover_of_zone(geometry_, bounces.view(k), nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
   }
   return bounces.field_beside_edges(wavelength_, num_queries);
@@ -225,7 +222,9 @@ void PlaneImages::try_order(const std::vector<int>& sequence, PathBlock& block) 
   std::optional<ImagePath> path = images.path_over(sequence);
   block.statistics.num_queries += images.num_queries();
   if (!path) return;
-  const std::optional<std::complex<double>> share = field_beside_edges(sequence, *path, block.statistics.num_queries);
+  PlaneBounces bounces(geometry_, settings_.transmitter, settings_.receiver);
+  for (size_t k = 0; k < sequence.size(); ++k) bounces.add(path->hits[k], path->points[k], planes_[sequence[k]].normal);
+  const std::optional<std::complex<double>> share = field_beside_edges(bounces, block.statistics.num_queries);
   if (!share) return;
   path->weight *= *share;
   if (!bounces_at_corner(path->points)) path->share = 1.0;
@@ -233,18 +232,21 @@ void PlaneImages::try_order(const std::vector<int>& sequence, PathBlock& block) 
   if (!sequences_.insert(planes).second) return;
   add_path(*path, block);
   if (*share != 1.0) block.rows.flags[block.rows.size() - 1] |= beside_edge_flags(*share);
-  leave_out(planes, path->points);
+  leave_out(planes, path->points, bounces, block.statistics.num_queries);
 }
 
 // Leaves out the sequence, and its other orders of bounces that lie about a corner: what rays send over those by physical
-// optics is the part of the same field beyond the corner's edge.
-void PlaneImages::leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points) {
+// optics is the part of the same field beyond the corner's edge. Where planes end before the corner, it is not: these edges
+// have taken it from the image.
+void PlaneImages::leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points, const PlaneBounces& bounces,
+                            int64_t& num_queries) {
   OrdersAboutCorners orders{planes, {}};
   for (size_t begin = 0, end; begin < planes.size(); begin = end) {
     for (end = begin + 1; end < planes.size(); ++end) {
       const double before = (points[end] - settings_.transmitter).norm(), behind = (points[end] - settings_.receiver).norm();
       const double half_zone = std::sqrt(wavelength_ * before * behind / (before + behind));
       if ((points[end] - points[end - 1]).norm() > kAboutCorner * half_zone) break;
+      if (!bounces.is_corner_closed(end - 1, wavelength_, num_queries)) break;
     }
     orders.ends.push_back(static_cast<int64_t>(end));
   }

@@ -21,7 +21,7 @@
 #include "echopath/base/threads/job.h"
 #include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/mirrors/image_method.h"
-#include "echopath/trace/mirrors/mirror_zone.h"
+#include "echopath/trace/mirrors/plane_bounces.h"
 #include "echopath/trace/mirrors/plane_doubles.h"
 
 namespace echopath {
@@ -52,11 +52,11 @@ class PlaneImages {
   std::vector<int> planes_of(Facets chain);
   void try_order(const std::vector<int>& sequence, PathBlock& block);
   bool is_known(const std::vector<int>& sequence, const std::vector<Vec3>& points);
-  std::optional<std::complex<double>> field_beside_edges(const std::vector<int>& sequence, const ImagePath& path,
-                                                         int64_t& num_queries) const;
+  std::optional<std::complex<double>> field_beside_edges(const PlaneBounces& bounces, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
-  void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points);
+  void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points, const PlaneBounces& bounces,
+                 int64_t& num_queries);
   void find_triangles();
 
   const Scene& scene_;

@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kSidesOfLeaf = 4;
 
 // Returns whether a point of the box may lie within a distance of a segment, at times too often.
-bool may_meet(const Box& box, const Vec3& from, const Vec3& to, double distance) {
+bool may_lie_near(const Box& box, const Vec3& from, const Vec3& to, double distance) {
   Box around(from.cwiseMin(to), from.cwiseMax(to));
   around.min().array() -= distance;
   around.max().array() += distance;
@@ -42,7 +42,7 @@ void TriangleContacts::compare_open_sides(double tolerance) {
   const BoxTree tree(static_cast<uint32_t>(open.size()), box_of, kSidesOfLeaf);
   for (const Side& side : open) {
     const auto enters = [&](uint32_t index) {
-      return may_meet(tree.branches()[index].box, corner(side, 0), corner(side, 1), tolerance);
+      return may_lie_near(tree.branches()[index].box, corner(side, 0), corner(side, 1), tolerance);
     };
     tree.walk(enters, [&](const BoxTree::Branch& leaf) {
       for (uint32_t place = leaf.begin; place < leaf.end; ++place) {

@@ -103,7 +103,7 @@ class AxisCover {
     return width >= ample || mirror_.is_at(ways[0], ample) || mirror_.is_at(ways[1], ample);
   }
 
-  // Returns whether the wall at an end rises as far as the waves between the antennas, unfolded, and the zone beyond the wall
+  // Returns whether the wall at an end rises to where the waves between the antennas, unfolded, and the zone beyond the wall
   // cross it.
   bool rises(const Vec3& way, const SurfaceEnd& end) const {
     const MirrorView& view = lit_.view;

@@ -41,10 +41,10 @@ struct ZoneTarget {
 // The field is Kirchhoff's integral over the mirror by stationary phase: for each axis F(a) + F(b) - 1, with a and b the
 // distances to its edges in half zones and F the field behind a straight edge (Born and Wolf, "Principles of Optics", 8.7).
 // The inside of a corner is no edge, because the images of a wedge of 90 degrees have none; but between two walls the
-// surface goes on only beyond one that rises to where the waves to and from the zone behind it cross it. What an edge takes from
-// the lit part of a flat target it adds beyond the shadow boundary, with the same phase; so the edge counts as none where
-// the target goes on as far beyond as the point lies within. A surface that is wider than the zone by kAmple counts as
-// endless, so that closed forms of large corners (geometrical optics up to the last surface) hold; between that and the
+// surface goes on only beyond one that rises to where the waves to and from the zone behind it cross it. What an edge takes
+// from the lit part of a flat target it adds beyond the shadow boundary, with the same phase; so the edge counts as none
+// where the target goes on as far beyond as the point lies within. A surface that is wider than the zone by kAmple counts
+// as endless, so that closed forms of large corners (geometrical optics up to the last surface) hold; between that and the
 // zone's width the edges come in gradually. This is valid where the surface is flat over the zone and its edges run about
 // along the axes.
 ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,

@@ -38,7 +38,7 @@ bool PlaneBounces::is_corner_closed(size_t bounce, double wavelength, int64_t& n
          reaches_plane(bounce + 1, bounce, wavelength, num_queries);
 }
 
-// Returns whether the plane of a bounce goes on from its point to that of another one; parallel ones do not end at each other.
+// Returns whether the plane of a bounce goes on from its point to that of another one. It is true of parallel ones.
 bool PlaneBounces::reaches_plane(size_t bounce, size_t other, double wavelength, int64_t& num_queries) const {
   const RayHit& point = beside_[bounce];
   const Plane plane{points_[other].position, points_[other].normal};

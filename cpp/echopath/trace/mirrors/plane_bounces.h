@@ -20,7 +20,8 @@ class PlaneBounces {
   MirrorView view(size_t bounce) const;
   // Returns the field of the path over that of endless planes (field_of_flat_mirror); e^{+jwt}.
   std::complex<double> field_beside_edges(double wavelength, int64_t& num_queries) const;
-  // Returns whether the planes of a bounce and of the next one meet in a corner without a crack, as far as a few rays can tell.
+  // Returns whether the planes of a bounce and of the next one meet in a corner without a crack, as far as a few rays can
+  // tell.
   bool is_corner_closed(size_t bounce, double wavelength, int64_t& num_queries) const;
 
  private:

@@ -5,9 +5,7 @@
 #include <functional>
 #include <numeric>
 
-#include "echopath/base/bit_sum.h"
-#include "echopath/trace/strata/fit_stratum.h"
-#include "echopath/trace/strata/scene_objects.h"
+#include "echopath/trace/strata/ray_target_finder.h"
 
 namespace echopath {
 namespace {
@@ -20,136 +18,6 @@ constexpr int kLooks = 64;  // at a thing, until it is taken to be hidden
 static_assert(kLooks % kPacketSize == 0);
 // Share of the stratum of an object that the strata of its parts fill, above which they are not aimed at one by one.
 constexpr double kMostlyFilled = 0.5;
-// Strata are the same within this difference of axes and solid angles, relative to the latter.
-constexpr double kSameStratum = 1e-6;
-
-class Target {
- public:
-  Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index, bool of_what_moves)
-      : object(index), node(of.node), name(scene.nodes()[of.node].name), moves(of_what_moves), geometry_(&geometry),
-        mesh_ids_(of.mesh_ids) {
-    sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, mesh_ids_);
-    BitSum sum;
-    for (const uint32_t id : mesh_ids_) {
-      const std::vector<Vec3>& own = geometry.vertices(id);
-      sum.add(own.size());
-      sum.add_bytes(own.data(), own.size() * sizeof(Vec3));
-    }
-    bits = sum.value();
-  }
-
-  // Returns the vertices of all its meshes, which are put together when they are first asked for.
-  const std::vector<Vec3>& vertices() {
-    for (; num_together_ < mesh_ids_.size(); ++num_together_) {
-      const std::vector<Vec3>& own = geometry_->vertices(mesh_ids_[num_together_]);
-      vertices_.insert(vertices_.end(), own.begin(), own.end());
-    }
-    return vertices_;
-  }
-
-  int object, node;
-  std::string name;
-  Sphere sphere;
-  bool moves;
-  uint64_t bits = 0;  // sum of those of the vertices
-
- private:
-  const EmbreeScene* geometry_;
-  std::vector<uint32_t> mesh_ids_;
-  std::vector<Vec3> vertices_;  // of the first meshes
-  size_t num_together_ = 0;
-};
-
-bool is_same(const Stratum& a, const Stratum& b) {
-  const double size = a.solid_angle();
-  return (a.axis - b.axis).squaredNorm() < kSameStratum * size && std::abs(size - b.solid_angle()) < kSameStratum * size &&
-         (a.across - b.across).norm() < kSameStratum;
-}
-
-class RayTargetFinder {
- public:
-  RayTargetFinder(const Scene& scene, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
-      : scene_(scene), mirrors_(mirrors), settings_(settings) {}
-
-  std::optional<RayTarget> at_object(Target& target) const {
-    return target_at(target, input_of(target, {}), target.name, 0,
-                     [&]() -> const std::vector<Vec3>& { return target.vertices(); });
-  }
-
-  // RayTargets at each image that a frustum may show.
-  std::vector<RayTarget> at_images(Target& target) const {
-    std::vector<RayTarget> images;
-    std::vector<Vec3> vertices;
-    for (const MirrorFrustum& frustum : settings_.frusta) {
-      if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
-      const int num_mirrors = static_cast<int>(frustum.mirrors.size());
-      const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
-        vertices.resize(target.vertices().size());
-        const auto chain = chain_of(mirrors_, frustum.mirrors);
-        std::transform(target.vertices().begin(), target.vertices().end(), vertices.begin(),
-                       [&](const Vec3& vertex) { return image_over_reversed(chain, vertex); });
-        return vertices;
-      };
-      std::optional<RayTarget> made =
-          target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum), num_mirrors, images_of_vertices);
-      if (!made) continue;
-      made->moves = made->moves || std::ranges::any_of(frustum.mirrors, [&](int mirror) {
-        return !scene_.stands_still(mirrors_[mirror].mesh_id);
-      });
-      const auto same =
-          std::ranges::find_if(images, [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
-      RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
-      image.sequences.push_back(frustum.sequence);
-    }
-    return images;
-  }
-
- private:
-  // Returns the sum of the bits of all that a stratum hangs on.
-  uint64_t input_of(const Target& target, const std::vector<int>& sequence) const {
-    if (!settings_.fitted) return 0;
-    BitSum bits;
-    bits.add(target.bits);
-    bits.add_bytes(target.name.data(), target.name.size());
-    bits.add_bytes(settings_.transmitter.data(), sizeof(Vec3));
-    bits.add(settings_.may_use_strips);
-    for (const int index : sequence) {
-      const Mirror& mirror = mirrors_[index];
-      bits.add_bytes(mirror.point.data(), sizeof(Vec3));
-      bits.add_bytes(mirror.normal.data(), sizeof(Vec3));
-      const std::string own_name = name_of(mirror, scene_);  // an ID hangs on what else is in the scene
-      bits.add_bytes(own_name.data(), own_name.size());
-    }
-    return bits.value();
-  }
-
-  template <class Vertices>
-  std::optional<RayTarget> target_at(const Target& target, uint64_t input, std::string name, int num_mirrors,
-                                     const Vertices& vertices) const {
-    const auto fit = [&] {
-      return fit_stratum(vertices(), settings_.transmitter, std::move(name), settings_.may_use_strips ? kManyTurns : 0);
-    };
-    std::optional<Stratum> stratum = settings_.fitted ? settings_.fitted->find(input, fit) : fit();
-    if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
-    stratum->object = target.node;
-    stratum->num_mirrors = num_mirrors;
-    RayTarget made{std::move(*stratum), target.object, {}, target.moves, weight_of_target(num_mirrors)};
-    if (num_mirrors == 0) made.sequences.push_back(kNoMirrors);
-    return made;
-  }
-
-  std::string name_over(const Target& target, const MirrorFrustum& frustum) const {
-    std::string name = target.name;
-    for (size_t k = frustum.mirrors.size(); k-- > 0;) {
-      name += " over " + name_of(mirrors_[frustum.mirrors[k]], scene_);
-    }
-    return name;
-  }
-
-  const Scene& scene_;
-  const std::vector<Mirror>& mirrors_;
-  const RayTargetSettings& settings_;
-};
 
 bool has_fewer_mirrors(const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; }
 
@@ -202,7 +70,7 @@ class TargetSearch {
 
  private:
   struct Thing {
-    Target target;
+    TargetMeshes target;
     RayTarget direct;
     double echo;  // 1/m^2: grows with the echo, as the square of its size over the square of its distance
   };
@@ -213,7 +81,7 @@ class TargetSearch {
 
   // Aims at an object and its images, or else at the things that it consists of.
   void take_as_one(const SceneObject& object) {
-    Target target = new_target(object);
+    TargetMeshes target = new_target(object);
     std::optional<RayTarget> direct = finder_.at_object(target);
     std::vector<Thing> things;
     const std::vector<SceneObject> parts = parts_below(object);
@@ -242,14 +110,14 @@ class TargetSearch {
     take_strongest(things);
   }
 
-  Target new_target(const SceneObject& object) {
+  TargetMeshes new_target(const SceneObject& object) {
     const int index = out_.num_objects++;
     own(object, index);
     const bool moves = !std::ranges::all_of(object.mesh_ids, [&](uint32_t id) { return is_still_[id]; });
-    return Target(scene_, geometry_, object, index, moves);
+    return TargetMeshes(scene_, geometry_, object, index, moves);
   }
 
-  void leave_to_field_of_view(const Target& target) {
+  void leave_to_field_of_view(const TargetMeshes& target) {
     out_.any_unaimed = true;
     out_.any_still_unaimed = out_.any_still_unaimed || !target.moves;
   }
@@ -302,7 +170,7 @@ class TargetSearch {
 
   void look_at(const std::vector<SceneObject>& parts, std::vector<Thing>& things) {
     for (const SceneObject& part : parts) {
-      Target target = new_target(part);
+      TargetMeshes target = new_target(part);
       std::optional<RayTarget> direct = finder_.at_object(target);
       if (direct) {
         const double distance = distance_of(target.sphere);
@@ -317,7 +185,7 @@ class TargetSearch {
 
   // Returns whether a ray from the transmitter whose first hit is `met` meets something else before the target, within
   // `reach` (m). What moves does not hide what is to have the same rays in all frames.
-  bool is_hidden(const Target& target, const Vec3& direction, double reach, RayHit met) const {
+  bool is_hidden(const TargetMeshes& target, const Vec3& direction, double reach, RayHit met) const {
     const bool passes_what_moves = settings_.is_steady && !target.moves;
     auto verdict = EmbreeScene::Verdict::kHit;
     while (verdict == EmbreeScene::Verdict::kHit && met.distance < reach) {
@@ -329,7 +197,7 @@ class TargetSearch {
   }
 
   // Returns whether a ray to any of kLooks vertices, evenly taken of all, meets the target or what lies behind it.
-  bool is_in_sight(Target& target) const {
+  bool is_in_sight(TargetMeshes& target) const {
     const std::vector<Vec3>& vertices = target.vertices();
     for (int first = 0; first < kLooks; first += kPacketSize) {
       LaneVectors directions;

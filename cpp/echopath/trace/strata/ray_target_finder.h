@@ -1,0 +1,58 @@
+#pragma once
+// Fits the strata of one object and of its images over mirrors.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "echopath/trace/strata/ray_targets.h"
+#include "echopath/trace/strata/scene_objects.h"
+
+namespace echopath {
+
+// Holds the meshes of an object, or of a part of one, with what its strata hang on.
+class TargetMeshes {
+ public:
+  // `index`: of the target (RayTarget::object); `of_what_moves`: RayTarget::moves. The geometry must outlive it.
+  TargetMeshes(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index, bool of_what_moves);
+
+  // Returns the vertices of all its meshes, which are put together when they are first asked for.
+  const std::vector<Vec3>& vertices();
+
+  int object, node;
+  std::string name;
+  Sphere sphere;
+  bool moves;
+  uint64_t bits = 0;  // sum of those of the vertices
+
+ private:
+  const EmbreeScene* geometry_;
+  std::vector<uint32_t> mesh_ids_;
+  std::vector<Vec3> vertices_;  // of the first meshes
+  size_t num_together_ = 0;
+};
+
+// All arguments must outlive it.
+class RayTargetFinder {
+ public:
+  RayTargetFinder(const Scene& scene, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
+      : scene_(scene), mirrors_(mirrors), settings_(settings) {}
+
+  // Returns the object itself as a target; nothing where no stratum holds it.
+  std::optional<RayTarget> at_object(TargetMeshes& target) const;
+  // Returns targets at each image that a frustum may show.
+  std::vector<RayTarget> at_images(TargetMeshes& target) const;
+
+ private:
+  using Vertices = std::function<const std::vector<Vec3>&()>;
+  uint64_t input_of(const TargetMeshes& target, const std::vector<int>& sequence) const;
+  std::optional<RayTarget> target_at(const TargetMeshes& target, uint64_t input, std::string name, int num_mirrors,
+                                     const Vertices& vertices) const;
+  std::string name_over(const TargetMeshes& target, const MirrorFrustum& frustum) const;
+
+  const Scene& scene_;
+  const std::vector<Mirror>& mirrors_;
+  const RayTargetSettings& settings_;
+};
+
+}  // namespace echopath

@@ -49,8 +49,8 @@ struct LaunchPlan {
   uint64_t seed = 0;
   int batches = 1;
   int64_t num_unaimed = 0;  // objects and images that have no stratum of their own because there are too many of them
-  // [strata] rays per sr by the rule of shares, whatever the guide says: of all rays, or where they are steady for what stands
-  // still of twice its own.
+  // [strata] rays per sr by the rule of shares, whatever the guide says: of all rays, or where they are steady for what
+  // stands still of twice its own.
   std::vector<double> default_density;
   // Where rough surfaces have scatterers of their own (TraceSettings::scatterers), rays are aimed at these, too. They then
   // make all diffuse echoes of first hits straight from the transmitter, and the rays above make all other echoes. The ray

@@ -122,7 +122,7 @@ def _errors(target: Target, variant: Variant, num_rays: int, count: int):
     errors, seconds = [], []
     for seed in range(1, count + 1):
         began = time.perf_counter()
-        paths = ep.trace(target.scene, radar(), num_rays=num_rays, max_bounces=target.max_bounces, seed=seed,
+        paths = ep.trace(target.scene, radar(target.polarization), num_rays=num_rays, max_bounces=target.max_bounces, seed=seed,
                          footprint=variant.footprint, sampler=variant.sampler)
         value = target.value(paths)
         seconds.append(time.perf_counter() - began)

@@ -14,6 +14,7 @@ from . import closed_forms as exact
 CAR = (2.2, 0.9, 0.7)            # m, semi-axes of the ellipsoid
 CAR_EDGE = 0.052                 # m
 ELEVATION, AZIMUTH = 3.0, 15.0   # deg, from the ellipsoid to the radar
+UPRIGHT, LEVEL = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)  # polarisations; on a metal ground the reflection is +1 and -1
 GENERIC_TURN = (0.3, 0.5, 0.7)   # rad: no axis of the mesh looks at the radar
 
 
@@ -23,7 +24,7 @@ class Target:
 
     name: short; title: for people; scene, truth: expected value [m^2, or ratio of powers]
     value: callable (paths) -> the same from paths; max_bounces: of the trace
-    compares_footprints: whether the footprint acts on it
+    compares_footprints: whether the footprint acts on it; polarization: [3] of the antennas
     """
 
     name: str
@@ -33,13 +34,15 @@ class Target:
     value: Callable
     max_bounces: int = 1
     compares_footprints: bool = True
+    polarization: tuple = UPRIGHT
 
 
-def radar() -> ep.Radar:
+def radar(polarization: tuple = UPRIGHT) -> ep.Radar:
     """Isotropic antennas at the origin; one chirp."""
     waveform = ep.ChirpSequence(start_frequency=exact.FREQUENCY, bandwidth=1e9, num_samples=512, sampling_rate=20e6,
                                 num_chirps=1, chirp_interval=30e-6)
-    return ep.Radar(waveform, transmitters=[ep.Antenna((0.0, 0.0, 0.0))], receivers=[ep.Antenna((0.0, 0.0, 0.0))])
+    antenna = ep.Antenna(polarization=polarization)
+    return ep.Radar(waveform, transmitters=[antenna], receivers=[antenna])
 
 
 def all_targets() -> list[Target]:
@@ -99,7 +102,7 @@ def _two_ray():
     height, distance = 0.5, 50.0
     ground = shapes.ground((200.0, 50.0), z=-height)
     return _beside_mirror("two_ray", "two-ray ground, all four paths", ground, distance,
-                          image=(0.0, 0.0, -2.0 * height), wanted="all")
+                          image=(0.0, 0.0, -2.0 * height), wanted="all", polarization=LEVEL)
 
 
 def _wall_ghost():
@@ -109,15 +112,16 @@ def _wall_ghost():
                           wanted="pair", position=(0.0, offset, -10.0))
 
 
-def _beside_mirror(name, title, mirror, distance, *, image, wanted, position=(0.0, 0.0, 0.0)):
-    """A Lambert patch of 2 mm that faces the radar, and a metal mirror; value over that of the direct path."""
+def _beside_mirror(name, title, mirror, distance, *, image, wanted, position=(0.0, 0.0, 0.0), polarization=UPRIGHT):
+    """A Lambert patch of 2 mm that faces the radar, and a metal mirror along the polarisation; value over that of the direct
+    path."""
     scene = ep.Scene()
     scene.add(shapes.plate(0.002, 0.002), name="patch", material=_lambert(1.0), position=(distance, 0.0, 0.0))
     scene.add(mirror, name="mirror", material=ep.Material.metal(mirror=True), position=position)
     direct, over = exact.image_field(np.zeros(3), np.array([distance, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), image)
     field = (direct + over) ** 2 if wanted == "all" else 2.0 * direct * over
     return Target(name, title, scene, abs(field) ** 2 / abs(direct) ** 4, lambda paths: _over_direct(paths, wanted),
-                  max_bounces=3, compares_footprints=False)
+                  max_bounces=3, compares_footprints=False, polarization=polarization)
 
 
 def _over_direct(paths, wanted: str) -> float:

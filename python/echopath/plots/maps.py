@@ -51,7 +51,7 @@ def power_dbm(spectrum: _core.RangeDoppler) -> np.ndarray:
 
     spectrum: RangeDoppler. Raises TypeError naming it.
     """
-    require_drawable("spectrum", "a RangeDoppler, as ep.range_doppler makes it of a cube", spectrum, "values", "velocity")
+    require_drawable("spectrum", "a RangeDoppler, as ep.range_doppler makes it of a cube", spectrum, "values")
     power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
     return in_dbm(power, SMALLEST_POWER)
 

@@ -84,6 +84,18 @@ parent = {parent}
         dataset.Template(written(tmp_path, fixed.replace('"wal', '"plate_1').replace('"plate_2"', '"plate_3"'))).scene_file(0)
 
 
+def require_apart(template, num_scenes: int) -> None:
+    """All but the wall have middles 1 m apart or more at time 0, and in some scene not much more."""
+    near = 0
+    for number in range(num_scenes):
+        scene = template.scene_file(number).scene
+        middles = [scene.world_vertices(mesh.id, 0.0).mean(axis=0)[:2] for mesh in scene.meshes if mesh.name != "wall"]
+        apart = [np.hypot(*(one - other)) for index, one in enumerate(middles) for other in middles[:index]]
+        assert min(apart) >= 1.0 - 1e-9
+        near += min(apart) < 1.2
+    assert near > 0  # they are as close as they may
+
+
 def test_objects_stand_apart_whatever_carries_them(tmp_path):
     """Plates in a lane that a group turns and shifts, and plates of the scene where that lane leads: places in the world."""
     lane = """[[objects]]
@@ -102,14 +114,7 @@ material = "metal"
 position = [{uniform = [0.0, 8.0]}, {uniform = [-0.5, 0.5]}, 1.0]
 """
     template = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", lane + "[trace]")))
-    near = 0
-    for number in range(20):
-        scene = template.scene_file(number).scene
-        middles = [scene.world_vertices(mesh.id, 0.0).mean(axis=0)[:2] for mesh in scene.meshes if mesh.name != "wall"]
-        apart = [np.hypot(*(one - other)) for index, one in enumerate(middles) for other in middles[:index]]
-        assert min(apart) >= 1.0 - 1e-9
-        near += min(apart) < 1.2
-    assert near > 0  # they are as close as they may
+    require_apart(template, num_scenes=20)
 
 
 def test_objects_stand_apart_where_their_ways_begin(tmp_path):
@@ -142,14 +147,7 @@ parameters = {width = 0.2, height = 0.2}
 material = "metal"
 position = [{uniform = [5.0, 9.0]}, {uniform = [-1.5, 1.5]}, 1.0]""")
     template = dataset.Template(written(tmp_path, HEAD + SCENE.replace("[trace]", ways + "[trace]")))
-    near = 0
-    for number in range(10):
-        scene = template.scene_file(number).scene
-        middles = [scene.world_vertices(mesh.id, 0.0).mean(axis=0)[:2] for mesh in scene.meshes if mesh.name != "wall"]
-        apart = [np.hypot(*(one - other)) for index, one in enumerate(middles) for other in middles[:index]]
-        assert min(apart) >= 1.0 - 1e-9
-        near += min(apart) < 1.2
-    assert near > 0  # they are as close as they may
+    require_apart(template, num_scenes=10)
 
 
 def test_other_keys_and_more_scenes_change_no_draw(path, tmp_path):

@@ -16,9 +16,9 @@ def few_paths(paths) -> tuple:
 
     The strongest that hold HELD of the power at the trace time, in the mean over antennas that look different ways, as they are,
     where MOST_PATHS or fewer do. Otherwise a sample of about MOST_PATHS drawn by the seed of the trace. Diffuse paths, whose
-    phases are random, are kept with a chance p in proportion to their power and multiplied by 1/sqrt(p): their power is whole. The
-    others add up as fields: p is in proportion to their amplitude, the factor 1/p, and the field is that of all in the mean over
-    seeds.
+    phases are random, are kept with a chance p in proportion to their power and multiplied by 1/sqrt(p): their power is
+    whole. The others add up as fields: p is in proportion to their amplitude, the factor 1/p, and the field is that of all in
+    the mean over seeds.
     Source: threshold sampling after Duffield, Lund, Thorup 2005, "Learn more, sample less".
     """
     if paths.num_paths == 0:

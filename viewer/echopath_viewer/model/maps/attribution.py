@@ -86,7 +86,8 @@ class Attribution:
         mirrors = self._mirrors(families)
         waveform, radar = self._paths.radar.waveform, self._paths.radar
         kept, self._num_weak = self._kept(families, mirrors)
-        cubes = self._decomposed(kept, ep.families(kept, objects), mirrors, signals.settings, progress)
+        of_kept = ep.families(kept, objects) if self._num_weak else families
+        cubes = self._decomposed(kept, of_kept, mirrors, signals.settings, progress)
         self._num_ranges = signals.num_ranges
         # What a click needs of a channel and a range is one piece.
         self._profiles = np.zeros((len(radar.transmitters), len(radar.receivers), self._num_ranges, len(cubes),

@@ -3426,9 +3426,9 @@ def mesh_traits(scene: Scene) -> tuple[typing.Any, ...]:
     """
     Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).
     """
-def meshes_of_large_planes(scene: Scene, radar: typing.Any, wavelength: float, time: float, least_coherent: float, least_area: float, least_extent: float, least_area_of_short: float, vehicle_length: float, vehicle_width: float) -> list[int]:
+def meshes_of_large_planes(scene: Scene, radar: typing.Any, wavelength: float, time: float, least_coherent: float, least_area: float, least_extent: float, least_area_of_short: float, vehicle_length: float, vehicle_width: float, most_small_planes: int) -> list[tuple[int, list[int]]]:
     """
-    IDs of the meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s.
+    Meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s: [(ID, triangles of their other planes, none where these are few)].
     """
 def meshes_of_objects(scene: Scene, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]]) -> dict[typing.Any, typing.Any]:
     """

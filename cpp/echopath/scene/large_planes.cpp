@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "echopath/base/principal_box.h"
 #include "echopath/em/surface/coherent_share.h"
@@ -21,11 +23,27 @@ class PlaneMeasure {
   PlaneMeasure(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const LargePlaneRule& rule)
       : vertices_(vertices), triangles_(triangles), rule_(rule) {}
 
-  bool is_large() const {
+  // Returns the triangles of MeshOfLargePlanes; nothing where the mesh is none.
+  std::optional<std::vector<uint32_t>> find() const {
     const Eigen::AlignedBox3d box = box_of_all();
     const double extent = box.diagonal().norm();
-    if (!(extent >= least_width_at(nearest_distance(box)))) return false;  // most meshes are told by their boxes
-    const Sizes sizes = measured(flat_tolerance(extent));
+    if (!(extent >= least_width_at(nearest_distance(box)))) return std::nullopt;  // most meshes are told by their boxes
+    Sizes sizes = measured(flat_tolerance(extent));
+    if (!are_large(sizes, box)) return std::nullopt;
+    if (sizes.num_small <= rule_.most_small_planes) sizes.small.clear();
+    std::ranges::sort(sizes.small);
+    return std::move(sizes.small);
+  }
+
+ private:
+  struct Sizes {
+    double whole = 0.0, large = 0.0;  // m^2, of the mesh and of its large planes
+    int num_large = 0, num_small = 0;
+    std::vector<uint32_t> small;  // triangles of the small planes
+    Vec3 normal = Vec3::UnitX();  // of the widest plane
+  };
+
+  bool are_large(const Sizes& sizes, const Eigen::AlignedBox3d& box) const {
     const double longest = box.sizes().maxCoeff();
     const bool is_short = longest < rule_.least_extent;
     const bool is_as_vehicle = longest <= rule_.vehicle_length && depth_along(sizes.normal) <= rule_.vehicle_width;
@@ -35,13 +53,6 @@ class PlaneMeasure {
     const double least_share = is_short && !is_room ? rule_.least_area_of_short : rule_.least_area;
     return sizes.whole > 0.0 && sizes.large >= least_share * sizes.whole;
   }
-
- private:
-  struct Sizes {
-    double whole = 0.0, large = 0.0;  // m^2, of the mesh and of its large planes
-    int num_large = 0;
-    Vec3 normal = Vec3::UnitX();  // of the widest plane
-  };
 
   // Measures the planes, which are flat to within a tolerance in m.
   Sizes measured(double tolerance) const {
@@ -59,6 +70,9 @@ class PlaneMeasure {
       if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, contacts, patch_of)) {
         found.large += area;
         ++found.num_large;
+      } else {
+        ++found.num_small;
+        found.small.insert(found.small.end(), patch.begin(), patch.end());
       }
       if (area > widest) {
         widest = area;
@@ -169,15 +183,16 @@ bool may_be_mirror(const Scene& scene, const Node& node, const LargePlaneRule& r
 
 }  // namespace
 
-std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule) {
+std::vector<MeshOfLargePlanes> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule) {
   const std::vector<Transform> placed = world_from_nodes(scene, rule.time);
-  std::vector<uint32_t> found;
+  std::vector<MeshOfLargePlanes> found;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     if (!may_be_mirror(scene, node, rule)) continue;
     std::vector<Vec3> vertices = node.mesh->vertices();
     for (Vec3& vertex : vertices) vertex = placed[scene.meshes()[id].node] * vertex;
-    if (PlaneMeasure(vertices, node.mesh->triangles(), rule).is_large()) found.push_back(id);
+    std::optional<std::vector<uint32_t>> small = PlaneMeasure(vertices, node.mesh->triangles(), rule).find();
+    if (small) found.push_back({id, std::move(*small)});
   }
   return found;
 }

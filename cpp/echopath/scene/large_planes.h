@@ -17,14 +17,21 @@ struct LargePlaneRule {
   // m: what is no longer and no deeper than road vehicles and containers, and has large planes on three sides, is a body,
   // unless the antennas stand within it: then it is a room.
   double vehicle_length = 0.0, vehicle_width = 0.0;
+  int most_small_planes = 0;  // that stay with the large ones
 };
 
-// Returns the IDs of the meshes that large planes make up, ascending. A plane is large where it is at least twice as wide as
+// Describes a mesh that large planes make up.
+struct MeshOfLargePlanes {
+  uint32_t mesh_id;
+  std::vector<uint32_t> small;  // triangles of its other planes, ascending; empty where these are few
+};
+
+// Returns the meshes that large planes make up, by ascending IDs. A plane is large where it is at least twice as wide as
 // the first Fresnel zone of a wave that meets it head on at the vertex farthest from the antennas and goes on without end,
 // 2 sqrt(wavelength distance): its edges then matter next to nowhere. The width is four times the area over the length of
 // the rim, the side of a square and twice that of a long strip; holes count to the rim, so a front full of windows is as
 // wide as what is between them. Flagged mirrors, smooth meshes, sheets, and what moves or deforms are left out. A plane
 // that several meshes share is measured in each mesh by itself.
-std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
+std::vector<MeshOfLargePlanes> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
 
 }  // namespace echopath

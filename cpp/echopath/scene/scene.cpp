@@ -208,6 +208,15 @@ std::vector<bool> Scene::still_meshes() const {
   return still;
 }
 
+std::vector<bool> Scene::nodes_above(const std::vector<bool>& meshes) const {
+  std::vector<bool> above(nodes_.size(), false);
+  for (uint32_t id = 0; id < meshes.size(); ++id) {
+    if (!meshes[id]) continue;
+    for (int node = meshes_[id].node; node >= 0 && !above[node]; node = at(node).parent) above[node] = true;
+  }
+  return above;
+}
+
 bool Scene::is_anything_moving() const {
   for (uint32_t mesh_id = 0; mesh_id < meshes().size(); ++mesh_id) {
     if (is_moving(mesh_id)) return true;

@@ -81,6 +81,8 @@ class Scene {
   bool stands_still(uint32_t mesh_id) const;
   // Marks the meshes that stand still [mesh ID], but for those below a node whose own mesh does not.
   std::vector<bool> still_meshes() const;
+  // Marks the nodes at or below which a marked mesh [mesh ID] hangs [node].
+  std::vector<bool> nodes_above(const std::vector<bool>& meshes) const;
   bool ever_changes() const { return is_anything_moving() || has_lifetimes(); }
   // Returns whether its triangles may change their areas: it deforms, or it moves and a placement above it, or its own,
   // scales unevenly.

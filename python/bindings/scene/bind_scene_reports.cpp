@@ -51,11 +51,11 @@ py::tuple traits_of_meshes(const Scene& scene) {
                         flags(traits.deforming));
 }
 
-std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, double wavelength, double time,
-                                   double least_coherent, double least_area, double least_extent, double least_area_of_short,
-                                   double vehicle_length, double vehicle_width) {
+std::vector<std::pair<uint32_t, std::vector<uint32_t>>> large_planes(
+    const Scene& scene, const Radar& radar, double wavelength, double time, double least_coherent, double least_area,
+    double least_extent, double least_area_of_short, double vehicle_length, double vehicle_width, int most_small_planes) {
   LargePlaneRule rule{{},           wavelength,          time,           least_coherent, least_area,
-                      least_extent, least_area_of_short, vehicle_length, vehicle_width};
+                      least_extent, least_area_of_short, vehicle_length, vehicle_width,  most_small_planes};
   for (const auto& antennas : {radar.transmitters, radar.receivers}) {
     for (const PosedAntenna& antenna : posed_antennas(antennas, radar.world_from_radar(time), Vec3::Zero()))
       rule.antennas.push_back(antenna.position);
@@ -63,7 +63,9 @@ std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, doubl
   // Others may change the scene meanwhile.
   const Scene seen = scene;  // NOLINT(performance-unnecessary-copy-initialization)
   const WithoutGil released;
-  return meshes_of_large_planes(seen, rule);
+  std::vector<std::pair<uint32_t, std::vector<uint32_t>>> found;
+  for (MeshOfLargePlanes& mesh : meshes_of_large_planes(seen, rule)) found.emplace_back(mesh.mesh_id, std::move(mesh.small));
+  return found;
 }
 
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
@@ -81,8 +83,9 @@ void bind_scene_reports(py::module_& m) {
         "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
   m.def("meshes_of_large_planes", &large_planes, py::arg("scene"), py::arg("radar"), py::arg("wavelength"), py::arg("time"),
         py::arg("least_coherent"), py::arg("least_area"), py::arg("least_extent"), py::arg("least_area_of_short"),
-        py::arg("vehicle_length"), py::arg("vehicle_width"),
-        "IDs of the meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s.");
+        py::arg("vehicle_length"), py::arg("vehicle_width"), py::arg("most_small_planes"),
+        "Meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s: [(ID, triangles of "
+        "their other planes, none where these are few)].");
   m.def("look_at_bodies", &look_at_bodies, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the "
         "first transmitter stands, or the first receiver, [(node, whether it is the receiver)]).");

@@ -1,6 +1,10 @@
 """Planes that are large enough to be mirrors, found and flagged in whole scenes."""
 from __future__ import annotations
 
+import itertools
+
+import numpy as np
+
 from .. import _core
 from ..arguments.checks import an, checked, real
 from .scene import Scene
@@ -10,6 +14,8 @@ LEAST_AREA = 0.8      # share of a mesh's area that large planes make up: the re
 LEAST_EXTENT = 4.0    # m, longest side of walls and houses; of what is shorter, which may be an object, more is asked:
 LEAST_AREA_OF_SHORT = 0.95  # nearly all of it, and on two sides at most
 VEHICLE_LENGTH, VEHICLE_WIDTH = 19.0, 2.6  # m, of road trains (18.75) and reefers (2.6) at most: directive 96/53/EC
+MOST_SMALL_PLANES = 8  # that mirror with the large ones; more would cost time, as each has images of all that it sees
+SMALL_PLANES = "small_planes"  # the mesh that they become
 
 
 @checked(scene=an(Scene), radar=an(_core.Radar), time=real(unit="s"))
@@ -24,7 +30,8 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     directions, is a room. The distance is that of the antennas from the farthest corner of the plane, the width four times
     the area over the length of the rim (the side of a square), windows and other holes counted to the rim. At least a tenth
     of what it reflects must keep its phase. Smooth meshes, sheets, and what moves or deforms stay as they are, and so do
-    planes that only several meshes make up together.
+    planes that only several meshes make up together. What has more than eight smaller planes, as a house with windows that
+    are set back, is cut: they become a mesh below it, "house/small_planes", which keeps the material.
     Each flagged plane costs time: paths go over up to two of them on each side of a target.
 
     scene: is changed
@@ -34,15 +41,46 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     naming the argument.
     """
     with scene._edit():
-        names = tuple(_core.mesh_names(scene, large_planes(scene, radar, time)))
-        for name in names:
+        found = _found(scene, radar, time)
+        names = tuple(_core.mesh_names(scene, [mesh_id for mesh_id, _ in found]))
+        cuts = {}
+        for name, (_, small) in zip(names, found):
+            if small:
+                _cut(scene, name, np.array(small), cuts)
             node = scene[name]
             node._change(material=node._node.material.replace(mirror=True))  # of its own mesh alone, not of those below it
     return names
 
 
+def _cut(scene, name: str, small: np.ndarray, cuts: dict) -> None:
+    """Moves triangles of a node's mesh into a mesh below it; `cuts` holds the two meshes of each that was cut before."""
+    node = scene[name]._node
+    key = (id(node.mesh), small.tobytes())
+    if key not in cuts:
+        is_small = np.isin(np.arange(len(node.mesh.triangles)), small)
+        cuts[key] = _part(node.mesh, ~is_small), _part(node.mesh, is_small), node.mesh  # the last keeps its identity
+    scene[name]._change(mesh=cuts[key][0])
+    scene.add(cuts[key][1], name=_free_name(scene, name), parent=name, material=node.material)
+
+
+def _part(mesh, of_part: np.ndarray):
+    """The marked triangles [F] of a mesh."""
+    used, corners = np.unique(mesh.triangles[of_part], return_inverse=True)
+    return _core.Mesh(mesh.vertices[used], corners.reshape(-1, 3))
+
+
+def _free_name(scene, parent: str) -> str:
+    names = (SMALL_PLANES if number == 1 else f"{SMALL_PLANES}_{number}" for number in itertools.count(1))
+    return next(name for name in names if f"{parent}/{name}" not in scene)
+
+
 def large_planes(scene: _core.Scene, radar: _core.Radar, time: float) -> list[int]:
     """IDs of the meshes that `mark_mirrors` would flag at a time in s."""
+    return [mesh_id for mesh_id, _ in _found(scene, radar, time)]
+
+
+def _found(scene, radar, time: float) -> list[tuple[int, list[int]]]:
+    """(mesh ID, triangles of its small planes where these are many) of each."""
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     return _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA, LEAST_EXTENT,
-                                       LEAST_AREA_OF_SHORT, VEHICLE_LENGTH, VEHICLE_WIDTH)
+                                       LEAST_AREA_OF_SHORT, VEHICLE_LENGTH, VEHICLE_WIDTH, MOST_SMALL_PLANES)

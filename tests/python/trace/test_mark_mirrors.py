@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.base.data_folder import data_folder
+from echopath.bench.live import street
 
 FREQUENCY = 77e9
 DISTANCE = 25.0                                                    # m, of a plate ahead
@@ -97,6 +98,32 @@ def test_a_mesh_below_another_one_keeps_its_material():
     scene.add(plate(0.1 * ZONE), name="bell", material="metal", parent="house")
     assert ep.mark_mirrors(scene, radar()) == ("house",)
     assert not scene["house/bell"].material.mirror and ep.mark_mirrors(scene, radar()) == ()  # once for all
+
+
+def test_windows_that_are_set_back_are_cut_from_a_front_and_are_no_mirrors():
+    """Each would have images of all that it sees: three houses would have a hundred mirrors."""
+    scene, mesh = ep.Scene(), ep.Mesh(*street.house())
+    for k in range(3):
+        scene.add(mesh, name=f"house_{k}", material="concrete", position=(10.0 + 20.0 * k, 10.0, 0.0))
+    scene.add(plate(0.1 * ZONE), name="small_planes", material="metal", parent="house_1")  # a name that is taken
+    whole = np.sort(np.concatenate([corners_of(scene, k) for k in range(3)]), axis=None)
+    assert ep.mark_mirrors(scene, radar()) == ("house_0", "house_1", "house_2")
+    parts = ["house_0/small_planes", "house_1/small_planes_2", "house_2/small_planes"]
+    assert [name for name in scene if "/small_planes" in name] == ["house_1/small_planes", *parts]
+    assert not any(scene[name].material.mirror for name in parts)
+    cut = np.concatenate([corners_of(scene, mesh_id) for mesh_id in range(len(scene.meshes)) if mesh_id != 3])
+    assert np.array_equal(np.sort(cut, axis=None), whole)
+    depths = [{float(y) for y in np.round(scene.world_vertices(scene[name].meshes[0].id)[:, 1], 9)} for name in parts]
+    assert depths == [{10.0, 10.0 + street.WINDOW_DEPTH}] * 3  # panes and reveals, no wall and no roof
+    for houses in ([f"house_{k}" for k in range(3)], parts):
+        near, far, farther = [scene[name]._node.mesh for name in houses]
+        assert far is farther and near is not far  # cut alike, they share their meshes; some near panes are wide
+    assert ep.mark_mirrors(scene, radar()) == ()
+
+
+def corners_of(scene, mesh_id: int) -> np.ndarray:
+    """Corners of all triangles of a mesh in the world, [3 F, 3] in m, to 1e-9 m."""
+    return np.round(scene.world_vertices(mesh_id)[scene.meshes[mesh_id].triangles].reshape(-1, 3), 9)
 
 
 def box(*sides) -> ep.Mesh:

@@ -62,14 +62,9 @@ double missing_db(const ReceivedPower& power, double least) {
 
 // Marks the nodes at which or below which something moves.
 std::vector<bool> moving_nodes(const Scene& scene) {
-  std::vector<bool> moves(scene.nodes().size());
-  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
-    if (!scene.is_moving(mesh)) continue;
-    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[node].parent) {
-      moves[node] = true;
-    }
-  }
-  return moves;
+  std::vector<bool> moves;
+  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) moves.push_back(scene.is_moving(mesh));
+  return scene.nodes_above(moves);
 }
 
 // Returns how many times the rays bring an error to the target.
@@ -209,7 +204,7 @@ RayShares share_out(const RayNeeds& needs, double num_rays) {
 
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, const StillRays& still, Job* job) {
   LaunchGuide guide;
-  const double left = static_cast<double>(num_rays) - still.num_rays();
+  const double left = static_cast<double>(num_rays) - still.guide.num_rays();
   if (!needs.strata.empty()) guide.shares = share_out(needs, left);
   const std::vector<Glint> glints = find_glints(paths, job);
   if (!still.any()) raise_field_of_view(paths.frame, needs, glints, guide.shares);

@@ -12,13 +12,6 @@ StillRays::StillRays(LaunchGuide of_standing_scene) : guide(std::move(of_standin
   std::erase_if(guide.foci, [&](const LaunchFocus& focus) { return !holds(focus.of); });
 }
 
-double StillRays::num_rays() const {
-  double sum = 0.0;
-  for (const auto& [name, share] : guide.shares) sum += share;
-  for (const LaunchFocus& focus : guide.foci) sum += focus.share;
-  return sum;
-}
-
 LaunchGuide StillRays::taken_from(LaunchGuide whole) const {
   for (const auto& [name, rays] : guide.shares) whole.shares[name] = 0.0;
   std::erase_if(whole.foci, [&](const LaunchFocus& focus) { return holds(focus.of); });

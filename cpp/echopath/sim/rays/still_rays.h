@@ -24,7 +24,6 @@ struct StillRays {
   explicit StillRays(LaunchGuide of_standing_scene);
   bool any() const { return !guide.shares.empty(); }
   bool holds(const std::string& stratum) const { return guide.shares.contains(stratum); }
-  double num_rays() const;
   LaunchGuide taken_from(LaunchGuide whole) const;  // leaves the rays of what moves alone
 };
 

@@ -25,9 +25,9 @@ Paths with_error_of_lot(Paths paths, const WantedError& wanted, Job* job) {
 // Returns how many rays the next trace has. Where what moves may need as many as there are beside those of `still`, it gets
 // these at once: a trace of what moves alone would hardly save rays.
 int64_t rays_to_come(const StillRays& still, const RayNeeds& needs, int64_t before, int64_t most) {
-  const double margin = still.any() ? 2.0 : 1.0, all = still.num_rays() + needs.num_rays(),
+  const double margin = still.any() ? 2.0 : 1.0, all = still.guide.num_rays() + needs.num_rays(),
                limit = static_cast<double>(most);
-  if (still.num_rays() + margin * needs.num_rays() >= limit) return most;
+  if (still.guide.num_rays() + margin * needs.num_rays() >= limit) return most;
   return std::clamp<int64_t>(std::llround(all), std::min(2 * before, most), most);
 }
 

@@ -22,6 +22,13 @@ void LaunchGuide::validate() const {
   }
 }
 
+double LaunchGuide::num_rays() const {
+  double sum = 0.0;
+  for (const auto& [name, share] : shares) sum += share;
+  for (const LaunchFocus& focus : foci) sum += focus.share;
+  return sum;
+}
+
 LaunchGuide guide_like(const std::vector<Stratum>& strata) {
   LaunchGuide guide;
   for (const Stratum& stratum : strata) {

@@ -22,6 +22,7 @@ struct LaunchGuide {
 
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;
+  double num_rays() const;  // the sum of all shares, where these count rays
 };
 
 // Returns the guide that repeats a plan that was carried out.

@@ -34,16 +34,15 @@ std::vector<double> named_shares(const std::vector<RayTarget>& targets, const st
 // met it there, and what moves out of those that the guide leaves of `num_rays`.
 std::vector<double> named_rays(const std::vector<RayTarget>& targets, const std::vector<FocusOfTarget>& foci,
                                const std::string& field, const LaunchGuide& guide, double num_rays) {
-  double sum = 0.0, num_still = 0.0, num_moving = 0.0;  // of those that it does not name
-  for (const auto& [name, rays] : guide.shares) sum += rays;
-  const double mean = sum / static_cast<double>(guide.shares.size());
-  for (const LaunchFocus& focus : guide.foci) sum += focus.share;
+  double of_strata = 0.0, num_still = 0.0, num_moving = 0.0;  // the latter of those that it does not name
+  for (const auto& [name, rays] : guide.shares) of_strata += rays;
+  const double mean = of_strata / static_cast<double>(guide.shares.size());
   for (const RayTarget& target : targets)
     if (!guide.shares.contains(target.stratum.name)) ++(target.moves ? num_moving : num_still);
   const auto found = guide.shares.find(field);
   double of_field = found == guide.shares.end() ? 0.0 : found->second;
   const double to_still = std::min(mean, of_field > 0.0 ? of_field / (1.0 + num_still) : mean / num_still);
-  const double to_moving = std::min(mean, std::max(mean, num_rays - sum) / num_moving);
+  const double to_moving = std::min(mean, std::max(mean, num_rays - guide.num_rays()) / num_moving);
   std::vector<double> out;
   for (const RayTarget& target : targets) {
     const auto known = guide.shares.find(target.stratum.name);

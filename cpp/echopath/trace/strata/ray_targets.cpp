@@ -35,15 +35,11 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
   out.any_still_unaimed = out.any_still_unaimed || out.num_left_out > 0;
 }
 
-// Marks the nodes at or below which a mesh of an object stands still [node].
-std::vector<bool> nodes_that_hold(const std::vector<bool>& still_meshes, const Scene& scene) {
-  std::vector<bool> found(scene.nodes().size(), false);
-  for (uint32_t id = 0; id < still_meshes.size(); ++id) {
-    if (!still_meshes[id] || scene.node_of(id).material->mirror) continue;
-    for (int node = scene.meshes()[id].node; node >= 0 && !found[node]; node = scene.nodes()[node].parent)
-      found[node] = true;
-  }
-  return found;
+// Marks the meshes of objects that stand still [mesh ID]; mirrors are no objects.
+std::vector<bool> still_objects(std::vector<bool> still_meshes, const Scene& scene) {
+  for (uint32_t id = 0; id < still_meshes.size(); ++id)
+    if (scene.node_of(id).material->mirror) still_meshes[id] = false;
+  return still_meshes;
 }
 
 // Finds the targets of one object after the other.
@@ -52,7 +48,7 @@ class TargetSearch {
   TargetSearch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                const RayTargetSettings& settings, RayTargets& out)
       : scene_(scene), geometry_(geometry), settings_(settings), finder_(scene, mirrors, settings),
-        is_still_(scene.still_meshes()), holds_still_(nodes_that_hold(is_still_, scene)), out_(out) {}
+        is_still_(scene.still_meshes()), holds_still_(scene.nodes_above(still_objects(is_still_, scene))), out_(out) {}
 
   void take(const SceneObject& object) {
     SceneObject still{object.node, {}}, rest{object.node, {}};

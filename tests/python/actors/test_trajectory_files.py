@@ -187,6 +187,27 @@ def test_places_on_the_earth_become_metres(tmp_path):
     np.testing.assert_allclose(moved.position(5.0), 0.0, atol=1e-6)
 
 
+def test_tracks_have_the_names_that_stand_in_them(tmp_path):
+    before = "<wpt lat='46' lon='7'><name>home</name></wpt><trk><name>ride</name>"
+    two = GPX.replace("<trk><name>ride</name>", before).replace("</gpx>", GPX[GPX.index("<trk>"):])
+    found = ep.read_trajectories(write(tmp_path, "two.gpx", two.replace("7.750", "7.751", 2)), origin=(46.017, 7.75, 1673.0))
+    assert list(found) == ["ride", "ride_2"]
+    assert found["ride"].position(0.0)[0] - found["ride_2"].position(0.0)[0] == pytest.approx(77.4, abs=0.1)  # 0.001 degrees
+
+
+def test_rows_without_a_height_have_one_between_those_around(tmp_path):
+    point = '<trkpt lat="46.01{}" lon="7.75">{}<time>2026-05-01T12:00:0{}Z</time></trkpt>'
+    heights = ["<ele>500</ele>", "", "<ele>504</ele>", "<ele>504</ele>", ""]
+    points = "".join(point.format(second, height, second) for second, height in enumerate(heights))
+    gpx = write(tmp_path, "hill.gpx", f"<gpx><trk>{points}</trk></gpx>")
+    table = write(tmp_path, "hill.csv", "time,x,y,z\n0,0,0,500\n1,10,0,\n2,20,0,504\n3,30,0,504\n4,40,0,\n")
+    level = write(tmp_path, "level.csv", "time,x,y,z\n0,0,0,\n1,10,0,\n")
+    for path, options, least in ((gpx, {"origin": (46.01, 7.75, 0.0)}, 500.0), (table, {}, 500.0)):
+        (one,) = ep.read_trajectories(path, **options).values()
+        np.testing.assert_allclose(one.position(np.arange(5.0))[:, 2], np.array([0.0, 2.0, 4.0, 4.0, 4.0]) + least, atol=2.0e-2)
+    assert ep.read_trajectories(level)["level"].position(1.0).tolist() == [10.0, 0.0, 0.0]
+
+
 def test_positions_are_moved_by_no_more_than_asked_for():
     rng = np.random.default_rng(2)
     times = np.cumsum(rng.uniform(0.2, 0.4, 200))
@@ -296,6 +317,18 @@ def test_who_goes_on_as_before_behind_steps_that_a_file_of_sumo_lacks_is_the_sam
     assert list(found) == ["a"] and found["a"].speed(3.5) == pytest.approx(10.0)
     seldom = [(at, 10 * at if at % 3 == 0 else None) for at in range(10)]
     assert list(ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(seldom, speed='speed="2"')))) == ["a"]
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_persons_of_sumo_may_have_the_ids_of_vehicles(tmp_path, together):
+    """Vehicles and persons that are written by two runs are both counted from 0 on."""
+    rows = [f'<vehicle id="0" x="{10 * step}" y="0" angle="90" type="car"/>' for step in range(3)]
+    persons = [f'<person id="0" x="3" y="{step}" angle="0"/>' for step in range(3)]
+    steps = [car + person for car, person in zip(rows, persons)] if together else rows + persons
+    text = "".join(f'<timestep time="{time}">{row}</timestep>' for time, row in enumerate(steps))
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", f"<fcd-export>{text}</fcd-export>"))
+    assert {name: one.is_person for name, one in found.items()} == {"0": False, "0_person": True}
+    assert found["0"].length == pytest.approx(20.0) and found["0_person"].length == pytest.approx(2.0)
 
 
 def test_times_of_sumo_may_be_those_of_a_clock(tmp_path):

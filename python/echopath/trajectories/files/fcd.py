@@ -4,16 +4,16 @@ from __future__ import annotations
 import math
 import re
 from array import array
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 
 from ... import _core
 from .absences import parted
 from .markup import attribute, parse
-from .samples import MOST_SAMPLES, Samples, number, refuse
+from .samples import MOST_SAMPLES, Samples, free_name, number, refuse
 
 _GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
 _CLOCK = re.compile(r"(?:(\d{1,5}):)?(\d\d?):(\d\d):(\d\d(?:\.\d+)?)")
@@ -27,7 +27,8 @@ def read_fcd(path: Path) -> dict[str, Samples]:
 
     x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
     Persons are left out while they ride in a vehicle; one who gets off is another from there on, "name_2", and so is who is
-    missing in some steps and comes back where the speeds before and behind do not lead.
+    missing in some steps and comes back where the speeds before and behind do not lead. A person with the id of a vehicle is
+    "id_person".
     Longitudes and latitudes are refused: by the options that the file names, or where all go much less far than their speeds say.
     """
     reader = _Fcd(path)
@@ -36,15 +37,36 @@ def read_fcd(path: Path) -> dict[str, Samples]:
     return reader.ways()
 
 
+class _Who(NamedTuple):
+    """A vehicle or person of a file, by its own id; way: number of the way on foot of a person, from 1 on."""
+
+    id: str
+    is_person: bool = False
+    way: int = 1
+
+
+def _names_of(everybody: Collection[_Who]) -> dict[_Who, str]:
+    """{who: name}, each of its own: vehicles and persons of a file are counted for themselves, mostly from 0 on."""
+    vehicles = {who.id for who in everybody if not who.is_person}
+    names: dict[_Who, str] = {who: who.id for who in everybody if not who.is_person}
+    taken = set(vehicles)
+    for who in everybody:
+        if who.is_person:
+            own = f"{who.id}_person" if who.id in vehicles else who.id
+            names[who] = free_name(own if who.way == 1 else f"{own}_{who.way}", taken)
+            taken.add(names[who])
+    return names
+
+
 class _Fcd:
     """Gathers the rows of a file."""
 
     def __init__(self, path: Path):
-        self.tracks: dict[str, Samples] = {}
+        self._tracks: dict[_Who, Samples] = {}
         self._path, self._root, self._time, self._count = path, "", math.nan, 0
         self._on_foot = _OnFoot()
         self._steps = array("d")  # s
-        self._told_speeds: dict[str, array] = {}  # m/s, nan where a row has none: what follows a way is as fast as its places
+        self._told_speeds: dict[_Who, array] = {}  # m/s, nan where a row has none: what follows a way is as fast as its places
 
     def begin(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
         if not self._root:
@@ -59,7 +81,9 @@ class _Fcd:
 
     def ways(self) -> dict[str, Samples]:
         """{name: Samples}, of everybody from coming to leaving."""
-        return parted(self.tracks, self._told_speeds, np.unique(self._steps))
+        names = _names_of(self._tracks)
+        return parted({names[who]: samples for who, samples in self._tracks.items()},
+                      {names[who]: speeds for who, speeds in self._told_speeds.items()}, np.unique(self._steps))
 
     def comment(self, words: str, line: int) -> None:
         if _GEO_OPTION.search(words):
@@ -69,15 +93,15 @@ class _Fcd:
         self._count += 1
         if self._count > MOST_SAMPLES or self._time != self._time:  # no timestep yet
             refuse(self._path, line, f"<{tag}>: must stand in a <timestep>, at most {MOST_SAMPLES} in all")
-        name = attribute(self._path, line, tag, attributes, "id")
+        who = _Who(attribute(self._path, line, tag, attributes, "id"))
         if tag == "person":
-            name = self._on_foot.name_of(name, rides=bool(attributes.get("vehicle")))
-            if not name:
+            who = self._on_foot.way_of(who.id, rides=bool(attributes.get("vehicle")))
+            if who is None:
                 return
         x, y, z, angle = self._numbers(tag, attributes, line)
-        samples = self.tracks.get(name)
+        samples = self._tracks.get(who)
         if samples is None:
-            samples = self._begun(name, tag, attributes)
+            samples = self._begun(who, attributes)
         samples.lines.append(line)
         samples.times.append(self._time)
         samples.coordinates.extend((x, y, z))
@@ -86,14 +110,13 @@ class _Fcd:
             speed = float(attributes.get("speed", "nan"))
         except ValueError:
             speed = math.nan
-        self._told_speeds[name].append(speed)
+        self._told_speeds[who].append(speed)
 
-    def _begun(self, name: str, tag: str, attributes: Mapping[str, str]) -> Samples:
+    def _begun(self, who: _Who, attributes: Mapping[str, str]) -> Samples:
         """The Samples of somebody who is new."""
-        is_person = tag == "person"
-        kind = attributes.get("type", "") or ("pedestrian" if is_person else "")
-        self._told_speeds[name] = array("d")
-        return self.tracks.setdefault(name, Samples(kind, is_person, has_fronts=not is_person))
+        kind = attributes.get("type", "") or ("pedestrian" if who.is_person else "")
+        self._told_speeds[who] = array("d")
+        return self._tracks.setdefault(who, Samples(kind, who.is_person, has_fronts=not who.is_person))
 
     def _numbers(self, tag: str, attributes: Mapping[str, str], line: int) -> tuple[float, float, float, float]:
         """(x, y, z in m, angle in degrees) of a row."""
@@ -116,8 +139,8 @@ class _Fcd:
     def refuse_degrees(self) -> None:
         """Raises FileError where the places can be no metres, by the speeds beside them: a degree is 111 km."""
         by_place = by_speed = 0.0
-        for name, samples in self.tracks.items():
-            places, speeds = samples.places[:, :2], np.abs(np.array(self._told_speeds[name]))[1:]
+        for who, samples in self._tracks.items():
+            places, speeds = samples.places[:, :2], np.abs(np.array(self._told_speeds[who]))[1:]
             if np.any(np.abs(places) > (180.0, 90.0)):
                 return
             is_told = np.isfinite(speeds)
@@ -143,12 +166,12 @@ class _OnFoot:
         self._riding: set[str] = set()
         self._ways: dict[str, int] = {}
 
-    def name_of(self, name: str, rides: bool) -> str:
-        """The name of the way that a row of a person belongs to, "" where the person rides."""
+    def way_of(self, name: str, rides: bool) -> _Who | None:
+        """The way that a row of a person belongs to, None where the person rides."""
         if rides:
             self._riding.add(name)
-            return ""
+            return None
         if name in self._riding or name not in self._ways:
             self._riding.discard(name)
             self._ways[name] = self._ways.get(name, 0) + 1
-        return f"{name}_{self._ways[name]}" if self._ways[name] > 1 else name
+        return _Who(name, True, self._ways[name])

@@ -1,11 +1,12 @@
 """Tracks of GPS receivers (GPX)."""
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
 from .markup import attribute, parse
-from .samples import Samples, instant, number, refuse
+from .samples import Samples, free_name, instant, number, refuse
 
 
 def read_gpx(path: Path) -> dict[str, Samples]:
@@ -20,34 +21,44 @@ class _Gpx:
 
     def __init__(self, path: Path):
         self.tracks: dict[str, Samples] = {}
-        self._path, self._texts, self._name, self._count = path, {}, path.stem, 0
+        self._path, self._name, self._count = path, "", 0
+        self._samples: Samples | None = None    # of the track, from its first point on
         self._point: tuple[int, float, float] | None = None
+        self._texts: dict[str, str] = {}        # of the elements right in the point
         self._inside: list[str] = []
+        self._words = ""                        # of the element that began last
 
     def begin(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
         self._inside.append(tag)
+        self._words = ""
         if tag == "trk":
             self._count += 1
-            self._name = self._path.stem if self._count == 1 else f"{self._path.stem}_{self._count}"
+            self._name, self._samples = self._path.stem if self._count == 1 else f"{self._path.stem}_{self._count}", None
         if tag == "trkpt":
             latitude, longitude = (number(self._path, line, name, attribute(self._path, line, tag, attributes, name), most)
                                    for name, most in (("lat", 90.0), ("lon", 360.0)))
             self._point, self._texts = (line, latitude, longitude), {}
 
     def text(self, words: str) -> None:
-        if self._inside:
-            self._texts[self._inside[-1]] = self._texts.get(self._inside[-1], "")[:1000] + words[:1000]
+        self._words = (self._words + words)[:1000]
 
     def end(self, tag: str, line: int) -> None:
         self._inside.pop()
-        if tag == "name" and self._inside[-1:] == ["trk"] and self._texts.get("name", "").strip():
-            self._name = self._texts["name"].strip()
+        within = self._inside[-1] if self._inside else ""
+        if tag == "name" and within == "trk" and self._words.strip():
+            self._name = self._words.strip()
+        if within == "trkpt":
+            self._texts[tag] = self._words
         if tag == "trkpt" and self._point is not None:
-            begin, latitude, longitude = self._point
-            if "time" not in self._texts:
-                refuse(self._path, begin, "<trkpt>: time is missing")
-            samples = self.tracks.setdefault(self._name, Samples())
-            samples.lines.append(begin)
-            samples.times.append(instant(self._path, begin, "time", self._texts["time"]))
-            height = number(self._path, begin, "ele", self._texts["ele"], 1e5) if "ele" in self._texts else 0.0
-            samples.coordinates.extend((latitude, longitude, height))
+            self._add(*self._point)
+
+    def _add(self, line: int, latitude: float, longitude: float) -> None:
+        """Adds a point to the track that it belongs to."""
+        if "time" not in self._texts:
+            refuse(self._path, line, "<trkpt>: time is missing")
+        if self._samples is None:
+            self._samples = self.tracks[free_name(self._name, self.tracks)] = Samples()
+        self._samples.lines.append(line)
+        self._samples.times.append(instant(self._path, line, "time", self._texts["time"]))
+        height = number(self._path, line, "ele", self._texts["ele"], 1e5) if "ele" in self._texts else math.nan
+        self._samples.coordinates.extend((latitude, longitude, height))

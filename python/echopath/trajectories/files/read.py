@@ -25,8 +25,11 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
         may be written in other usual ways ("Timestamp [s]", "track_id"), with a usual unit in brackets ("t [ms]", "x [cm]",
         "speed (km/h)"); other columns are left out. Commas, semicolons or tabs
     .xml, .xml.gz: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions.
-        Who is missing in some steps and comes back where no speed leads, as behind a teleport, is another from there, "name_2"
-    .gpx: tracks of a GPS receiver
+        Who is missing in some steps and comes back where no speed leads, as behind a teleport, is another from there, "name_2";
+        a person with the id of a vehicle is "id_person"
+    .gpx: tracks of a GPS receiver; one with the name of a track before it is "name_2"
+
+    Rows without a height have one between those of the rows around.
 
     origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon
         are made metres east (x), north (y) and up (z), on the WGS 84 ellipsoid; None: the first position of the file

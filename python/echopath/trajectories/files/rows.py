@@ -42,6 +42,7 @@ def read_rows(path: Path) -> Rows:
         raise _core.FileError(f"{path}: holds no positions")
     for samples in rows.tracks.values():
         _check_order(path, samples)
+        samples.fill_heights()
     earliest = min(samples.times[0] for samples in rows.tracks.values())
     if earliest > MOST_SECONDS:
         for samples in rows.tracks.values():

@@ -4,6 +4,7 @@ from __future__ import annotations
 import datetime
 import math
 from array import array
+from collections.abc import Container
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -25,7 +26,7 @@ class Samples:
 
     is_person: who is no vehicle, whatever the kind; has_fronts: whether places are those of the front bumper, not of the middle
     lines: [P], of the file; times: [P] s; coordinates: [3 P], of each row (x, y, z) in m, or (latitude, longitude, height) in
-    degrees and m; yaws: [P] rad, speeds: [P] m/s, or empty where the file has none
+    degrees and m, heights NaN in rows without one; yaws: [P] rad, speeds: [P] m/s, or empty where the file has none
     """
 
     kind: str = ""
@@ -41,6 +42,23 @@ class Samples:
     def places(self) -> np.ndarray:
         """[P, 3], the coordinates by rows."""
         return np.array(self.coordinates).reshape(-1, 3)
+
+    def fill_heights(self) -> None:
+        """Gives rows without a height one between those around, 0 where no row has any."""
+        heights = np.array(self.coordinates[2::3])
+        is_known = ~np.isnan(heights)
+        if not is_known.all():
+            times = np.array(self.times)
+            heights = np.interp(times, times[is_known], heights[is_known]) if is_known.any() else np.zeros(len(times))
+            self.coordinates[2::3] = array("d", heights)
+
+
+def free_name(name: str, taken: Container[str]) -> str:
+    """The name, or "name_2" and so on where it is taken."""
+    found, number = name, 2
+    while found in taken:
+        found, number = f"{name}_{number}", number + 1
+    return found
 
 
 def refuse(path: Path, line: int, what: str) -> NoReturn:

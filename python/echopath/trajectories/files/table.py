@@ -144,7 +144,7 @@ def _add(path: Path, line: int, row: dict[str, str], units: dict[str, float], tr
     samples.times.append(instant(path, line, "time", row["time"], units["time"]))
     most = {"latitude": 90.0, "longitude": 360.0, "height": 1e5}
     names = ("latitude", "longitude", "height") if is_geographic else ("x", "y", "z")
-    place = [of(key, most.get(key, 1e7)) if row.get(key, "").strip() or key in names[:2] else 0.0 for key in names]
+    place = [of(key, most.get(key, 1e7)) if row.get(key, "").strip() or key in names[:2] else math.nan for key in names]
     samples.coordinates.extend(place)
     if "yaw" in row or "yaw_deg" in row:
         key = "yaw" if "yaw" in row else "yaw_deg"

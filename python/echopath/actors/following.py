@@ -140,12 +140,12 @@ def turned(yaw, yaw_rate, angle=0.0, rate=0.0):
 
 
 def _steering(track, times, wheelbase: float, ahead: float = 0.0):
-    """(angle [N] in rad of a wheel in the front, to the left; its rate in rad/s) by the curvature of the path.
+    """(angle [N] in rad of a wheel in the front, to the left; its rate in rad/s) by what the vehicle turns over its way ahead.
 
     ahead: m, of the axle that does not steer before the point that follows the trajectory
     """
     distance, speed, _ = track.profile.at(times)
-    behind, front = (track.path.bearings(distance + ahead + way) for way in (-STEERING_WAY, STEERING_WAY))
+    behind, front = (track.steered(distance + ahead + way) for way in (-STEERING_WAY, STEERING_WAY))
     slope = wheelbase * (front[0] - behind[0]) / (2.0 * STEERING_WAY)
     slope_rate = wheelbase * (front[1] - behind[1]) / (2.0 * STEERING_WAY) * speed
     angle = np.arctan(slope)

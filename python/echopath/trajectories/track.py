@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from .path import Path
-from .profile import Profile, hermite_coefficients
+from .profile import Profile, hermite_coefficients, slopes_of
 
 ROLL_STEP = 2.0**-7    # s, between samples of the way that a vehicle rolls which looks elsewhere than it goes
+STEERING_STEP = 0.05   # m, between samples of the yaw that its wheels steer by
 
 
 @dataclass(frozen=True)
@@ -99,12 +100,36 @@ class Track:
         inside = [np.linspace(begin, end, int((end - begin) / step) + 2) for begin, end in zip(begins, ends)]
         return np.unique(np.concatenate([*inside, [self.profile.begin, self.profile.end]]))
 
+    def steered(self, distances):
+        """(angle in rad that wheels in the front steer by over the distance travelled, its change in rad/m), each [N]: what it
+        turns to the left while it goes ahead, and to the right while it goes back."""
+        if self.headings is None:
+            return self.path.bearings(distances)
+        return self._steered.at(distances)[:2]
+
+    @cached_property
+    def _steered(self) -> Profile:
+        times = self._rolling_times()
+        senses, turns = np.sign(self._speed_ahead(0.5 * (times[:-1] + times[1:]))), np.diff(self.yaws(times)[0])
+        angles, distances = np.concatenate([[0.0], np.cumsum(senses * turns)]), self.profile.at(times)[0]
+        grid = np.arange(distances[0], distances[-1], STEERING_STEP)
+        kept = np.unique(np.append(np.searchsorted(distances, grid), len(distances) - 1))
+        kept = kept[np.diff(distances[kept], append=np.inf) > 1e-6]
+        distances, angles = distances[kept], angles[kept]
+        if len(kept) == 1:  # stands all the time
+            distances, angles = distances[0] + np.array([0.0, STEERING_STEP]), np.repeat(angles, 2)
+        return Profile(distances, hermite_coefficients(np.diff(distances), angles, slopes_of(distances, angles)))
+
+    def _rolling_times(self):
+        """Times [N] in s between which what rolls is summed up."""
+        return np.unique(np.concatenate([self.fine_times(ROLL_STEP), self.profile.times]))
+
     @cached_property
     def rolled(self) -> Profile:
         """The way ahead in m over time, as wheels roll it: backwards where it goes against the direction it looks in."""
         if self.headings is None:
             return self.profile
-        times = np.unique(np.concatenate([self.fine_times(ROLL_STEP), self.profile.times]))
+        times = self._rolling_times()
         middles = 0.5 * (times[:-1] + times[1:])
         ahead = [self._speed_ahead(at) for at in (times, middles)]
         steps = np.diff(times)

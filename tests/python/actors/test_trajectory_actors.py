@@ -71,6 +71,22 @@ def test_front_wheels_steer_as_the_curve_asks(car):
     assert abs(motion_of(car, "wheel/front_left/tyre").at(1.0)[0, 1]) < 1e-6
 
 
+@pytest.mark.parametrize("ahead", [True, False])
+def test_front_wheels_of_what_reverses_steer_to_the_side_of_the_centre(ahead):
+    """On a circle about a point on the left the wheels look to the left, whether it drives forwards or backs up."""
+    angles = np.linspace(0.0, math.pi, 25) if ahead else np.linspace(math.pi, 0.0, 25)
+    circle = RADIUS * np.stack([np.sin(angles), 1.0 - np.cos(angles)], axis=-1)
+    backing = ep.Trajectory(circle, times=np.linspace(0.0, 12.0, 25), yaw=angles)
+    axle = motion_of(ep.actors.car(trajectory=backing), "wheel/front_left/tyre").at(6.0)[:3, 1]
+    assert math.atan2(-axle[0], axle[1]) == pytest.approx(math.atan(2.637 / RADIUS), abs=1e-3)
+
+
+def test_what_backs_up_straight_does_not_steer():
+    there = ep.Trajectory([(0, 0), (2, 0), (4, 0), (5, 0), (4, 0), (2, 0), (0, 0)], times=np.arange(7.0), yaw=np.zeros(7))
+    wheel = motion_of(ep.actors.car(trajectory=there), "wheel/front_left/tyre")
+    assert all(abs(wheel.at(time)[0, 1]) < 1e-6 for time in np.linspace(0.0, 6.0, 61))
+
+
 def test_a_rolling_tyre_touches_the_road_without_slipping(car):
     """A point of the tread has no velocity where it touches the road: it moves by (w t)^2 / 2 times the radius alone."""
     scene = ep.Scene()

@@ -108,7 +108,9 @@ class Unit:
     @cached_property
     def _wheels(self) -> Wheels:
         _, turn = self._relative()
-        rolling = Rolling(self._rolled, lambda times: self._moved(times)[2:], turn, self._towing.coupling.drive_axle)
+        has_headings = self._towing.trajectory._track.headings is not None
+        ahead = 0.0 if has_headings else self._towing.coupling.drive_axle
+        rolling = Rolling(self._rolled, lambda times: self._moved(times)[2:], turn, ahead)
         return Wheels(self._towing.trajectory, rolling, self._towing.junctions)
 
     @cached_property

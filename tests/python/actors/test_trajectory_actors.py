@@ -223,6 +223,23 @@ def test_a_trailer_follows_a_tractor_whose_yaw_is_given():
     assert -yaw_of(motion_of(truck, "trailer/roof"), 18.0) == pytest.approx(lag, abs=1e-3)
 
 
+def test_a_truck_that_backs_up_is_where_it_was_when_it_pulled_out_that_way():
+    """A trailer that does not slip goes back as it came, in line where the way out begins."""
+    angles = np.linspace(0.0, 0.5 * math.pi, 13)
+    circle = 30.0 * np.stack([np.sin(angles), 1.0 - np.cos(angles)], axis=-1)
+    out = ep.Trajectory(circle, times=np.linspace(0.0, 12.0, 13), yaw=angles)
+    back = ep.Trajectory(circle[::-1], times=np.linspace(0.0, 12.0, 13), yaw=angles[::-1])
+    ways = [(motion_of(ep.actors.truck(trajectory=one), "trailer/side_left"), one) for one in (out, back)]
+    for time in np.linspace(0.0, 12.0, 7):
+        there, here = (yaw_of(motion, at) + one.yaw(at) for (motion, one), at in zip(ways, (time, 12.0 - time)))
+        assert here == pytest.approx(there, abs=1e-4)
+
+
+def test_ways_that_fold_a_truck_are_warned_of():
+    with pytest.warns(RuntimeWarning, match=r"^trajectory: folds the truck by \d+ degrees, from .* s on by more than 90"):
+        ep.actors.truck(trajectory=ep.Trajectory([(0, 0), (40, 0), (40, 8), (0, 8)], turn_radius=4 - 1e-6, speed=5))
+
+
 def test_a_cyclist_pedals_with_the_distance():
     """One turn of the crank of 0.17 m for each 4.2 m; the pedals stay level, and the shoes over them."""
     rider = ep.actors.cyclist(trajectory=DRIVE, phase=0.0, edge=0.05)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
+from ...base.callers import warn_user
 from ...trajectories.knots import curve_through
 from ...trajectories.profile import Profile, hermite_pieces
 from ...trajectories.trajectory import TOLERANCE
@@ -20,6 +21,7 @@ from ..following import WHEEL_TOLERANCE, Rolling, Wheels, turned
 
 STEP = 2.0**-6         # s, of the trailer's angle
 SIDE = 1e-6            # of a step: rates on this side of its ends
+MOST_BEND = np.radians(90.0)
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,15 @@ class Towing:
     def __init__(self, trajectory, coupling: Coupling):
         self.trajectory, self.coupling, self._track = trajectory, coupling, trajectory._track
         self.tractor, self.trailer = (Unit(self, moved) for moved in (self._tractor, self._trailer))
+
+    def warn_of_folding(self) -> None:
+        """Warns (RuntimeWarning) where the trailer would run into the cab."""
+        times = self._steps()
+        bends = np.abs(self._angle.at(times)[0] - self._tractor(times)[2])
+        if bends.max() > MOST_BEND:
+            first = float(times[int(np.argmax(bends > MOST_BEND))])
+            warn_user(f"trajectory: folds the truck by {np.degrees(bends.max()):.0f} degrees, from {first:.4g} s on by more than "
+                      f"{np.degrees(MOST_BEND):.0f}; no trailer follows curves as tight, nor is pushed far along a curve")
 
     @cached_property
     def junctions(self):
@@ -73,22 +84,23 @@ class Towing:
 
     @cached_property
     def _angle(self) -> Profile:
-        """The trailer's yaw in rad over time, by the classical Runge-Kutta method; at the begin it is in line."""
+        """The trailer's yaw in rad over time, by the classical Runge-Kutta method.
+
+        It is in line where the truck is farthest back on its way: on to the begin and on to the end, deviations then die out, as
+        they do of any trailer that is pulled, and grow where it is pushed.
+        """
         times = self._steps()
         steps = np.diff(times)
-        rows = [self._hitch(at)[1][:, :2].tolist() for at in
-                (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps)]
+        velocities = [self._hitch(at)[1][:, :2] for at in
+                      (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps)]
         length = self.coupling.hitch - self.coupling.trailer_axle
-        yaws, leaving, arriving = [float(self._tractor(times[:1])[2][0])], [], []
-        for first, middle, last, step in zip(*rows, steps.tolist()):
-            yaw = yaws[-1]
-            slopes = [_turning(first, yaw, length)]
-            for way, at in ((0.5, middle), (0.5, middle), (1.0, last)):
-                slopes.append(_turning(at, yaw + way * step * slopes[-1], length))
-            yaws.append(yaw + step / 6.0 * (slopes[0] + 2.0 * slopes[1] + 2.0 * slopes[2] + slopes[3]))
-            leaving.append(slopes[0])
-            arriving.append(_turning(last, yaws[-1], length))
-        return Profile(times, hermite_pieces(steps, np.array(yaws), np.array(leaving), np.array(arriving)))
+        farthest = int(np.argmin(self._track.rolled.at(times)[0]))
+        yaw = float(self._tractor(times[farthest:farthest + 1])[2][0])
+        after = _followed(yaw, [rows[farthest:] for rows in velocities], steps[farthest:], length)
+        before = _followed(yaw, [rows[:farthest][::-1] for rows in velocities[::-1]], -steps[:farthest][::-1], length)
+        yaws = np.array(before[:0:-1] + after)
+        leaving, arriving = _turning(velocities[0].T, yaws[:-1], length), _turning(velocities[2].T, yaws[1:], length)
+        return Profile(times, hermite_pieces(steps, yaws, leaving, arriving))
 
 
 class Unit:
@@ -172,7 +184,23 @@ class Unit:
         return place, turn
 
 
-def _turning(velocity, yaw: float, length: float) -> float:
+def _followed(yaw: float, velocities, steps, length: float) -> list[float]:
+    """The yaws [N + 1] in rad of a trailer from one of them on, over steps [N] in s.
+
+    velocities: of its hitch at the begin, in the middle and at the end of each step, [N, 2] each in m/s
+    """
+    yaws = [yaw]
+    for first, middle, last, step in zip(*(rows.tolist() for rows in velocities), steps.tolist()):
+        slope = slopes = _turning(first, yaw, length)
+        for share, weight, at in ((0.5, 2.0, middle), (0.5, 2.0, middle), (1.0, 1.0, last)):
+            slope = _turning(at, yaw + share * step * slope, length)
+            slopes += weight * slope
+        yaw += step / 6.0 * slopes
+        yaws.append(yaw)
+    return yaws
+
+
+def _turning(velocity, yaw, length: float):
     """rad/s, of a trailer whose hitch has a velocity (x, y) in m/s."""
     return (velocity[1] * np.cos(yaw) - velocity[0] * np.sin(yaw)) / length
 

@@ -46,13 +46,15 @@ def truck(*, speed: float = 0.0, drives: bool = True, trajectory: Trajectory | N
     speed: m/s ahead along +x; the wheels roll. drives: False turns the wheels at `speed` alone.
     trajectory: a Trajectory that it follows instead: the tractor's rear axle, 3.15 m ahead of the origin, stays on its path (one
     with a yaw of its own carries the tractor as it says); the trailer follows its hitch without slipping sideways, in line at
-    the begin, and cuts corners as trailers do. All wheels roll their way, those in front steer.
+    the begin, or at the end of what backs up, and cuts corners as trailers do. All wheels roll their way, those in front
+    steer. Warns (RuntimeWarning) of ways that fold it by more than 90 degrees.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
     driving = Driving(speed, drives, trajectory)
     tractor = trailer = driving
     if trajectory is not None:
         towing = Towing(trajectory, Coupling(DRIVE_AXLE, HITCH, float(np.mean(TRAILER_AXLES))))
+        towing.warn_of_folding()
         tractor, trailer = towing.tractor, towing.trailer
     ahead, behind = _sorted(_cab() + _fittings() + _trailer() + _frames())
     return Actor(tractor.carried(ahead) + trailer.carried(behind) + _wheels(tractor, trailer), trajectory)

@@ -17,6 +17,7 @@ MOST_EVEN = 2**16      # intervals to begin with: of longer functions those are 
 SHORTEST = 2.0**-14    # s: a function that asks for more is not smooth
 CHECKS = (0.5,), (0.23, 0.77)          # of the way between keys, where the cubic is held against the function
 INSIDE = 1e-6          # of the way between keys: where rates are those of this side of a key
+JUMP = 1e-3            # of values at a junction from one side to the other, from which on there is a key on both sides
 MOST_KEYS = 2_000_000
 
 Function = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -26,7 +27,7 @@ def curve_through(function: Function, junctions, tolerance: float) -> _core.Curv
     """A Hermite Curve that errs by less than `tolerance` in any column.
 
     function: times [N] in s -> (values [N, C], rates [N, C] per s); junctions: times in s, at least the first and the last, at
-    which it need not be smooth
+    which it need not be smooth, nor continuous
     """
     begins, ends = _intervals(np.unique(np.asarray(junctions, float)))
     done: list[list[np.ndarray]] = []
@@ -92,7 +93,13 @@ def _tried(function: Function, begins, ends, tolerance: float):
 
 def _curve(begins, ends, first, leaving, last, arriving) -> _core.Curve:
     order = np.argsort(begins)
+    begins, ends, first, leaving, last, arriving = (column[order] for column in (begins, ends, first, leaving, last, arriving))
+    jumps = 1 + np.flatnonzero(np.abs(last[:-1] - first[1:]).max(axis=1) > JUMP)   # what turns back looks elsewhere at once
+    before = ends[jumps - 1] - INSIDE * (ends - begins)[jumps - 1]
     still = np.zeros((1, first.shape[1]))
-    return _core.Curve(np.append(begins[order], ends[order[-1]]), np.concatenate([first[order], last[order[-1:]]]), "hermite",
-                       in_tangents=np.concatenate([still, arriving[order]]),
-                       out_tangents=np.concatenate([leaving[order], still]))
+    to, of = np.concatenate([still, arriving]), np.concatenate([leaving, still])
+    moved = to[jumps]
+    to[jumps] = 0.0
+    return _core.Curve(np.insert(np.append(begins, ends[-1]), jumps, before),
+                       np.insert(np.concatenate([first, last[-1:]]), jumps, last[jumps - 1], axis=0), "hermite",
+                       in_tangents=np.insert(to, jumps, moved, axis=0), out_tangents=np.insert(of, jumps, 0.0, axis=0))

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text, vector
 from .arguments import (
-    GOES_ON, LATEST, NEAREST, RATE, Outside, checked_headings, checked_path, checked_points, checked_speed, checked_stops,
-    checked_times,
+    GOES_ON, LATEST, NEAREST, RATE, SPACING, Outside, checked_headings, checked_path, checked_points, checked_speed,
+    checked_stops, checked_times,
 )
 from .knots import curve_through
 from .limits import Limits, over_distance
@@ -36,8 +36,9 @@ class Trajectory(_core.CurveMotion):
     points: [P, 2] or [P, 3] in m, P >= 2; those of two columns are at z = 0
     speed: m/s, constant; or [N, 2]: distances in m and speeds in m/s, between which the acceleration is constant; of `times`
         [P] m/s at the points, None: as the points say
-    times: [P] in s, ascending: when it is at the points, which then may repeat where it stands. Of points within 1 mm of each
-        other the first tells where the path goes, the others how far it has come. None: by `speed`
+    times: [P] in s, ascending: when it is at the points, which then may repeat where it stands. None: by `speed`
+    spacing: m, with `times`: points no farther than that from the last one that the path goes through tell how far it has come,
+        not where the path goes, as those of what stands and creeps; noise of places asks for more of it
     yaw: [P] in rad, with `times`: where it looks. None: along the path
     turn_radius: m; straight lines between the points, joined by arcs. None: a C2 spline over the chord lengths
     stops: [N, 2]: distances in m (math.inf: the end) and waiting times in s; one at 0 lets it start from rest. Needs no times
@@ -57,12 +58,12 @@ class Trajectory(_core.CurveMotion):
     """
 
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
-             yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
+             yaw=optional(array("[P]", finite=True)), spacing=SPACING, turn_radius=optional(positive("m")), stops=checked_stops,
              acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
              speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=GOES_ON,
              outside=one_of(Outside), pitch=flag, kind=text, is_person=flag)
     def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,
-                 yaw: ArrayLike | None = None, turn_radius: float | None = None, stops: ArrayLike = (),
+                 yaw: ArrayLike | None = None, spacing: float = NEAREST, turn_radius: float | None = None, stops: ArrayLike = (),
                  acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
                  lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
                  start_time: float = 0.0, goes_on: float = 0.0, outside: Outside = "stands", pitch: bool = False,
@@ -71,6 +72,8 @@ class Trajectory(_core.CurveMotion):
         if times is None:
             if yaw is not None:
                 raise refused(ValueError, "yaw", "given with times", yaw)
+            if spacing != NEAREST:
+                raise refused(ValueError, "spacing", "given with times", spacing)
             path = checked_path(points, turn_radius)
             track = Track(path, profile_along(path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over,
                                               start_time))
@@ -272,7 +275,7 @@ def _timed(arguments: dict) -> Track:
         raise refused(ValueError, "times", f"as many as the {len(points)} points", times)
     headings = checked_headings(arguments["yaw"], times)
     towards = 0.0 if headings is None else float(headings.at(times[:1])[0][0])
-    path, places = _path_of_places(points, arguments["turn_radius"], towards)
+    path, places = _path_of_places(points, arguments["spacing"], arguments["turn_radius"], towards)
     speeds = arguments["speed"]
     if speeds is not None:
         speeds = np.asarray(array("[P]", "[]", "[N, 2]", finite=True)("speed", speeds), float)
@@ -281,15 +284,15 @@ def _timed(arguments: dict) -> Track:
     return Track(path, through(times, places, speeds), headings)
 
 
-def _path_of_places(points, turn_radius, towards: float):
+def _path_of_places(points, spacing: float, turn_radius, towards: float):
     """(the Path through points [P, 3] which may repeat, their distances [P] along it).
 
-    Points within NEAREST of the last one that the path goes through tell no direction, but how far it has come: what creeps by
+    Points within `spacing` of the last one that the path goes through tell no direction, but how far it has come: what creeps by
     less than that from row to row still moves.
     """
     if turn_radius is not None:
         raise refused(ValueError, "turn_radius", "given without times", turn_radius)
-    kept = _apart(points)
+    kept = _apart(points, spacing)
     stands = len(kept) == 1
     ends = points[kept] if not stands else points[0] + np.array([np.zeros(3), [math.cos(towards), math.sin(towards), 0.0]])
     path = checked_path(ends, None)
@@ -303,13 +306,14 @@ def _path_of_places(points, turn_radius, towards: float):
     return path, np.maximum.accumulate(places)
 
 
-def _apart(points) -> np.ndarray:
-    """Indices of the points [P, 3] that are more than NEAREST from the one before among them, both ends included if they can."""
+def _apart(points, spacing: float) -> np.ndarray:
+    """Indices of the points [P, 3] that are more than `spacing` from the one before among them, both ends included if they
+    can."""
     rows, kept = points.tolist(), [0]
     for index, row in enumerate(rows):
-        if math.dist(row, rows[kept[-1]]) > NEAREST:
+        if math.dist(row, rows[kept[-1]]) > spacing:
             kept.append(index)
-    if len(kept) > 1 and math.dist(rows[-1], rows[kept[-2]]) > NEAREST:
+    if len(kept) > 1 and math.dist(rows[-1], rows[kept[-2]]) > spacing:
         kept[-1] = len(rows) - 1
     return np.array(kept)
 

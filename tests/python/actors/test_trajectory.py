@@ -339,6 +339,26 @@ def test_whoever_walks_there_and_back_turns_where_the_way_does(points):
     assert np.isfinite(walk.yaw(times)).all() and np.isfinite(walk.yaw_rate(times)).all()
 
 
+def test_what_turns_back_looks_ahead_until_it_does():
+    """At 1 m/s it goes to (5, 0) and back; the core has its yaw up to that instant."""
+    walk = ep.Trajectory([(0, 0), (5, 0), (0, 0)], speed=1.0)
+    for moment, ahead in ((4.2, 1.0), (4.7, 1.0), (4.9999, 1.0), (5.0001, -1.0), (5.5, -1.0)):
+        np.testing.assert_allclose(walk.at(moment)[:3, :3], np.diag([ahead, ahead, 1.0]), atol=1e-6)
+        np.testing.assert_allclose(walk.at(moment)[:2, 3], [5.0 - abs(moment - 5.0), 0.0], atol=MICROMETRES)
+
+
+def test_noise_of_what_stands_tells_how_far_it_has_come_not_where_it_goes():
+    rng = np.random.default_rng(3)
+    way = np.interp(np.arange(0.0, 12.0, 0.1), [0.0, 4.0, 8.0, 12.0], [0.0, 20.0, 20.0, 40.0])
+    noisy = np.stack([way, 0.0 * way], axis=-1) + rng.uniform(-0.02, 0.02, (len(way), 2))
+    drive = ep.Trajectory(noisy, times=np.arange(len(way)) / 10, spacing=0.1)
+    times = np.linspace(0.0, 11.9, 500)
+    np.testing.assert_allclose(drive.position(times)[:, 0], np.interp(times, np.arange(len(way)) / 10, way), atol=0.15)
+    assert np.abs(drive.yaw(times)).max() < 0.5
+    with pytest.raises(ValueError, match="^spacing: must be given with times, got 0.1"):
+        ep.Trajectory([(0, 0), (5, 0)], speed=1.0, spacing=0.1)
+
+
 @pytest.mark.parametrize("changes", [[(500, 40, 3.5)], [(50, 400, 3.5)], [(1, 5, 2.0), (8, 60, 0.0)]])
 def test_changes_beyond_the_end_of_the_lane_are_refused(changes):
     lane = ep.Lane([(0, 0), (60, 0)])

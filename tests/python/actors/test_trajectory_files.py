@@ -3,6 +3,7 @@ import gzip
 import math
 import pickle
 import re
+import warnings
 from fractions import Fraction
 
 import numpy as np
@@ -341,6 +342,24 @@ def test_positions_that_jump_are_warned_of(tmp_path):
     table = "time,id,x,y\n0,a,0,0\n0.1,a,1,0\n0.2,a,60,0\n0.3,a,61,0\n"
     with pytest.warns(RuntimeWarning, match="'a' goes 59 m from 0.1 to 0.2 s, as where a name is given to something else"):
         ep.read_trajectories(write(tmp_path, "jump.csv", table))
+
+
+def test_what_spins_by_noise_is_warned_of_and_held_by_smoothing(tmp_path):
+    """A car that brakes, stands for four seconds and drives on, straight ahead, by positions to 1 cm."""
+    drive = ep.Trajectory([(0, 0), (80, 0)], speed=10.0, stops=[(40, 4.0)])
+    times, rng = np.arange(0.0, drive.end, 0.1), np.random.default_rng(4)
+    rows = drive.position(times)[:, :2] + rng.normal(0.0, 0.01, (len(times), 2))
+    text = "time,x,y\n" + "".join(f"{time:.1f},{x:.4f},{y:.4f}\n" for time, (x, y) in zip(times, rows))
+    path = write(tmp_path, "car.csv", text)
+    with pytest.warns(RuntimeWarning, match="'car' turns by .* rad/s at .* s, as what stands does by the noise"):
+        ep.read_trajectories(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        car = ep.read_trajectories(path, smoothing=0.01)["car"]
+    assert np.abs(car.yaw(np.linspace(0.0, times[-1], 500))).max() < 0.2
+    flips = write(tmp_path, "flips.csv", "time,x,y,yaw\n0,0,0,0\n0.1,1,0,3.1\n0.2,2,0,0\n0.3,3,0,0\n")
+    with pytest.warns(RuntimeWarning, match="'flips' turns by .* rad/s at .* s, as yaws that flip do"):
+        ep.read_trajectories(flips)
 
 
 def in_degrees(metres):

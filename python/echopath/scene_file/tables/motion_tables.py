@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from ...trajectories.arguments import GOES_ON, Outside, checked_points, checked_stops, checked_times
+from ...trajectories.arguments import GOES_ON, NEAREST, SPACING, Outside, checked_points, checked_stops, checked_times
 from ...trajectories.trajectory import ACCELERATION, DECELERATION
 from .table import Number, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 
@@ -38,6 +38,8 @@ class TrajectoryTable(Table):
     speed: Any = Field(None, description="m/s, or an array of [m or s, m/s]; with times: m/s, one per time")
     times: Annotated[Any, by_check(checked_times)] | None = Field(None, description="s, one per point, ascending")
     yaw_deg: list[Number] | None = Field(None, description="degrees, one per time; none: along the path")
+    spacing: Annotated[Any, by_check(SPACING)] = Field(NEAREST, description="m, with times: of points that near only the first "
+                                                                           "tells where the path goes")
     turn_radius: Positive | None = Field(None, description="m, straight lines joined by arcs; none: a spline")
     stops: Annotated[Any, by_check(checked_stops)] = Field((), description="an array of [m, waiting time in s]")
     acceleration: Positive = Field(ACCELERATION, description="m/s^2, by which it leaves its stops")

@@ -1,4 +1,4 @@
-"""Speeds and yaws of a file that its positions contradict, as those in other units do, and positions that jump."""
+"""Speeds and yaws of a file that its positions contradict, as those in other units do, positions that jump, and what spins."""
 from __future__ import annotations
 
 import math
@@ -11,6 +11,7 @@ STEADY = 0.5           # of two speeds in a row the smaller over the larger, fro
 MOST_RATIO = 1.5       # of a way by speeds and by positions: corners and rounding make less, km/h 3.6
 LEAST_STEP = 0.2       # m, of positions that tell a direction
 FASTEST = 150.0        # m/s from one position to the next, above which nothing goes on roads and rails
+FASTEST_TURN = 20.0    # rad/s, three turns a second, above which nothing on roads turns as a whole
 BETTER = 0.05          # mean cosine by which yaws in degrees lie nearer to the way than they do in rad
 
 
@@ -23,6 +24,22 @@ def doubts_of(times: NDArray[np.float64], places: NDArray[np.float64], yaws: NDA
     said = [_of_speeds(times, places, speeds) if len(speeds) else "", _of_yaws(places, yaws) if len(yaws) else "",
             _of_jumps(times, places)]
     return [words for words in said if words]
+
+
+def doubt_of_turns(times: NDArray[np.float64], yaws: NDArray[np.float64], has_yaws: bool) -> str:
+    """What is said of an object that turns too fast, "" where it does not.
+
+    times: [K] s, so close that yaws [K] in rad between are those between; has_yaws: whether the file tells them
+    """
+    if len(times) < 2:
+        return ""
+    rates = np.abs(np.diff(yaws)) / np.diff(times)
+    fastest = int(np.argmax(rates))
+    if rates[fastest] <= FASTEST_TURN:
+        return ""
+    reason = ("yaws that flip do" if has_yaws else
+              "what stands does by the noise of its positions, and what turns back; smoothing, or a column yaw, holds it")
+    return f"turns by {rates[fastest]:.3g} rad/s at {times[fastest]:.4g} s, as {reason}"
 
 
 def _of_speeds(times: NDArray[np.float64], places: NDArray[np.float64], speeds: NDArray[np.float64]) -> str:

@@ -33,7 +33,9 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
 
     origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon
         are made metres east (x), north (y) and up (z), on the WGS 84 ellipsoid; None: the first position of the file
-    smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all
+    smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all. Places
+        within three times that, 5 cm at least, are those of what stands (`spacing` of Trajectory): give the noise of recorded
+        positions, by which what stands would spin
     vehicle_length: m, or {glob of types: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which
         its files tell; None, and types that none takes: as long as the actor that `add_traffic` takes for the type, so that
         its front is where the file has it (with an `actor_of` of one's own, give the lengths of its actors)
@@ -47,8 +49,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
     with a single position, which are left out, of speeds and yaws that the positions contradict, as those in km/h and in degrees
-    do, of positions that jump by more than 150 m/s, of globs of types of which the file has none, and of a span in which nobody
-    is on the way.
+    do, of positions that jump by more than 150 m/s, of what turns by more than 20 rad/s, of globs of types of which the file has
+    none, and of a span in which nobody is on the way.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
     file = TrackFile(path, origin=origin, smoothing=smoothing, vehicle_length=vehicle_length, goes_on=goes_on, outside=outside,

@@ -15,8 +15,8 @@ from ...arguments.checks import Rule, anything, array, checked, is_writable, one
 from ...arguments.checks import file as file_rule
 from ...base.callers import warn_user
 from ...base.counts import counted
-from ..arguments import GOES_ON, Outside
-from .doubts import doubts_of
+from ..arguments import GOES_ON, NEAREST, Outside
+from .doubts import doubt_of_turns, doubts_of
 from .geodesy import east_north_up
 from ..kinds import of_kind, usual_kind, warn_of_unused_kinds
 from .rows import Rows, read_rows
@@ -46,6 +46,9 @@ def length_rule(argument: str, value):
 RULES: dict[str, Rule] = {
     "path": file_rule, "origin": _origin_rule, "smoothing": real(0.0, unit="m"), "vehicle_length": length_rule,
     "goes_on": GOES_ON, "outside": one_of(Outside), "position": vector, "yaw": real(unit="rad")}
+
+
+SCATTER, LEAST_SCATTER = 3.0, 0.05  # of the smoothing and m at least, within which smoothed places are those of what stands
 
 
 class Way(NamedTuple):
@@ -125,10 +128,12 @@ class TrackFile:
         places = self._placement.places(smoothed(times, places, self._smoothing))
         try:
             made = Trajectory(points=places, times=times, yaw=yaws + self._placement.yaw if len(yaws) else None,
-                              speed=speeds if len(speeds) else None, kind=samples.kind, is_person=samples.is_person, **self._ends)
+                              spacing=_spacing_of(self._smoothing), speed=speeds if len(speeds) else None,
+                              kind=samples.kind, is_person=samples.is_person, **self._ends)
         except ValueError as error:
             refuse(self._path, samples.lines[0], f"'{name[:60]}': {error}")
-        return made, doubts
+        words = doubt_of_turns(made.rotation.times, made.yaw(made.rotation.times), has_yaws=len(yaws) > 0)
+        return made, doubts + ([f"'{name[:60]}' {words}"] if words else [])
 
     def _length_of(self, kind: str) -> float:
         """m, of vehicles of a kind."""
@@ -142,6 +147,11 @@ class TrackFile:
             are = "are" if len(names) > 1 else "is"
             warn_user(f"{self._path}: {counted(len(names), 'object')} with a single position {are} left out, such as "
                       f"'{names[0][:60]}'")
+
+
+def _spacing_of(smoothing: float) -> float:
+    """The spacing in m of a Trajectory through places that are smoothed by so many m."""
+    return max(LEAST_SCATTER, SCATTER * smoothing) if smoothing > 0.0 else NEAREST
 
 
 class _Placement(NamedTuple):

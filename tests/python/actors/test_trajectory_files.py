@@ -320,6 +320,17 @@ def test_who_goes_on_as_before_behind_steps_that_a_file_of_sumo_lacks_is_the_sam
     assert list(ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(seldom, speed='speed="2"')))) == ["a"]
 
 
+@pytest.mark.parametrize("interval, jump", [(1.0, 8.0), (0.1, 3.0), (1.0, 1.3)])
+def test_persons_of_sumo_who_jump_across_a_junction_are_others_from_there(tmp_path, interval, jump):
+    """At 1.2 m/s for ten steps, across in one, and on for ten; 1.3 m in a second are no jump."""
+    ways = 1.2 * interval * np.arange(10)
+    persons = [f'<person id="ann" x="3" y="{y:.3f}" angle="0" speed="1.2"/>' for y in [*ways, *(ways + ways[-1] + jump)]]
+    text = "".join(f'<timestep time="{step * interval:.1f}">{row}</timestep>' for step, row in enumerate(persons))
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", f"<fcd-export>{text}</fcd-export>"))
+    assert list(found) == (["ann", "ann_2"] if jump > 2.0 else ["ann"])
+    assert len(ep.add_traffic(ep.Scene(), found)) == len(found)
+
+
 @pytest.mark.parametrize("together", [True, False])
 def test_persons_of_sumo_may_have_the_ids_of_vehicles(tmp_path, together):
     """Vehicles and persons that are written by two runs are both counted from 0 on."""

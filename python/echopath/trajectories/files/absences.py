@@ -1,6 +1,7 @@
-"""Who leaves a file for some of its steps and comes back where no way leads: somebody else from there on.
+"""Who leaves a file for some of its steps and comes back where no way leads, or jumps: somebody else from there on.
 
-SUMO's vehicles do so where they are teleported out of a jam, or where only a part of the network is written.
+SUMO's vehicles leave where they are teleported out of a jam, or where only a part of the network is written; its persons jump
+across junctions of networks without paths and crossings for them.
 """
 from __future__ import annotations
 
@@ -13,12 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 from .doubts import LEAST_WAY, MOST_RATIO
 from .samples import Samples
 
+FASTEST_WALK, LEAST_JUMP = 3.0, 1.0    # m/s and m, of persons beyond their speeds: those jump who go farther
+
 
 def parted(tracks: Mapping[str, Samples], speeds: Mapping[str, ArrayLike], steps: NDArray[np.float64]) -> dict[str, Samples]:
-    """Samples {name: Samples} by ways: the first has the name, those after an absence are "name_2" and so on.
+    """Samples {name: Samples} by ways: the first has the name, those after an absence or a jump are "name_2" and so on.
 
     speeds: {name: [P] m/s} of the rows, NaN where the file has none: who is gone for steps but goes on as fast as before and
-    behind is one; steps: s, ascending, of all in the file
+    behind is one, and who goes as fast as that does not jump; steps: s, ascending, of all in the file
     """
     found: dict[str, Samples] = {}
     for name, samples in tracks.items():
@@ -33,14 +36,17 @@ def parted(tracks: Mapping[str, Samples], speeds: Mapping[str, ArrayLike], steps
 
 def _ways_of(samples: Samples, speeds: NDArray[np.float64], steps: NDArray[np.float64]) -> list[Samples]:
     times = np.array(samples.times)
-    num_steps = np.diff(np.searchsorted(steps, times))
-    if not np.any(num_steps > 1):
+    num_steps, durations = np.diff(np.searchsorted(steps, times)), np.diff(times)
+    if not (samples.is_person or np.any(num_steps > 1)):
         return [samples]
     by_place = np.linalg.norm(np.diff(samples.places[:, :2], axis=0), axis=1)
-    by_speed = 0.5 * (speeds[:-1] + speeds[1:]) * np.diff(times)
+    by_speed = 0.5 * (speeds[:-1] + speeds[1:]) * durations
     differ = (by_place > MOST_RATIO * by_speed) | (by_speed > MOST_RATIO * by_place)
     goes = np.maximum(by_place, by_speed) > LEAST_WAY
-    cuts = (1 + np.flatnonzero((num_steps > np.median(num_steps)) & differ & goes)).tolist()
+    leaves = (num_steps > np.median(num_steps)) & differ & goes
+    by_legs = np.maximum(MOST_RATIO * np.maximum(speeds[:-1], speeds[1:]), FASTEST_WALK) * durations
+    jumps = samples.is_person & (by_place > by_legs + LEAST_JUMP)
+    cuts = (1 + np.flatnonzero(leaves | jumps)).tolist()
     return [_part(samples, begin, end) for begin, end in zip([0, *cuts], [*cuts, len(times)])]
 
 

@@ -27,8 +27,8 @@ def read_fcd(path: Path) -> dict[str, Samples]:
 
     x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
     Persons are left out while they ride in a vehicle; one who gets off is another from there on, "name_2", and so is who is
-    missing in some steps and comes back where the speeds before and behind do not lead. A person with the id of a vehicle is
-    "id_person".
+    missing in some steps and comes back where the speeds before and behind do not lead, and a person who jumps. A person with
+    the id of a vehicle is "id_person".
     Longitudes and latitudes are refused: by the options that the file names, or where all go much less far than their speeds say.
     """
     reader = _Fcd(path)

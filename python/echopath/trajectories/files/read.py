@@ -25,8 +25,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
         may be written in other usual ways ("Timestamp [s]", "track_id"), with a usual unit in brackets ("t [ms]", "x [cm]",
         "speed (km/h)"); other columns are left out. Commas, semicolons or tabs
     .xml, .xml.gz: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions.
-        Who is missing in some steps and comes back where no speed leads, as behind a teleport, is another from there, "name_2";
-        a person with the id of a vehicle is "id_person"
+        Who is missing in some steps and comes back where no speed leads, as behind a teleport, is another from there, "name_2",
+        and so is a person who jumps, as across junctions without crossings; a person with the id of a vehicle is "id_person"
     .gpx: tracks of a GPS receiver; one with the name of a track before it is "name_2"
 
     Rows without a height have one between those of the rows around.

@@ -55,6 +55,8 @@ def _places(table, path: Path, limits: Limits):
     if limits.lateral is not None or (len(limits.stops) and not is_even):
         places.append(np.linspace(0.0, path.length, min(int(path.length / GRID) + 2, MOST_PLACES)))
         places.append(path.junctions)
+    if limits.lateral is not None:
+        places.append(path.fine_places(MOST_PLACES))
     stops, speed = limits.stops[:, 0], table[0, 1]
     places += [stops - speed**2 / (2.0 * limits.deceleration), stops + speed**2 / (2.0 * limits.acceleration)]
     share = limits.acceleration + limits.deceleration

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 PIECES = 4, 128        # of each interval between knots, for the integral of the length: at first and at most
+FINE_PARTS = 256       # of each interval between knots, of even u: |p'| is small where a spline bends within little way
 DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance
 TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
 NEWTON_STEPS = 5       # after which a distance is met to rounding, where the most pieces do not meet the tolerance
@@ -38,6 +39,11 @@ class Path:
         """Distances [N] in m of parameters [N]."""
         k = np.clip(np.searchsorted(self._u, u, side="right") - 1, 0, len(self._u) - 2)
         return self._s[k] + self._integral(self._u[k], np.asarray(u, float))
+
+    def fine_places(self, most: int):
+        """Distances [N] in m, about `most` of them at the most, which lie close where the path bends within little way."""
+        parts = np.linspace(0.0, 1.0, int(np.clip(most / len(self.knots), 1, FINE_PARTS)), endpoint=False)
+        return self.distances((self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts).ravel())
 
     def at(self, distances):
         """(points [N, 3] in m, unit tangents [N, 3], curvature vectors [N, 3] in 1/m) at distances [N] in m."""

@@ -339,6 +339,18 @@ def test_whoever_walks_there_and_back_turns_where_the_way_does(points):
     assert np.isfinite(walk.yaw(times)).all() and np.isfinite(walk.yaw_rate(times)).all()
 
 
+def test_tight_turns_of_a_spline_are_taken_as_slowly_as_wide_ones():
+    """What turns within a hand's breadth: the sideways part of the acceleration, by differences of the places."""
+    hairpins = ep.Trajectory([(74, 70), (128, 37), (54, 47), (93, 40), (83, 31)], speed=30.0, lateral_acceleration=3.0)
+    keys = hairpins.rotation.times[1:-1]
+    times = np.concatenate([np.linspace(one, other, 40) for one, other in zip(keys, keys[1:])])
+    before, at, after = (hairpins.position(times + step)[:, :2] for step in (-1e-4, 0.0, 1e-4))
+    velocities, accelerations = (after - before) / 2e-4, (after - 2.0 * at + before) / 1e-8
+    speeds = np.maximum(np.linalg.norm(velocities, axis=1), 1e-3)
+    sideways = (velocities[:, 0] * accelerations[:, 1] - velocities[:, 1] * accelerations[:, 0]) / speeds
+    assert np.abs(sideways).max() < 3.1
+
+
 def test_what_turns_back_looks_ahead_until_it_does():
     """At 1 m/s it goes to (5, 0) and back; the core has its yaw up to that instant."""
     walk = ep.Trajectory([(0, 0), (5, 0), (0, 0)], speed=1.0)

@@ -153,7 +153,8 @@ def test_units_in_brackets_are_taken(tmp_path):
 
 @pytest.mark.parametrize("columns, rows, words", [
     ("time,x,y,speed", "0,0,0,36\n1,10,0,36\n2,20,0,36\n", "'a' goes 72 m by its speeds and 20 m by its positions"),
-    ("time,x,y,yaw", "0,0,0,90\n1,0,10,90\n2,0,20,90\n", "'a' has a yaw of up to 90 rad, .*call the column yaw_deg")])
+    ("time,x,y,yaw", "0,0,0,90\n1,0,10,90\n2,0,20,90\n", "'a' has a yaw of up to 90 rad, .*call the column yaw_deg"),
+    ("time,x,y,yaw", "0,0,0,-2\n1,10,0.1,1\n2,20,0.4,2\n3,30,0.9,4\n", "'a' has a yaw of up to 4 rad, .*call the column yaw_")])
 def test_columns_that_the_positions_contradict_are_told(tmp_path, columns, rows, words):
     with pytest.warns(RuntimeWarning, match=words):
         ep.read_trajectories(write(tmp_path, "a.csv", f"{columns}\n{rows}"))
@@ -167,6 +168,9 @@ def test_columns_that_the_positions_bear_out_are_taken_without_a_word(tmp_path):
     rows = "".join(f"{','.join(map(repr, row))}\n" for row in circle)
     ep.read_trajectories(write(tmp_path, "a.csv", f"time,x,y,yaw,speed\n{rows}"))
     ep.read_trajectories(write(tmp_path, "a.csv", "time,x,y,speed\n0,0,0,0\n9,60,0,0\n18,120,0,0\n"))
+    backs_up, wraps = "0,0,0,3.14\n1,5,0,3.14\n2,9,0,3.14\n", "0,0,0,3.1\n1,-5,0,-3.1\n2,-9,0,3.14\n3,-14,0,-3.1\n"
+    for rows in (backs_up, wraps):
+        ep.read_trajectories(write(tmp_path, "a.csv", f"time,x,y,yaw\n{rows}"))
 
 
 def test_east_north_up_is_that_of_published_examples():

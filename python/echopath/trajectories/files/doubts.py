@@ -12,6 +12,7 @@ MOST_RATIO = 1.5       # of a way by speeds and by positions: corners and roundi
 LEAST_STEP = 0.2       # m, of positions that tell a direction
 FASTEST = 150.0        # m/s from one position to the next, above which nothing goes on roads and rails
 FASTEST_TURN = 20.0    # rad/s, three turns a second, above which nothing on roads turns as a whole
+ACROSS, ALONG = 0.9, 0.99   # mean cosines of yaws and way, below and above which these are not and are along it
 BETTER = 0.05          # mean cosine by which yaws in degrees lie nearer to the way than they do in rad
 
 
@@ -66,10 +67,19 @@ def _of_jumps(times: NDArray[np.float64], places: NDArray[np.float64]) -> str:
 def _of_yaws(places: NDArray[np.float64], yaws: NDArray[np.float64]) -> str:
     steps = np.diff(places, axis=0)
     moves = np.hypot(steps[:, 0], steps[:, 1]) > LEAST_STEP
-    if not moves.any() or np.abs(yaws).max() <= 2.0 * math.pi:
+    if not moves.any():
         return ""
-    bearings, middles = np.arctan2(steps[moves, 1], steps[moves, 0]), 0.5 * (yaws[:-1] + yaws[1:])[moves]
-    nearness = np.mean(np.cos(middles - bearings))
-    if np.mean(np.cos(np.radians(middles) - bearings)) < nearness + BETTER:
+    bearings = np.arctan2(steps[moves, 1], steps[moves, 0])
+
+    def nearness(turns: NDArray[np.float64]) -> float:
+        turns = np.unwrap(turns)
+        return float(np.mean(np.cos(0.5 * (turns[:-1] + turns[1:])[moves] - bearings)))
+
+    in_rad, in_degrees = nearness(yaws), nearness(np.radians(yaws))
+    if np.abs(yaws).max() > 2.0 * math.pi:
+        is_doubtful = in_degrees >= in_rad + BETTER
+    else:  # degrees of straight roads are few, which as rad point across them
+        is_doubtful = abs(in_rad) < ACROSS and in_degrees > ALONG
+    if not is_doubtful:
         return ""
     return f"has a yaw of up to {np.abs(yaws).max():.4g} rad, which points along its way as degrees; call the column yaw_deg"

@@ -154,7 +154,9 @@ def test_units_in_brackets_are_taken(tmp_path):
 @pytest.mark.parametrize("columns, rows, words", [
     ("time,x,y,speed", "0,0,0,36\n1,10,0,36\n2,20,0,36\n", "'a' goes 72 m by its speeds and 20 m by its positions"),
     ("time,x,y,yaw", "0,0,0,90\n1,0,10,90\n2,0,20,90\n", "'a' has a yaw of up to 90 rad, .*call the column yaw_deg"),
-    ("time,x,y,yaw", "0,0,0,-2\n1,10,0.1,1\n2,20,0.4,2\n3,30,0.9,4\n", "'a' has a yaw of up to 4 rad, .*call the column yaw_")])
+    ("time,x,y,yaw", "0,0,0,-2\n1,10,0.1,1\n2,20,0.4,2\n3,30,0.9,4\n", "'a' has a yaw of up to 4 rad, .*call the column yaw_"),
+    ("time,x,y,yaw_deg", "0,0,0,80\n1,10,1,90\n2,20,1,95\n3,30,0,100\n", "'a' has yaws .* clockwise from [+]y, as from north"),
+    ("time,x,y,yaw_deg", "0,0,0,0\n1,9,2,-30\n2,15,9,-70\n3,16,18,-90\n", "'a' has yaws .* clockwise from [+]x;")])
 def test_columns_that_the_positions_contradict_are_told(tmp_path, columns, rows, words):
     with pytest.warns(RuntimeWarning, match=words):
         ep.read_trajectories(write(tmp_path, "a.csv", f"{columns}\n{rows}"))
@@ -372,7 +374,7 @@ def test_what_spins_by_noise_is_warned_of_and_held_by_smoothing(tmp_path):
         warnings.simplefilter("error")
         car = ep.read_trajectories(path, smoothing=0.01)["car"]
     assert np.abs(car.yaw(np.linspace(0.0, times[-1], 500))).max() < 0.2
-    flips = write(tmp_path, "flips.csv", "time,x,y,yaw\n0,0,0,0\n0.1,1,0,3.1\n0.2,2,0,0\n0.3,3,0,0\n")
+    flips = write(tmp_path, "flips.csv", "time,x,y,yaw_deg\n0,0,0,0\n0.1,1,0,178\n0.2,2,0,0\n0.3,3,0,0\n")
     with pytest.warns(RuntimeWarning, match="'flips' turns by .* rad/s at .* s, as yaws that flip do"):
         ep.read_trajectories(flips)
 

@@ -12,18 +12,19 @@ MOST_RATIO = 1.5       # of a way by speeds and by positions: corners and roundi
 LEAST_STEP = 0.2       # m, of positions that tell a direction
 FASTEST = 150.0        # m/s from one position to the next, above which nothing goes on roads and rails
 FASTEST_TURN = 20.0    # rad/s, three turns a second, above which nothing on roads turns as a whole
-ACROSS, ALONG = 0.9, 0.99   # mean cosines of yaws and way, below and above which these are not and are along it
+ACROSS, ALONG = 0.9, 0.97   # mean cosines of yaws and way, below and above which these are not and are along it
 BETTER = 0.05          # mean cosine by which yaws in degrees lie nearer to the way than they do in rad
 
 
 def doubts_of(times: NDArray[np.float64], places: NDArray[np.float64], yaws: NDArray[np.float64],
-              speeds: NDArray[np.float64]) -> list[str]:
+              speeds: NDArray[np.float64], told_in_degrees: bool) -> list[str]:
     """What is said of an object of a file, none where its columns agree.
 
-    times: [P] s; places: [P, 3] m; yaws: [P] rad or empty; speeds: [P] m/s or empty
+    times: [P] s; places: [P, 3] m; yaws: [P] rad or empty; speeds: [P] m/s or empty; told_in_degrees: whether
+    the file calls its yaws so
     """
-    said = [_of_speeds(times, places, speeds) if len(speeds) else "", _of_yaws(places, yaws) if len(yaws) else "",
-            _of_jumps(times, places)]
+    said = [_of_speeds(times, places, speeds) if len(speeds) else "",
+            _of_yaws(places, yaws, told_in_degrees) if len(yaws) else "", _of_jumps(times, places)]
     return [words for words in said if words]
 
 
@@ -64,7 +65,7 @@ def _of_jumps(times: NDArray[np.float64], places: NDArray[np.float64]) -> str:
             "else, or a unit is another")
 
 
-def _of_yaws(places: NDArray[np.float64], yaws: NDArray[np.float64]) -> str:
+def _of_yaws(places: NDArray[np.float64], yaws: NDArray[np.float64], told_in_degrees: bool) -> str:
     steps = np.diff(places, axis=0)
     moves = np.hypot(steps[:, 0], steps[:, 1]) > LEAST_STEP
     if not moves.any():
@@ -75,11 +76,15 @@ def _of_yaws(places: NDArray[np.float64], yaws: NDArray[np.float64]) -> str:
         turns = np.unwrap(turns)
         return float(np.mean(np.cos(0.5 * (turns[:-1] + turns[1:])[moves] - bearings)))
 
-    in_rad, in_degrees = nearness(yaws), nearness(np.radians(yaws))
-    if np.abs(yaws).max() > 2.0 * math.pi:
-        is_doubtful = in_degrees >= in_rad + BETTER
-    else:  # degrees of straight roads are few, which as rad point across them
-        is_doubtful = abs(in_rad) < ACROSS and in_degrees > ALONG
-    if not is_doubtful:
+    as_told, in_degrees = nearness(yaws), -1.0 if told_in_degrees else nearness(np.radians(yaws))
+    largest = f"has a yaw of up to {np.abs(yaws).max():.4g} rad, which points along its way as degrees; call the column yaw_deg"
+    if np.abs(yaws).max() > 2.0 * math.pi and in_degrees >= as_told + BETTER:
+        return largest
+    if abs(as_told) >= ACROSS:  # what backs up all the way looks against it
         return ""
-    return f"has a yaw of up to {np.abs(yaws).max():.4g} rad, which points along its way as degrees; call the column yaw_deg"
+    if in_degrees > ALONG:  # of straight roads these are few, which as rad point across them
+        return largest
+    for axis, turns in (("y, as from north", 0.5 * math.pi - yaws), ("x", -yaws)):
+        if nearness(turns) > ALONG:
+            return f"has yaws that point along its way as counted clockwise from +{axis}; they count from +x to +y, to the left"
+    return ""

@@ -116,7 +116,7 @@ class _Fcd:
         """The Samples of somebody who is new."""
         kind = attributes.get("type", "") or ("pedestrian" if who.is_person else "")
         self._told_speeds[who] = array("d")
-        return self._tracks.setdefault(who, Samples(kind, who.is_person, has_fronts=not who.is_person))
+        return self._tracks.setdefault(who, Samples(kind, who.is_person, has_fronts=not who.is_person, told_in_degrees=True))
 
     def _numbers(self, tag: str, attributes: Mapping[str, str], line: int) -> tuple[float, float, float, float]:
         """(x, y, z in m, angle in degrees) of a row."""

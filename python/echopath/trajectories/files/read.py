@@ -48,9 +48,9 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
-    with a single position, which are left out, of speeds and yaws that the positions contradict, as those in km/h and in degrees
-    do, of positions that jump by more than 150 m/s, of what turns by more than 20 rad/s, of globs of types of which the file has
-    none, and of a span in which nobody is on the way.
+    with a single position, which are left out, of speeds and yaws that the positions contradict, as those in km/h, in degrees
+    and from north do, of positions that jump by more than 150 m/s, of what turns by more than 20 rad/s, of globs of types of
+    which the file has none, and of a span in which nobody is on the way.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
     file = TrackFile(path, origin=origin, smoothing=smoothing, vehicle_length=vehicle_length, goes_on=goes_on, outside=outside,

@@ -27,11 +27,13 @@ class Samples:
     is_person: who is no vehicle, whatever the kind; has_fronts: whether places are those of the front bumper, not of the middle
     lines: [P], of the file; times: [P] s; coordinates: [3 P], of each row (x, y, z) in m, or (latitude, longitude, height) in
     degrees and m, heights NaN in rows without one; yaws: [P] rad, speeds: [P] m/s, or empty where the file has none
+    told_in_degrees: whether the file calls its yaws degrees
     """
 
     kind: str = ""
     is_person: bool = False
     has_fronts: bool = False
+    told_in_degrees: bool = False
     lines: array = field(default_factory=partial(array, "q"))
     times: array = field(default_factory=_numbers)
     coordinates: array = field(default_factory=_numbers)

@@ -139,7 +139,7 @@ def _add(path: Path, line: int, row: dict[str, str], units: dict[str, float], tr
         return units[name] * number(path, line, name, row[name], most / units[name])
 
     name = row.get("id", "").strip() or path.stem
-    samples = tracks.setdefault(name, Samples(kind=row.get("kind", "").strip()))
+    samples = tracks.setdefault(name, Samples(kind=row.get("kind", "").strip(), told_in_degrees="yaw" not in row))
     samples.lines.append(line)
     samples.times.append(instant(path, line, "time", row["time"], units["time"]))
     most = {"latitude": 90.0, "longitude": 360.0, "height": 1e5}

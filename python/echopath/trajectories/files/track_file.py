@@ -124,7 +124,7 @@ class TrackFile:
         if samples.has_fronts:
             back = 0.5 * self._length_of(samples.kind)
             places[:, :2] -= back * np.stack([np.cos(yaws), np.sin(yaws)], axis=-1)
-        doubts = [f"'{name[:60]}' {words}" for words in doubts_of(times, places, yaws, speeds)]
+        doubts = [f"'{name[:60]}' {words}" for words in doubts_of(times, places, yaws, speeds, samples.told_in_degrees)]
         places = self._placement.places(smoothed(times, places, self._smoothing))
         try:
             made = Trajectory(points=places, times=times, yaw=yaws + self._placement.yaw if len(yaws) else None,

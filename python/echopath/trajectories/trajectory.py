@@ -39,7 +39,7 @@ class Trajectory(_core.CurveMotion):
     times: [P] in s, ascending: when it is at the points, which then may repeat where it stands. None: by `speed`
     spacing: m, with `times`: points no farther than that from the last one that the path goes through tell how far it has come,
         not where the path goes, as those of what stands and creeps; noise of places asks for more of it
-    yaw: [P] in rad, with `times`: where it looks. None: along the path
+    yaw: [P] in rad, with `times`: where it looks. None: along the path, and the other way at once where that turns back
     turn_radius: m; straight lines between the points, joined by arcs. None: a C2 spline over the chord lengths
     stops: [N, 2]: distances in m (math.inf: the end) and waiting times in s; one at 0 lets it start from rest. Needs no times
     acceleration, deceleration: m/s^2, by which it leaves and reaches its stops

@@ -16,6 +16,7 @@ from ... import _core
 
 MOST_SAMPLES = 20_000_000
 MAX_BYTES = 2**31
+LATEST = 1e12           # s, of any time
 
 _numbers = partial(array, "d")  # 8 bytes each: files have millions
 
@@ -79,13 +80,20 @@ def number(path: Path, line: int, name: str, text: str, most: float = 1e9) -> fl
     return value
 
 
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
 def instant(path: Path, line: int, name: str, text: str, unit: float = 1.0) -> float:
     """A time in s, of a number of units of so many s, or of ISO 8601 in s since 1970."""
-    try:
-        return unit * number(path, line, name, text, 1e12 / unit)
-    except _core.FileError:
-        if "-" not in text[1:]:
-            raise
+    if _is_number(text):
+        if unit == 1.0 and abs(float(text)) > LATEST:
+            refuse(path, line, f"{name}: must be at most {LATEST:g} s, got '{text.strip()[:60]}'; a unit in brackets, such as "
+                   f"'{name} [ns]', says in which it counts")
+        return unit * number(path, line, name, text, LATEST / unit)
     try:
         moment = datetime.datetime.fromisoformat(text.strip())
     except ValueError:

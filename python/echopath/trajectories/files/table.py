@@ -119,7 +119,8 @@ def _columns(path: Path, line: int, header: list[str]) -> dict[str, Column]:
     groups = ("x", "y"), ("latitude", "longitude")
     if "time" not in found or not any(all(name in found for name in group) for group in groups):
         refuse(path, line, "must name columns: time, and x and y, or latitude and longitude; got "
-               + (", ".join(text.strip()[:30] for text in header)[:120] or "none"))
+               + (", ".join(text.strip()[:30] for text in header)[:120] or "none")
+               + (", without commas, semicolons or tabs between them" if len(header) == 1 else ""))
     return found
 
 

@@ -83,7 +83,8 @@ class _Body:
         velocity, gone = rate[:3, 3] + rate[:3, :3] @ centre, np.zeros(3)
         if not self._is_rigid():
             velocity = velocity + rotation @ rate_of(self._own_centroid, time, step)
-            gone = rotation @ (self._own_centroid(time) - self._own_centroid(self._reference_time()))
+            if self._node < 0 or self._nodes[self._node].motion is None:  # what carries itself along
+                gone = rotation @ (self._own_centroid(time) - self._own_centroid(self._reference_time()))
         turning = rate[:3, :3] @ rotation.T
         spin = 0.5 * np.array([turning[2, 1] - turning[1, 2], turning[0, 2] - turning[2, 0], turning[1, 0] - turning[0, 1]])
         return origin + rotation @ centre, high - low, rotation, velocity, spin, origin + gone

@@ -188,6 +188,19 @@ def test_the_origin_goes_with_a_body_that_drives_by_itself(yaw):
             assert one.origin[0] == pytest.approx(start + speed * one.time[0] * ahead, abs=1e-3)  # m: spokes of wheels
 
 
+def test_the_origin_of_what_follows_a_trajectory_is_on_it():
+    """Also while a trailer swings out behind its truck, and while legs swing."""
+    turn = ep.Trajectory([(10, -20), (40, -20), (40, 20)], turn_radius=12, speed=6)
+    walk = ep.Trajectory([(8, 3), (12, 3), (12, 7)], turn_radius=1, speed=1.4)
+    scene = ep.Scene()
+    scene.add(ep.actors.truck(trajectory=turn), name="truck")
+    scene.add(ep.actors.pedestrian(trajectory=walk), name="walker")
+    found = ep.truth(trace(scene, start_time=5.0, num_rays=200))
+    for name, way in (("truck", turn), ("walker", walk)):
+        one = found.of_object(name)
+        assert one.origin[0] == pytest.approx(way.position(one.time[0]), abs=1e-4)
+
+
 def test_what_moves_from_a_later_time_on_has_a_truth():
     scene = box_scene(position=(8, 0, 0))
     scene.add(ep.actors.plate(0.5, 0.5), name="door", parent="car", material="metal", position=(0.0, 1.0, 0.0),

@@ -7,7 +7,7 @@ import pytest
 import echopath as ep
 from echopath.bench.physics import closed_forms, targets
 from echopath.bench.physics import DEFAULT, Variant, _point, _slope, plate_pairs
-from echopath.bench.physics.report import describe
+from echopath.bench.physics.report import BEST, describe, verdicts
 from echopath.cli import main
 
 MULTI_BOUNCE_DB = 0.2   # what python/docs/measurements.md promises of corners
@@ -55,6 +55,15 @@ def test_slope_is_that_of_errors_that_mean_something_and_are_not_settled():
     settled = [{**point, "rms_db": max(point["rms_db"], 0.006)} for point in law]
     assert _slope(settled, "rms_db") == pytest.approx(-1.0, abs=ROUNDING)
     assert _slope(law[:2], "rms_db") is None
+
+
+def test_a_run_too_short_to_know_where_errors_converge_judges_no_slope():
+    """The facets of a mesh leave an error that rays cannot mend: beside theory alone it would flatten the slope."""
+    floor = [{"num_rays": 2 ** exponent, "rms_db": 0.3, "rms_from_converged_db": None} for exponent in (10, 11, 12)]
+    target = {"title": "facets", "curves": {BEST: floor}, "slopes": {BEST: _slope(floor, "rms_db")},
+              "slopes_from_converged": {BEST: _slope(floor, "rms_from_converged_db")}, "converged_db": None}
+    assert target["slopes"][BEST] == pytest.approx(0.0, abs=ROUNDING)
+    assert verdicts({"targets": dict.fromkeys(("sphere_161", "sphere_3228", "ellipsoid"), target), "plates": []}) == []
 
 
 def test_filter_costs_plates_nothing():

@@ -88,18 +88,19 @@ class _Progress:
 
 
 def _curves(target: Target, rays: list[int], shifts: int, most: int) -> dict:
-    """Errors of one target: {variant: [one dict per number of rays]}, and the slopes of the default's."""
+    """Errors of one target: {variant: [one dict per number of rays]}, their slopes, and the level that the default converges to,
+    None in quick runs, which have too few rays to tell it."""
     variants = (*FOOTPRINTS, *SAMPLERS) if target.compares_footprints else (DEFAULT, *SAMPLERS)
     few = [2 ** exponent for exponent in FEW_EXPONENTS] if most > QUICK_RAYS else []
     curves = {}
     for variant in variants:
         counts = [*few, *rays] if variant == DEFAULT else rays
         curves[variant.label] = [_point(target, variant, count, shifts) for count in counts]
-    converged = float(np.mean(_errors(target, DEFAULT, CONVERGED_RAYS, NUM_SHIFTS_ABOVE)[0])) if few else 0.0
+    converged = float(np.mean(_errors(target, DEFAULT, CONVERGED_RAYS, NUM_SHIFTS_ABOVE)[0])) if few else None
     for points in curves.values():
         for point in points:
             errors = np.array(point.pop("errors"))
-            point["rms_from_converged_db"] = _rms(errors - converged)
+            point["rms_from_converged_db"] = None if converged is None else _rms(errors - converged)
     return {"title": target.title, "truth": target.truth, "converged_db": converged, "curves": curves,
             "slopes": {label: _slope(points, "rms_db") for label, points in curves.items()},
             "slopes_from_converged": {label: _slope(points, "rms_from_converged_db") for label, points in curves.items()}}
@@ -146,8 +147,10 @@ def plate_pairs(angle_deg: float, rays: list[int], shifts: int) -> list[dict]:
 def _slope(points: list[dict], quantity: str) -> float | None:
     """Of log error over log rays, least squares: from the first error below 3 dB to the first below 0.01 dB.
 
-    None for fewer than three numbers of rays there.
+    None for fewer than three numbers of rays there, and where the quantity is not known.
     """
+    if points[0][quantity] is None:
+        return None
     errors = np.array([max(point[quantity], 1e-9) for point in points])
     meant, settled = errors < MEANINGFUL_DB, errors < report.SETTLED_DB
     begin = int(np.argmax(meant)) if meant.any() else len(errors)

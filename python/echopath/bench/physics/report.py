@@ -28,6 +28,8 @@ def verdicts(results: dict) -> list[dict]:
         rows.append(_row(f"plate, {pair['angle_deg']:g} deg: rms dB at {_rays(pair['num_rays'])}, as unfiltered",
                          pair["unfiltered_db"] + allowed, pair["filtered_db"]))
     for target in targets.values():
+        if target["converged_db"] is None:
+            continue
         is_by_mesh = abs(target["converged_db"]) > SETTLED_DB  # what rays cannot mend must not flatten their slope
         slope = target["slopes_from_converged" if is_by_mesh else "slopes"][BEST]
         if slope is not None:
@@ -48,8 +50,11 @@ def describe(results: dict) -> list[str]:
     """Lines for people: errors of the targets, plates with and without the filter, what must be reached, costs."""
     machine = results["machine"]
     lines = [f"{machine['processor']}, {machine['threads']} threads, echopath {machine['echopath']}, "
-             f"rms dB over {results['shifts']} shifts", "", *_errors(results), *_plates(results)]
-    lines += ["", "must reach" + " " * 54 + "limit  measured"]
+             f"error in dB, rms over {results['shifts']} shifts of the rays",
+             "slope: of log error over log rays, -1 where twice the rays halve it; from converged: of the difference from what",
+             "the default converges to, 2^18 rays", "", *_errors(results), *_plates(results)]
+    if results["must_reach"]:
+        lines += ["", "must reach" + " " * 54 + "limit  measured"]
     lines += [f"  {row['what']:<60} {row['limit']:7.3f} {row['measured']:8.3f}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
     lines += ["",

@@ -6,9 +6,9 @@ python/docs/measurements.md.
 """
 from __future__ import annotations
 
-import multiprocessing
 import statistics
 
+from .alone import alone
 from .speed.synthesis import PATHS, Echoes, Finufft, finufft_version, tones
 
 REFERENCE_MACHINE = "an AMD EPYC (Zen 5, AVX-512)"
@@ -21,8 +21,7 @@ def pace() -> float | None:
 
     Measured in a process of its own: its memory is not that of what the benchmark measures.
     """
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
-        return pool.apply(measured_pace)
+    return alone(measured_pace)
 
 
 def measured_pace() -> float | None:

@@ -5,7 +5,6 @@ drive itself goes the way of `Sequence.save`, which traces the next frame meanwh
 """
 from __future__ import annotations
 
-import multiprocessing
 import tempfile
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import echopath as ep
 
 from ...sequence.keep import write_frame
 from ...sequence.unused_memory import resident_memory
+from ..alone import alone
 from ..suite import describe_judged, judged
 from ..timing import processor_time, wall_time
 from . import street
@@ -37,9 +37,7 @@ def rows(*, quick: bool = False) -> list[dict]:
 
     quick: a short street, few rays and frames, for a look
     """
-    with multiprocessing.get_context("spawn").Pool(1) as pool:  # its memory is that of the drive alone
-        found = pool.apply(_measured, (quick,))
-    return judged(found, LIMITS)
+    return judged(alone(_measured, quick), LIMITS)
 
 
 def describe(rows: list[dict]) -> list[str]:

@@ -6,7 +6,6 @@ a hand on a mouse feels.
 """
 from __future__ import annotations
 
-import multiprocessing
 import queue
 import statistics
 import time
@@ -18,6 +17,7 @@ import echopath as ep
 
 from ...base.data_folder import data_folder
 from ...sequence.unused_memory import resident_memory
+from ..alone import alone
 from ..crowd.scenes import BACKDROPS, flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row
 from ..timing import wall_time
@@ -40,8 +40,7 @@ MOST_ERROR, MOST_GROWTH = 1e-12, 1.1
 
 def rows(*, quick: bool = False) -> list[dict]:
     """A row for each figure: what, measured, limit and whether it holds. quick: few rays and updates, for a look"""
-    with multiprocessing.get_context("spawn").Pool(1) as pool:  # its memory is that of the live scene alone
-        return pool.apply(_rows, (quick,))
+    return alone(_rows, quick)
 
 
 def describe(rows: list[dict]) -> list[str]:

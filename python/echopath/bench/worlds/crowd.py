@@ -7,7 +7,6 @@ a whole, which is more by one, stands beside it.
 """
 from __future__ import annotations
 
-import multiprocessing
 import resource
 
 import numpy as np
@@ -16,6 +15,7 @@ import echopath as ep
 
 from ...paths.families import families
 from ...paths.visibility import visibility_in_trace
+from ..alone import alone
 from ..suite import describe_judged, judged
 from ..timing import processor_time
 from . import crowd_scene
@@ -32,19 +32,13 @@ def rows(*, quick: bool = False) -> list[dict]:
 
     quick: a small crowd, for a look
     """
-    found = _in_a_process(QUICK_EACH if quick else EACH, QUICK_RAYS if quick else RAYS)
+    found = alone(_labels, QUICK_EACH if quick else EACH, QUICK_RAYS if quick else RAYS, start="forkserver")
     return [row | {"what": f"crowd: {row['what']}"} for row in judged(found, LIMITS)]
 
 
 def describe(rows: list[dict]) -> list[str]:
     """What, the figure, its limit, and whether it holds."""
     return describe_judged(rows)
-
-
-def _in_a_process(each: int, rays: int) -> dict:
-    """`_labels` in a process of its own: its peak of memory is that of the crowd alone."""
-    with multiprocessing.get_context("forkserver").Pool(1) as pool:
-        return pool.apply(_labels, (each, rays))
 
 
 def _labels(each: int, rays: int) -> dict:

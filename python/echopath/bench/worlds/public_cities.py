@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import multiprocessing
 import statistics
 import warnings
 from pathlib import Path
@@ -24,6 +23,7 @@ import echopath as ep
 
 from ...base.stages import StageClock
 from ...paths.absent import NO_STRATUM
+from ..alone import alone
 from ..suite import describe_judged, judged, judged_row
 from ..timing import processor_time
 from . import peer
@@ -136,11 +136,10 @@ def compare(found, peers) -> dict:
 def _alone(folder: Path, rays: int) -> list[dict]:
     """What needs no peer, each in a process of its own."""
     file = str(folder / MUNICH.file)
-    with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
-        first = pool.apply(_first_trace, (file, {}, {"num_rays": rays, "max_bounces": BOUNCES}))
-        marked = {"*": ep.Material.metal(mirror=True)}
-        searches = {bounces: pool.apply(_first_trace, (file, marked, {"num_rays": SEARCH_RAYS, "max_bounces": bounces}))
-                    for bounces in (1, BOUNCES)}
+    first = alone(_first_trace, file, {}, {"num_rays": rays, "max_bounces": BOUNCES})
+    marked = {"*": ep.Material.metal(mirror=True)}
+    searches = {bounces: alone(_first_trace, file, marked, {"num_rays": SEARCH_RAYS, "max_bounces": bounces})
+                for bounces in (1, BOUNCES)}
     found = {"Munich, 1e6 rays, s": first["seconds"], "Munich, 1e6 rays, MiB": first["memory"] / MIB,
              "Munich, paths by images": first["by_images"], "Munich, paths": first["paths"]}
     for bounces, one in searches.items():

@@ -125,11 +125,10 @@ def _with_128_chirps(of: ep.Radar) -> ep.Radar:
 
 def _rows(quick: bool) -> list[dict]:
     found = []
-    for name, made in SCENES.items():
-        found += moved_rows(name, *made(), QUICK_RAYS if quick else RAYS, LIMITS[name], QUICK_UPDATES if quick else UPDATES)
-    for name, made in SCENES.items():
-        found += moved_rows(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
-                            QUICK_UPDATES if quick else UPDATES)
+    many, few = (RAYS, LIMITS), (FEW_RAYS, dict.fromkeys(LIMITS, MOST_SECONDS_OF_FEW))
+    for num_rays, limits in ((QUICK_RAYS, LIMITS),) if quick else (many, few):
+        for name, made in SCENES.items():
+            found += moved_rows(name, *made(), num_rays, limits[name], QUICK_UPDATES if quick else UPDATES)
     found += first_map_rows(WATCHED, *SCENES[WATCHED](), QUICK_RAYS if quick else RAYS, QUICK_UPDATES if quick else UPDATES)
     edits, soak = (QUICK_EDITS, QUICK_SOAK) if quick else (EDITS, SOAK_UPDATES)
     found.append(judged_row(f"{edits} random edits of the street of 20 objects: error", _error_of_edits(edits), MOST_ERROR))

@@ -153,4 +153,6 @@ def bench(options) -> None:
     run, describe = works[options.what]
     with progress_bars() as progress:
         lines = describe(run(options.out, quick=options.quick, progress=progress, **more.get(options.what, {})))
+    if options.quick:
+        print("quick run, for a look: few rays and repeats; limits are those of runs without --quick\n")
     print("\n".join(lines))

@@ -103,6 +103,16 @@ def test_gaussian_claims_cover_as_often_as_two_sigma_do():
     assert crowd_coverage.covered(claims, [6.0] * len(claims))["coverage"] == 0.0
 
 
+@pytest.mark.parametrize("count, told", [(8, []), (40, ["coverage, the worst: plates, 64 rays: at least 0.8",
+                                                         "coverage, plates, 40 runs: 0.9 to 0.98"])])
+def test_coverage_is_judged_from_enough_runs_on(count, told):
+    """Of 8 runs all hold in two thirds of the cases, .95 to the eighth, which tells nothing of an upper limit of .98."""
+    row = {"kind": "plates", "rays": 64, "count": count, "coverage": 1.0}
+    found = {"streets": [], "ground": [], "person": {"scatter": 0.0}, "mirrors": [],
+             "coverage": {"wanted": (0.9, 0.98), "wanted_of_one": 0.8, "rows": [row], "classes": [row]}}
+    assert [one["what"] for one in crowd.verdicts(found) if "coverage" in one["what"]] == told
+
+
 def test_intervals_of_what_no_ray_has_met_count_too():
     """A patch beside a board gets no ray at 64: its interval is what ep.unresolved says."""
     patch = next(echo for echo in crowd_coverage.all_echoes() if echo.kind == "diffuse, patch far away")

@@ -109,7 +109,7 @@ def verdicts(results: dict) -> list[dict]:
     if excess is not None:
         rows.append(_row("time per path from 1e5 paths on, spread", frames.LINEAR_TARGET, excess, most=True))
     rows += _memory_rows(results["frames"], results["large"])
-    rows += [_row(f"tracer over bare loop, {row['triangles']:,} triangles, {row['threads']} threads", row["target"],
+    rows += [_row(f"bare queries over their trace, {row['triangles']:,} triangles, {row['threads']} threads", row["target"],
                   row["share"])
              for row in results["tracer"]]
     for case in results["replay"]:
@@ -141,7 +141,7 @@ def _memory_rows(by_kind: dict, large: dict | None) -> list[dict]:
 
 def _row(what: str, limit: float, measured: float, *, most: bool = False) -> dict:
     holds = measured <= limit if most else measured >= limit
-    return {"what": what, "limit": limit, "measured": measured, "holds": bool(holds)}
+    return {"what": what, "limit": limit, "at_most": most, "measured": measured, "holds": bool(holds)}
 
 
 def describe(results: dict) -> list[str]:
@@ -155,8 +155,9 @@ def describe(results: dict) -> list[str]:
              *_tracer_lines(results["tracer"]), *retrace.describe_retrace(results["retrace"]),
              *(line for street in results["street"] for line in _street_lines(street)),
              *guard.describe_guard(results["guard"]), *faint.describe_faint(results["faint"]), "",
-             "must reach" + " " * 52 + "limit     measured"]
-    lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
+             "must reach" + " " * 55 + "limit     measured"]
+    lines += [f"  {row['what']:<56}{'at most' if row['at_most'] else 'at least':>9}{row['limit']:>10.4g}"
+              f"{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
     return lines + ["", f"{results['seconds']:.0f} s in all"]
 

@@ -62,7 +62,7 @@ extra_idle: s, 0 or more, by which the slot after this one begins later: slot i 
 frequency_steps: Hz added to the start frequency of a slot, likewise (frequency hopping)
 bandwidth_steps: Hz added to the bandwidth of a slot, likewise; maps keep the axes of the waveform without steps
 Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
-bandwidth above start_frequency or below 1 kHz and of a chirp_interval above 1 s, which look like other units.)");
+bandwidth above start_frequency or below 5 kHz and of a chirp_interval above 1 s, which look like other units.)");
   define_members(type, WaveformKeywords{}, [](const ChirpSequence& made) {
     made.validate();
     require_plausible(made);

@@ -183,7 +183,7 @@ def _draw_panel(axes, one: Aspect) -> None:
 
 def describe(found: list[Aspect]) -> list[str]:
     """Lines for people."""
-    lines = ["actor                    mean    median  peak   published              "]
+    lines = ["over azimuth, dBsm         mean  median    peak  published"]
     for one in found:
         known = one.subject.low is not None
         band = f"{one.subject.statistic} {one.subject.low:.1f} to {one.subject.high:.1f}" if known else "no band"

@@ -85,11 +85,11 @@ def run_published(folder, *, quick: bool = False, progress=None) -> list[Compari
 
 def describe(rows: list[Comparison]) -> list[str]:
     """Lines of a table for people."""
-    lines = [f"{'target':46} {'model':>7} {'published':>16} {'deviation':>10}"]
+    lines = [f"{'target':46} {'model':>7}      {'published':>16} {'off its middle':>15}"]
     for row in rows:
         band = f">= {row.low:.1f}" if math.isinf(row.high) else f"{row.low:.1f} to {row.high:.1f}"
-        verdict = "" if row.is_within else "  outside" if row.is_held else "  outside: not valid there"
-        lines.append(f"{row.name:46} {row.model:7.2f} {band:>16} {row.deviation:+7.2f} dB{verdict}")
+        verdict = "within" if row.is_within else "OUTSIDE" if row.is_held else "outside, where the model is not valid"
+        lines.append(f"{row.name:46} {row.model:7.2f} {row.unit:4} {band:>16} {row.deviation:+12.2f} dB  {verdict}")
     sources = dict.fromkeys(row.source for row in rows)
     return [*lines, "sources", *(f"  {', '.join(_short(rows, source))}: {source}" for source in sources)]
 

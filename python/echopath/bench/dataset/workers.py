@@ -48,8 +48,9 @@ def describe(rows: list[dict]) -> list[str]:
     """Lines for people."""
     lines = [f"{'workers':<9}{'frames':>7}{'processor s':>13}{'busiest s':>11}{'growth':>8}{'start s':>9}{'MiB a worker':>14}"]
     for row in rows:
-        growth = "" if row["workers"] == 1 else f"  {'holds' if row['holds'] else 'MISSED'}: {LEAST_GROWTH * row['workers']:.1f}"
-        memory = f"  {'holds' if row['memory_holds'] else 'MISSED'}: {MOST_MEMORY / 2 ** 20:.0f} MiB"
+        least = f"  at least {LEAST_GROWTH * row['workers']:.1f}: {'holds' if row['holds'] else 'MISSED'}"
+        growth = "" if row["workers"] == 1 else least
+        memory = f"  at most {MOST_MEMORY / 2 ** 20:.0f} MiB: {'holds' if row['memory_holds'] else 'MISSED'}"
         lines.append(f"{row['workers']:<9}{row['frames']:7d}{row['seconds']:13.2f}{row['busiest']:11.2f}{row['growth']:8.2f}"
                      f"{row['start']:9.2f}{row['memory'] / 2 ** 20:14.0f}{growth}{memory}")
     return lines

@@ -12,6 +12,7 @@ import echopath as ep
 from fuzz.folder import memory_folder
 from fuzz.foreign_seeds import frame_text, seeds_by_suffix
 from fuzz.mutate import damaged, mistaken
+from fuzz.usd_trials import fork_trials
 
 BINARY = (".npz", ".usdc", ".usdz")
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -30,6 +31,8 @@ def _folder() -> tempfile.TemporaryDirectory:
 
 def feed_foreign(suffix: str):
     """Cases of one kind of file: a model that a scene takes, or an error that names the file."""
+    if suffix.startswith(".usd"):
+        fork_trials()
     folder, seeds = _folder(), seeds_by_suffix()[suffix]
     path = Path(folder.name) / f"scene{suffix}"
     for seed in seeds:

@@ -1,18 +1,20 @@
 """A short run of the fuzzers of the readers in Python; a long one: `./bootstrap.sh fuzz`."""
 import os
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import echopath as ep
-from fuzz import targets, worker
+from echopath.readers.usd import trial
+from fuzz import targets, usd_trials, worker
+from fuzz.foreign_seeds import seeds_by_suffix
 from fuzz.seeds import frames
 
-# Of USD few: a process of its own opens each file that is binary or names others.
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
          "gltf_bytes": 300, "gltf_json": 300, "gltf_bin": 200, "frames_folder": 200, "mtl": 200, "xml": 300, "usda": 100,
-         "usdc": 25, "usdz": 25, "npz": 200, "bvh": 40, "obj": 200, "stl": 200, "off": 200,
+         "usdc": 100, "usdz": 100, "npz": 200, "bvh": 40, "obj": 200, "stl": 200, "off": 200,
          "table": 100, "sumo": 100, "gpx": 100, "sensor": 200, "template": 200, "sequence": 40}
 
 
@@ -25,6 +27,19 @@ def test_each_target_has_a_short_run():
 def test_readers_refuse_or_read_whatever_comes(target):
     count, findings = worker.run(target, range(CASES[target]))
     assert count == CASES[target] and findings == []
+
+
+@pytest.mark.hard
+@pytest.mark.parametrize("name", ["whole", "cut off", "crashes USD"])
+def test_a_fork_ends_on_a_stage_as_a_new_process_does(name, tmp_path):
+    pytest.importorskip("pxr", reason="usd-core, of the extra 'usd', is not installed")
+    corpus = Path(targets.__file__).parent / "corpus" / "usdc"
+    whole = seeds_by_suffix()[".usdc"][0]
+    path = tmp_path / "stage.usdc"
+    path.write_bytes({"whole": whole, "cut off": whole[:600], "crashes USD": next(corpus.iterdir()).read_bytes()}[name])
+    new, forked = (opened(path, 60.0, 2 ** 33) for opened in (trial._opened_apart, usd_trials.opened_by_fork))
+    assert (forked.returncode, forked.stdout) == (new.returncode, new.stdout)
+    assert np.sign(new.returncode) == {"whole": 0, "cut off": 1, "crashes USD": -1}[name]
 
 
 def _faulty():

@@ -56,7 +56,7 @@ def _template(name: str, folder: Path) -> Template:
 
 
 def _paper_street() -> str:
-    """The street of the paper, whose walls and road are mirrors that scatter too: 13 paths a ray."""
+    """The street of the paper, whose walls and road are mirrors that scatter too: 11 paths a ray."""
     text = (data_folder("scenes") / "street.toml").read_text(encoding="utf-8")
     radar, objects = text[:text.index("[[radar.transmitters]]")], text[text.index("[[objects]]"):text.index("[parts.route]")]
     return (radar.replace("num_chirps = 256", "num_chirps = 128") + _antennas(1.0)

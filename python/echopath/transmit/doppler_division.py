@@ -3,8 +3,9 @@
 With Q shares, M of them with a transmitter, a target in share b of the axis shows in shares b to b + M - 1 (modulo Q) and
 leaves the others empty: cells d + j N / Q of one range, j = 0 .. Q - 1, have one target at most, and b is where the empty
 shares have the least power, summed over the receivers and over the cells next to each. The value of transmitter m at that
-velocity is then that of share b + m; at velocities of other shares stands what an empty one holds, the noise. Cells whose
-shares do not differ more than noise does are left as they are, so that noise keeps its level and its distribution.
+velocity is then that of share b + m; at velocities of other shares stands what an empty one holds, the noise, for each
+transmitter that of other cells nearby: detectors take the noise of channels for independent. Cells whose shares do not differ
+more than noise does are left as they are, so that noise keeps its level and its distribution.
 
 Both axes are tapered by Hamming's window meanwhile (sidelobes at -43 dB), so that a strong target does not decide for weak
 ones beside it; the taper is taken out again. Velocities of two targets at one range that are a multiple of a share apart
@@ -21,9 +22,10 @@ from .code import num_shares
 
 # Share of the cells of noise alone that seem to have a target.
 FALSE_TARGET_RATE = 1e-2
-# Chirps of a share below which the lobe of a target, of four cells, and their neighbours reach over the shares beside its own:
+LOBE = 4  # cells of a target behind the taper; the noise of cells so far apart is independent
+# Chirps of a share below which the lobe of a target and its neighbours reach over the shares beside its own:
 # maps of tones are off by 1.3 of their peak with 2, by 0.26 with 3, and by 0.02 with 4.
-LEAST_CHIRPS = 4
+LEAST_CHIRPS = LOBE
 
 
 def undo_doppler_division(signal: np.ndarray, radar, whole: np.ndarray | None = None) -> np.ndarray:
@@ -42,16 +44,24 @@ def undo_doppler_division(signal: np.ndarray, radar, whole: np.ndarray | None = 
     share, ratio = _shares_and_ratios(_smoothed_power(deciding), num_tx, shares)
     is_target = ratio > _ratio_of_noise(num_tx, shares, num_rx)
     cells = cells.reshape(num_rx, shares, num_chirps // shares, num_samples)
+    empty = np.where(is_target, (share + num_tx) % shares, 0)
+    noise = np.take_along_axis(cells, empty[None, None], axis=1)[:, 0]
     apart = np.empty((num_tx, *cells.shape), np.complex128)
     for tx in range(num_tx):
+        of_tx = _from_nearby(noise, tx)
         for b in range(shares):
             apart[tx, :, b] = cells[:, (b + tx) % shares]
-            other = is_target & (share != b)
-            empty = np.take_along_axis(cells, ((share + num_tx) % shares)[None, None], axis=1)[:, 0]
-            np.copyto(apart[tx, :, b], empty, where=other)
+            np.copyto(apart[tx, :, b], of_tx, where=is_target & (share != b))
     values = np.fft.ifft2(apart.reshape(num_tx, num_rx, num_chirps, num_samples))
     values /= taper
     return values
+
+
+def _from_nearby(noise, index: int):
+    """Noise [rx, D, S] of cells a number of lobes away, along the velocities of a share first: it varies with range behind
+    filters. Of other indices it is independent, as long as the cells last."""
+    along_range, along_velocity = divmod(index, max(1, noise.shape[1] // LOBE))
+    return np.roll(noise, (LOBE * along_velocity, LOBE * along_range), axis=(1, 2))
 
 
 def _smoothed_power(cells):

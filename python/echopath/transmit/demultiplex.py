@@ -10,13 +10,15 @@ from ..base.chirps import chirp_period
 from .code import code_of, hadamard, is_coded, num_frame_slots
 from .doppler_division import undo_doppler_division
 
+_LEAST_TAPERED = 16  # chirps, of which fewer are all near the ends of the frame
+
 
 @checked()
 def demultiplex(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]:
     """The signal of each transmitter from what the receivers have of all of them.
 
     "tdm": the slots in a row become the chirps of their transmitters. "bpm": the sum of the slots of a chirp by their signs,
-    each slot turned back to the time of the first by the velocity of its Doppler cell; exact for what stands still, and up to
+    each slot turned back to the time of the first by the velocity of its Doppler cell; exact for what stands still, and but for
     the ends of the frame for velocities within +-`max_velocity(num_slots)`. "ddm": each cell of range and velocity is one
     transmitter's, by the empty shares of the Doppler axis, so that velocities are known within +-`max_velocity()`; of two
     targets at one range whose velocities are a share apart the stronger one is right (see `transmit/doppler_division.py`). With
@@ -46,14 +48,41 @@ def _undo_turns(signal, radar):
 
 
 def _undo_signs(signal, radar):
-    """Slot i of a chirp is i / length of the chirp's interval late: e^{-j 2 pi f i} takes that out of cell f of the chirps."""
+    """Slots turned back to the first of their chirp make a circle of the frame, in which a step between its ends rings at the
+    highest velocity. Away from the ends, signals are those of slots behind a taper without a step, which is taken out again."""
     num_rx, _, num_samples = signal.shape
-    length, num_chirps = radar.num_slots, radar.waveform.num_chirps
-    late = np.array([radar.waveform.slot_start(slot) for slot in range(length)]) / chirp_period(radar)
-    by_slot = np.fft.fft(signal.reshape(num_rx, num_chirps, length, num_samples), axis=1)
-    by_slot *= np.exp(-2j * np.pi * np.fft.fftfreq(num_chirps)[:, None] * late)[:, :, None]
+    num_chirps = radar.waveform.num_chirps
+    slots = signal.reshape(num_rx, num_chirps, radar.num_slots, num_samples)
+    plain = _without_signs(slots, radar)
+    if num_chirps < _LEAST_TAPERED:
+        return plain
+    chirps = np.arange(num_chirps)[:, None]
+    taper = _hann(chirps / num_chirps)
+    tapered = _without_signs(slots * _hann((chirps + _lateness(radar)) / num_chirps)[..., None], radar)
+    # Where the taper is less than some 8 / num_chirps its removal would raise the noise.
+    inner = (1.0 - (1.0 - taper) ** (num_chirps // 8)) ** 2
+    return (1.0 - inner) * plain + np.divide(inner, taper, out=np.zeros_like(taper), where=taper > 0.0) * tapered
+
+
+def _without_signs(slots, radar):
+    """Slot i of a chirp is i / length of the chirp's interval late: e^{-j 2 pi f i} takes that out of cell f of the chirps.
+
+    slots: [rx, chirp, slot, S] -> [tx, rx, chirp, S]
+    """
+    _, num_chirps, length, _ = slots.shape
+    by_slot = np.fft.fft(slots, axis=1)
+    by_slot *= np.exp(-2j * np.pi * np.fft.fftfreq(num_chirps)[:, None] * _lateness(radar))[:, :, None]
     signs = hadamard(length)[:len(radar.transmitters)] / length
     return np.fft.ifft(np.einsum("tl,rcls->trcs", signs, by_slot, optimize=True), axis=2)
+
+
+def _lateness(radar):
+    """Of the slots [slot] of a chirp, in intervals of chirps."""
+    return np.array([radar.waveform.slot_start(slot) for slot in range(radar.num_slots)]) / chirp_period(radar)
+
+
+def _hann(place):
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi * place)
 
 
 def _undo_phases(signal, radar):

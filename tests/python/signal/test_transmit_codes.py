@@ -93,6 +93,21 @@ def test_moving_targets_keep_their_azimuth_through_signs(speed):
     assert ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] == pytest.approx(0.2, abs=0.02)
 
 
+@pytest.mark.parametrize("turns", [0.1037, 0.23, -0.41])
+def test_moving_targets_have_no_false_ones_at_the_highest_velocity_through_signs(turns):
+    """Turns of a target's phase from chirp to chirp: at half a turn it had had another of itself, 40 to 48 dB below."""
+    radar = build_radar([(0, m * HALF, 0) for m in range(NUM_TX)], num_chirps=64, num_samples=16, multiplexing="bpm")
+    slot = np.arange(64 * 4)
+    signs = np.where(((slot % 4)[:, None] & np.arange(NUM_TX)) % 3 == 0, 1.0, -1.0)  # columns of the matrix of order 4
+    received = signs.sum(axis=1) * np.exp(2j * np.pi * turns * slot / 4)
+    apart = ep.demultiplex(np.broadcast_to(received[:, None], (1, 1, 256, 16)), radar)
+    spectrum = ep.range_doppler(apart, radar)
+    cells = np.abs(np.arange(64) - 32 - 64 * turns)
+    highest = np.abs(spectrum.values[:, 0, :, 0])
+    assert np.max(highest[:, cells < 1], axis=1) == pytest.approx(1.0, abs=0.16)  # a peak between the cells
+    assert np.max(highest[:, 0]) < 10.0 ** (-50 / 20)
+
+
 def test_noise_keeps_its_level_and_its_false_alarms_through_doppler_division():
     radar = array_radar("ddm", num_chirps=64, num_samples=128)
     noise = ep.add_noise(np.zeros((1, NUM_RX, 64, 128)), radar, seed=3)

@@ -18,6 +18,7 @@ from .interferers import Interferer, interferers_of, interferers_rule, interfere
 from .materials import known_material, materials
 from .node import SceneNode, lifetime_of, split_motion
 from .placements import ORIGIN, motion_ahead, placement
+from .seams import without_seams
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
 
@@ -113,7 +114,8 @@ class Scene(_core.Scene):
         transform: [4, 4] instead of position and yaw
         parent: full name of a node; None: the root
         smooth: True for meshes that stand for curved surfaces: normals, positions and curvature are interpolated, except
-            across creases of more than 30 degrees; parts of actors may bring it themselves
+            across creases of more than 30 degrees; parts of actors may bring it themselves. Triangles of a mesh that touch
+            without corners in common are joined where they turn by less than 20 degrees
         visible: False: it takes no part in anything until `scene[name].visible` is set
         Raises ValueError or TypeError naming the argument; then nothing has been added. Warns (RuntimeWarning) of a yaw
         beyond a turn, which looks like degrees.
@@ -187,6 +189,8 @@ class _Batch:
         self._visible = visible
 
     def add_object(self, content, name, material, motion, place) -> None:
+        if self._smooth and not isinstance(motion, _core.Deformation):
+            content = _joined(content)
         if content is None or isinstance(content, _core.Mesh):
             self._add_mesh(name, self._parent, place, motion, content, material)
             return
@@ -235,6 +239,15 @@ class _Batch:
                                      smooth=(self._smooth or smooth) and mesh is not None,
                                      visible=self._visible or len(self.nodes) > 0, lifetime=lifetime))
         return self._first + len(self.nodes) - 1
+
+
+def _joined(content):
+    """The content; a mesh, and those of a list, without seams."""
+    if isinstance(content, _core.Mesh):
+        return without_seams(content)
+    if isinstance(content, (list, tuple)):
+        return [(item[0], without_seams(item[1])) if _is_named_mesh(item) else item for item in content]
+    return content
 
 
 def _refuse_two_motions(content, motion, speed) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..base.callers import warn_user
+from ..scene.seams import is_soup, without_seams
 from .polarization import COHERENT_SHARE
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
@@ -120,7 +121,7 @@ def _measured(mesh) -> Tessellation | None:
     """The tessellation of a mesh, measured once."""
     measured = _known.get(mesh, _known)
     if measured is _known:
-        measured = _tessellation_of(mesh)
+        measured = _tessellation_of(without_seams(mesh) if is_soup(mesh) else mesh)
         _known.set(mesh, measured)
     return measured
 

@@ -150,6 +150,26 @@ def test_edges_of_faces_that_come_apart_are_those_of_a_fresh_scene():
         assert difference(live.update(), fresh_view(live, edges=True)) < ROUNDING
 
 
+def test_rays_that_meet_no_sheet_stay_as_they_are_where_the_first_one_comes_and_the_last_one_goes():
+    """Rays that rough things scatter took other random numbers in scenes with sheets: 7e-4."""
+    scene = ep.Scene()
+    rough = ep.Material(permittivity=5.0, scattering=0.5)
+    scene.add(ep.actors.ground((20.0, 12.0)), name="ground", material="asphalt", position=(8.0, 0.0, -0.01))
+    scene.add(ep.actors.wall(6.0, 3.0), name="wall", material=rough, position=(7.0, 1.6, 0.0))
+    for k in range(4):
+        scene.add(ep.actors.box((0.6, 0.6, 1.2)), name=f"box_{k}", material=rough, position=(4.0 + 0.9 * k, 0.5 * (-1) ** k, 0.6),
+                  yaw=0.3 * k)
+    live = ep.Live(scene, small_street().radar, num_rays=RAYS)
+    live.update()
+    for change in (lambda scene: scene.add(ep.actors.plate(0.5, 0.5), name="pane", material="glass_pane", yaw=0.3,
+                                           position=(3.0, -3.0, 1.0)),
+                   lambda scene: scene.remove("pane")):
+        live.change(change)
+        view = live.update()
+        assert view.num_rays_shot < view.num_rays
+        assert difference(view, fresh_view(live)) < ROUNDING
+
+
 def test_weather_that_comes_weakens_echoes_by_the_length_of_their_way():
     """A plate at 40 m: 80 m of fog, as dense as may be."""
     _, radar, _ = crowded_street()

@@ -156,7 +156,8 @@ bool RayWalk<Weight>::arrive(const RayHit& met, Scratch& scratch, PathBlock& blo
   return true;
 }
 
-// Follows a ray as shoot_lane does, in a scene with sheets.
+// Follows a ray as shoot_lane does, in a scene with sheets. A ray that meets none takes the same random numbers there: where
+// sheets come or go, all others keep their paths.
 template <class Weight>
 void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const {
   const bool has_plain_hit = has_straight_legs_ && is_plain(scratch.first, lane);
@@ -164,11 +165,17 @@ void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBl
   start(lane, scratch);
   if (!has_plain_hit) connect(scratch, block);
   const FirstHits& first = scratch.first;
-  const auto go_on = [&] { go_on_among_sheets(first.sample(lane), scratch, block); };
-  if (first.is_split(lane)) {
+  const ScatterSample sample = first.sample(lane), mirrored = first.mirrored_sample(lane);
+  RayHit met, met_mirrored;
+  const bool goes_on = first.goes_on[lane] && meets_next(sample, 0.0, scratch, met, block);
+  const bool is_split = first.is_split(lane) && meets_next(mirrored, 0.0, scratch, met_mirrored, block);
+  const auto go_on = [&] {
+    if (goes_on) go_on_among_sheets(sample, met, scratch, block);
+  };
+  if (is_split) {
     take_beside(scratch, block, go_on);
-    go_on_among_sheets(first.mirrored_sample(lane), scratch, block);
-  } else if (first.goes_on[lane]) {
+    go_on_among_sheets(mirrored, met_mirrored, scratch, block);
+  } else {
     go_on();
   }
   block.end_ray(scratch.ray.hits.data());
@@ -180,28 +187,26 @@ void RayWalk<Weight>::follow_among_sheets(Scratch& scratch, PathBlock& block) co
   if (scratch.ray.depth == context_.settings.max_bounces) return;
   ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
   if (sample.ends) return;
+  RayHit met;
   if (sample.is_split) {
-    take_beside(scratch, block, [&] { go_on_among_sheets(sample, scratch, block); });
+    if (meets_next(sample, 0.0, scratch, met, block)) {
+      take_beside(scratch, block, [&] { go_on_among_sheets(sample, met, scratch, block); });
+    }
     sample = scatterer_.mirrored_beside(scratch.ray, scratch.surface, sample);
   }
-  go_on_among_sheets(sample, scratch, block);
+  if (meets_next(sample, 0.0, scratch, met, block)) go_on_among_sheets(sample, met, scratch, block);
 }
 
-// Has the ray reflected at each sheet on its way, and carries it on behind the last one.
+// Has the ray reflected at each sheet on its way, of which `met` may be the first, and carries it on behind the last one.
 template <class Weight>
-void RayWalk<Weight>::go_on_among_sheets(const ScatterSample& sample, Scratch& scratch, PathBlock& block) const {
+void RayWalk<Weight>::go_on_among_sheets(const ScatterSample& sample, RayHit met, Scratch& scratch, PathBlock& block) const {
   if (!scatterer_.leave(scratch.ray, scratch.surface, sample, scratch.legs)) return;
-  RayHit met;
-  double begin = 0.0;
-  while (meets_next(sample, begin, scratch, met, block)) {
-    if (!context_.geometry.is_sheet(met.hit.mesh_id)) {
-      if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
-      return;
-    }
+  while (context_.geometry.is_sheet(met.hit.mesh_id)) {
     reflect_at_sheet(met, scratch, block);
     ++scratch.ray.num_splits;
-    begin = context_.geometry.behind(met.distance, met.reported);
+    if (!meets_next(sample, context_.geometry.behind(met.distance, met.reported), scratch, met, block)) return;
   }
+  if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
 }
 
 // Finds what the ray meets next: at sheets only while it may still split.

@@ -39,7 +39,7 @@ class RayWalk {
   bool arrive(const RayHit& met, Scratch& scratch, PathBlock& block) const;
   void shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const;
   void follow_among_sheets(Scratch& scratch, PathBlock& block) const;
-  void go_on_among_sheets(const ScatterSample& sample, Scratch& scratch, PathBlock& block) const;
+  void go_on_among_sheets(const ScatterSample& sample, RayHit met, Scratch& scratch, PathBlock& block) const;
   bool meets_next(const ScatterSample& sample, double begin, Scratch& scratch, RayHit& met, PathBlock& block) const;
   void reflect_at_sheet(const RayHit& met, Scratch& scratch, PathBlock& block) const;
 

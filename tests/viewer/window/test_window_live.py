@@ -54,6 +54,23 @@ def test_a_scene_that_becomes_live_is_traced_as_before(moving_sequence):
     assert {name: getattr(found, name) for name in traced} == traced
 
 
+@pytest.mark.parametrize("choices", [{}, {"attenuation by weather": False}])
+def test_a_scene_that_becomes_live_stays_in_its_weather(tmp_path, choices):
+    """Echoes in fog, of which records do not know the scene's weather, as loud as before, again after a stop and from a file."""
+    scene = ep.Scene(weather=ep.Weather(fog_g_per_m3=10.0))
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(40.0, 0.0, 0.5), yaw=np.pi)
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=3e8, num_samples=128, sampling_rate=10e6, num_chirps=4,
+                                chirp_interval=3e-5)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0.0, 0.0, 0.5))], receivers=[ep.Antenna((0.0, 0.01, 0.5))])
+    frame = ep.simulate(scene, radar, num_rays=500, guard=False, noise_seed=None, effects=choices)
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    for shown in (frame, ep.load_frame(tmp_path / "frame.h5")):
+        live = live_of(Session(from_frame(shown)), num_rays=500)
+        again = live_of(Session(input_of_view(live, live.update())), num_rays=500)
+        for view in (live.update(), again.update()):
+            assert np.abs(view.cube).max() == pytest.approx(np.abs(frame.cube).max(), rel=0.02)
+
+
 def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):
     window, panel = live_window, live_window.live_panel
     settled(qtbot, window)

@@ -46,7 +46,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.paths, self.parts = view_input.paths, view_input.parts
         self.scene, self.radar = self.paths.scene, self.paths.radar
         self.title, self.cube, self.note = view_input.title, view_input.cube, view_input.note
-        self.kept_maps, self.angles = view_input.kept_maps, view_input.angles
+        self.kept_maps, self.angles, self.weather = view_input.kept_maps, view_input.angles, view_input.weather
         self.signals, self.file_state = view_input.signals, view_input.file_state
         self.known, self.layers, self._known_data = view_input.known, set(), {}
         self.mesh_names = [mesh.name for mesh in self.scene.meshes]

@@ -11,6 +11,7 @@ from echopath.frame_file import KeptMeshes, read_frame
 from echopath.paths.subset import part_of_path
 from echopath.scene.lifetimes import scene_in_frame
 from echopath.signals.same_radar import difference
+from echopath.weather.weather import weather_of
 
 from .kept_orders import KeptOrders, read_kept
 from ..maps.layers import Known, are_of_map
@@ -27,6 +28,7 @@ class ViewInput:
     kept: what an earlier view has kept in the file, None: nothing
     file_state: of the file from before it was read, None: there is no file
     angles: keywords of `range_azimuth` that the frame was asked for, None: there is no frame
+    weather: ep.Weather that weakens the echoes, which scenes of records do not tell; None: none does
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
     """
 
@@ -41,6 +43,7 @@ class ViewInput:
     kept: KeptOrders | None = None
     file_state: tuple | None = None
     angles: dict | None = None
+    weather: ep.Weather | None = None
 
 
 def from_file(path, meshes: KeptMeshes | None = None) -> ViewInput:
@@ -69,7 +72,12 @@ def from_frame(frame, title: str = "") -> ViewInput:
     signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
                       getattr(frame, "keyframes", 0))
     return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title, _known(frame),
-                     angles=dict(frame.angle_settings))
+                     angles=dict(frame.angle_settings), weather=_weather_of(frame.scene, frame.paths))
+
+
+def _weather_of(scene, paths) -> ep.Weather | None:
+    """What weakens the echoes of paths in a scene: weather whose effect was switched off does not."""
+    return weather_of(scene) if paths.frame.attenuation > 0.0 else None
 
 
 def _known(frame) -> Known:
@@ -101,7 +109,8 @@ def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate=
     signals = Signals(paths, {"window": window, "zero_pad": zero_pad}, evaluate, retrace, keyframes)
     made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, signals)]
     cube = signals.whole()
-    return ViewInput(paths, PartSet(whole_part(signals.map_of(cube)), made), signals, cube, title)
+    return ViewInput(paths, PartSet(whole_part(signals.map_of(cube)), made), signals, cube, title,
+                     weather=_weather_of(scene, paths))
 
 
 def whole_part(spectrum) -> Part:

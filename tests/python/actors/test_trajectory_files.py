@@ -247,6 +247,7 @@ WRONG = {
               ("t,x,y,t\n", "line 1: column 't'"), ("t [fortnights],x,y\n", "column 't .*its unit must be one of s, .*nights"),
               ("t,x,y\n0,0,0\n1,1e9,0\n", "line 3: x: .*1e\\+07.* got '1e9'"),
               ("t,lat,lon\n0,91,0\n", "line 2: latitude"), ("t,x,y,speed\n0,0,0,-3\n", "line 2: speed: must be at least 0"),
+              ("timestep_time;vehicle_id;vehicle_x;vehicle_y\n0.0;a;0;0\n", "is a table of SUMO, .* read as .xml"),
               ("t x y\n0 0 0\n", "line 1: must name columns: .* got t x y, without commas, semicolons or tabs between"),
               ("t,x,y\n315966253572412000,0,0\n", "line 2: time: must be at most 1e\\+12 s, .*; a unit in brackets"),
               ("t,x,y\n01.05.2026 12:00:00,0,0\n", "line 2: time: must be a number of seconds or a time such as 2026-"),

@@ -41,6 +41,7 @@ UNITS = {
     "speed": {"m/s": 1.0, "mps": 1.0, "km/h": 1.0 / 3.6, "kmh": 1.0 / 3.6, "kph": 1.0 / 3.6, "mph": 0.44704,
               "knots": 1852.0 / 3600.0},
 }
+OF_SUMO = "timesteptime"     # the time of its tables, whose places are those of fronts and angles those of a compass
 _OF_TEXT = ("id", "kind")
 UNCLEAR = ("heading", "headingdeg", "headingrad", "angle", "course", "orientation", "bearing")
 
@@ -108,6 +109,8 @@ def _columns(path: Path, line: int, header: list[str]) -> dict[str, Column]:
         marks = [mark.strip() for mark in re.findall(r"[\[(](.*?)[\])]", text.lower())]
         if word in ("yaw", "psi") and any(mark in _DEGREES for mark in marks):
             word += "deg"
+        if word == OF_SUMO:
+            refuse(path, line, f"column '{text.strip()[:60]}': is a table of SUMO, whose floating car data are read as .xml only")
         if word in UNCLEAR:
             refuse(path, line, f"column '{text.strip()[:60]}': may be counted in several ways; call it yaw (rad, from x to y) or "
                    "yaw_deg")

@@ -5,7 +5,8 @@ leaves the others empty: cells d + j N / Q of one range, j = 0 .. Q - 1, have on
 shares have the least power, summed over the receivers and over the cells next to each. The value of transmitter m at that
 velocity is then that of share b + m; at velocities of other shares stands what an empty one holds, the noise, for each
 transmitter that of other cells nearby: detectors take the noise of channels for independent. Cells whose shares do not differ
-more than noise does are left as they are, so that noise keeps its level and its distribution.
+more than noise does, or not much more and are no stronger than noise, are left as they are, so that noise keeps its level and its
+distribution.
 
 Both axes are tapered by Hamming's window meanwhile (sidelobes at -43 dB), so that a strong target does not decide for weak
 ones beside it; the taper is taken out again. Velocities of two targets at one range that are a multiple of a share apart
@@ -14,6 +15,7 @@ cannot be told apart: the stronger one's share is taken for both.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +24,8 @@ from .code import num_shares
 
 # Share of the cells of noise alone that seem to have a target.
 FALSE_TARGET_RATE = 1e-2
+# Share of them in which shares differ by enough for a target, were it strong enough.
+DIFFERENT_RATE = 0.3
 LOBE = 4  # cells of a target behind the taper; the noise of cells so far apart is independent
 # Chirps of a share below which the lobe of a target and its neighbours reach over the shares beside its own:
 # maps of tones are off by 1.3 of their peak with 2, by 0.26 with 3, and by 0.02 with 4.
@@ -41,8 +45,8 @@ def undo_doppler_division(signal: np.ndarray, radar, whole: np.ndarray | None = 
     taper = _hamming(num_chirps)[:, None] * _hamming(num_samples)
     cells = np.fft.fft2(signal * taper)
     deciding = cells if whole is None else np.fft.fft2(whole * taper)
-    share, ratio = _shares_and_ratios(_smoothed_power(deciding), num_tx, shares)
-    is_target = ratio > _ratio_of_noise(num_tx, shares, num_rx)
+    found = _found(_smoothed_power(deciding), num_tx, shares)
+    share, is_target = found.share, found.is_target(_limits_of_noise(num_tx, shares, num_rx))
     cells = cells.reshape(num_rx, shares, num_chirps // shares, num_samples)
     empty = np.where(is_target, (share + num_tx) % shares, 0)
     noise = np.take_along_axis(cells, empty[None, None], axis=1)[:, 0]
@@ -72,26 +76,51 @@ def _smoothed_power(cells):
     return power
 
 
-def _shares_and_ratios(power, num_tx: int, shares: int):
-    """Of power [chirp, S]: the share [D, S] of a target, and the ratio [D, S] of the mean power of full and empty shares."""
+class _Limits(NamedTuple):
+    """What noise seldom exceeds. alone: of the ratio by itself; ratio, level: of both together"""
+
+    alone: float
+    ratio: float
+    level: float
+
+
+class _Found(NamedTuple):
+    """Of a target in each cell of a share, [D, S]. share: where it is; ratio: of the mean power of full shares to that of empty
+    ones; level: of that of full shares to the median over the velocities at its range, which clutter raises"""
+
+    share: np.ndarray
+    ratio: np.ndarray
+    level: np.ndarray
+
+    def is_target(self, limits: _Limits) -> np.ndarray:
+        """Whether there is one. The empty shares are few and the median is sure of the noise: it finds the weak ones."""
+        return (self.ratio > limits.alone) | ((self.ratio > limits.ratio) & (self.level > limits.level))
+
+
+def _found(power, num_tx: int, shares: int) -> _Found:
+    """Of power [chirp, S]."""
+    tiny = np.finfo(float).tiny
+    noise = np.maximum(np.median(power, axis=0), tiny)
     power = power.reshape(shares, -1, power.shape[-1])
-    num_empty = shares - num_tx
     empty = np.stack([sum(power[(b + e) % shares] for e in range(num_tx, shares)) for b in range(shares)])
     share, rest = np.argmin(empty, axis=0), np.min(empty, axis=0)
-    full = np.sum(power, axis=0) - rest
-    return share, full * num_empty / np.maximum(rest * num_tx, np.finfo(float).tiny)
+    full = (np.sum(power, axis=0) - rest) / num_tx
+    return _Found(share, full * (shares - num_tx) / np.maximum(rest, tiny), full / noise)
 
 
 @lru_cache
-def _ratio_of_noise(num_tx: int, shares: int, num_rx: int) -> float:
-    """The ratio that noise alone exceeds in FALSE_TARGET_RATE of the cells, drawn once from a fixed seed."""
-    num_chirps, num_samples, ratios = 32 * shares, 64, []
+def _limits_of_noise(num_tx: int, shares: int, num_rx: int) -> _Limits:
+    """Those of FALSE_TARGET_RATE, half of it for each way to find a target; noise is drawn once from a fixed seed."""
+    num_chirps, num_samples, drawn = 32 * shares, 64, []
     generator, taper = np.random.default_rng(1), _hamming(num_chirps)[:, None] * _hamming(num_samples)
     for _ in range(16):
         noise = generator.standard_normal((2, num_rx, num_chirps, num_samples))
         cells = np.fft.fft2((noise[0] + 1j * noise[1]) * taper)
-        ratios.append(_shares_and_ratios(_smoothed_power(cells), num_tx, shares)[1])
-    return float(np.quantile(ratios, 1.0 - FALSE_TARGET_RATE))
+        drawn.append(_found(_smoothed_power(cells), num_tx, shares))
+    ratio, level = (np.stack([getattr(one, name) for one in drawn]) for name in ("ratio", "level"))
+    alone, different = np.quantile(ratio, [1.0 - 0.5 * FALSE_TARGET_RATE, 1.0 - DIFFERENT_RATE])
+    together = np.quantile(np.where(ratio > different, level, 0.0), 1.0 - 0.5 * FALSE_TARGET_RATE)
+    return _Limits(float(alone), float(different), float(together))
 
 
 def _hamming(count: int) -> np.ndarray:

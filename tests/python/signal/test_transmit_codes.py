@@ -119,20 +119,37 @@ def test_noise_keeps_its_level_and_its_false_alarms_through_doppler_division():
     assert 0.3e-2 < rate < 3e-2
 
 
-def test_strong_targets_have_no_false_ones_beside_them_at_other_velocities():
-    """Eight transmitters and two receivers, targets 30 dB above the noise of a cell of one channel: one of 5000 such targets
-    would have a false alarm at its range by the rate asked for. Each had had three, of noise that was alike in all channels."""
-    num_tx, shares, num_chirps, num_samples, targets = 8, 10, 160, 64, 9
-    radar = build_radar([(0, 2 * m * HALF, 0) for m in range(num_tx)], [(0, 0, 0), (0, HALF, 0)], num_chirps=num_chirps,
-                        num_samples=num_samples, multiplexing="ddm", empty_slots=2)
+def ddm_tones(radar, shares, cells, snr_db):
+    """Signal [1, rx, slot, sample] of targets at cells (turns of the frame, of a chirp), each that many dB above the noise of a
+    cell of one transmitter and receiver by a rectangular window."""
+    num_chirps, num_samples = radar.waveform.num_chirps, radar.waveform.num_samples
     slot, sample = np.arange(num_chirps)[:, None], np.arange(num_samples)
-    amplitude = np.sqrt(1e3 * ep.noise_power(radar, of="sample") / (num_chirps * num_samples))
-    cells = [(17 * k % num_chirps - num_chirps // 2, 6 + 6 * k) for k in range(targets)]
+    amplitude = np.sqrt(10.0 ** (snr_db / 10) * ep.noise_power(radar, of="sample") / (num_chirps * num_samples))
     tones = sum(np.exp(2j * np.pi * ((velocity / num_chirps + m / shares) * slot + distance * sample / num_samples))
-                for velocity, distance in cells for m in range(num_tx))
-    noisy = ep.add_noise(amplitude * np.broadcast_to(tones, (1, 2, num_chirps, num_samples)), radar, seed=2)
+                for velocity, distance in cells for m in range(len(radar.transmitters)))
+    return amplitude * np.broadcast_to(tones, (1, len(radar.receivers), num_chirps, num_samples))
+
+
+def test_strong_targets_have_no_false_ones_beside_them_at_other_velocities():
+    """Eight transmitters and two receivers: one of 5000 such targets would have a false alarm at its range by the rate asked
+    for. Each had had three, of noise that was alike in all channels."""
+    radar = build_radar([(0, 2 * m * HALF, 0) for m in range(8)], [(0, 0, 0), (0, HALF, 0)], num_chirps=160, num_samples=64,
+                        multiplexing="ddm", empty_slots=2)
+    cells = [(17 * k % 160 - 80, 6 + 6 * k) for k in range(9)]
+    noisy = ep.add_noise(ddm_tones(radar, 10, cells, snr_db=30.0), radar, seed=2)
     found = ep.detect(ep.range_doppler(ep.demultiplex(noisy, radar), radar), radar)
-    assert sorted(map(tuple, found.cells)) == sorted((velocity + num_chirps // 2, distance) for velocity, distance in cells)
+    assert sorted(map(tuple, found.cells)) == sorted((velocity + 80, distance) for velocity, distance in cells)
+
+
+def test_weak_targets_of_one_receiver_are_told_by_the_noise_at_their_range():
+    """Most of the targets 16 dB above the noise had had others of themselves in the shares beside their own, 15 in all."""
+    radar = build_radar([(0, 2 * m * HALF, 0) for m in range(3)], num_chirps=128, num_samples=64, multiplexing="ddm")
+    cells = [(17 * k % 128 - 64, 6 + 6 * k) for k in range(9)]
+    noisy = ep.add_noise(ddm_tones(radar, 4, cells, snr_db=16.0), radar, seed=2)
+    found = ep.detect(ep.range_doppler(ep.demultiplex(noisy, radar), radar), radar)
+    assert len(found.cells) <= len(cells) + 2
+    for velocity, distance in cells:  # noise moves the largest cell of a weak target to its neighbour
+        assert np.min(np.max(np.abs(found.cells - (velocity + 64, distance)), axis=1)) <= 1
 
 
 def test_averaging_over_a_sign_code_lowers_the_noise_by_its_length():

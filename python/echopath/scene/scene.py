@@ -18,7 +18,7 @@ from .interferers import Interferer, interferers_of, interferers_rule, interfere
 from .materials import known_material, materials
 from .node import SceneNode, lifetime_of, split_motion
 from .placements import ORIGIN, motion_ahead, placement
-from .seams import without_seams
+from .seams import without_seams, without_seams_between
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
 
@@ -115,7 +115,7 @@ class Scene(_core.Scene):
         parent: full name of a node; None: the root
         smooth: True for meshes that stand for curved surfaces: normals, positions and curvature are interpolated, except
             across creases of more than 30 degrees; parts of actors may bring it themselves. Triangles of a mesh that touch
-            without corners in common are joined where they turn by less than 20 degrees
+            without corners in common, of one mesh or of several of a list, are joined where they turn by less than 20 degrees
         visible: False: it takes no part in anything until `scene[name].visible` is set
         Raises ValueError or TypeError naming the argument; then nothing has been added. Warns (RuntimeWarning) of a yaw
         beyond a turn, which looks like degrees.
@@ -212,7 +212,9 @@ class _Batch:
         for index, node in enumerate(model.nodes):
             own_material = material if material is not None and node.mesh is not None else node.material
             moved = node.motion if node.deformation is None else node.deformation
-            indices[index] = self._add_mesh(node.name, indices[node.parent], node.placement, moved, node.mesh, own_material,
+            is_joined = (self._smooth or node.smooth) and node.mesh is not None and node.deformation is None
+            mesh = without_seams(node.mesh) if is_joined else node.mesh
+            indices[index] = self._add_mesh(node.name, indices[node.parent], node.placement, moved, mesh, own_material,
                                             node.smooth)
 
     def _add_mesh(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> int:
@@ -245,8 +247,9 @@ def _joined(content):
     """The content; a mesh, and those of a list, without seams."""
     if isinstance(content, _core.Mesh):
         return without_seams(content)
-    if isinstance(content, (list, tuple)):
-        return [(item[0], without_seams(item[1])) if _is_named_mesh(item) else item for item in content]
+    if isinstance(content, (list, tuple)) and all(_is_named_mesh(item) for item in content):
+        names = [name for name, _ in content]
+        return list(zip(names, without_seams_between([mesh for _, mesh in content]), strict=True))
     return content
 
 

@@ -9,7 +9,9 @@ SAME_PLACE = 1e-6                        # of the extent
 SHORTEST_SHARE = 0.01                    # of the shortest side, which corners of one place are nearer than
 SEAM_COSINE = np.cos(np.radians(20.0))   # of facets that go on over a seam; those that turn by more meet in an edge that is meant
 
-_known = _core.MeshTable()               # meshes without seams, each as long as the mesh that it was made of lives
+# Of what was joined before, as long as the (first) mesh that it was made of lives: the mesh without seams, None where it has
+# none; and the parts that several meshes have become, by the values of the others.
+_known, _known_parts = _core.MeshTable(), _core.MeshTable()
 
 
 def without_seams(mesh: _core.Mesh) -> _core.Mesh:
@@ -21,11 +23,48 @@ def without_seams(mesh: _core.Mesh) -> _core.Mesh:
     """
     if mesh.is_closed or mesh.whole is not None:
         return mesh
-    joined = _known.get(mesh, None)
-    if joined is None:
+    joined = _known.get(mesh, mesh)
+    if joined is mesh:
         joined = _joined(mesh)
         _known.set(mesh, joined)
-    return joined
+    return mesh if joined is None else joined
+
+
+def without_seams_between(meshes: list) -> list:
+    """The meshes without seams; those whose surfaces go on in one another are parts of one, in whose frame all of them are."""
+    alone = [index for index, mesh in enumerate(meshes) if mesh.whole is None]
+    found = [without_seams(mesh) for mesh in meshes]
+    if len(alone) < 2:
+        return found
+    begin = np.cumsum([0, *(len(meshes[index].triangles) for index in alone)])
+    of_mesh = np.repeat(np.arange(len(alone)), np.diff(begin))
+    across = of_mesh[_continuing_sides(_as_one([meshes[index] for index in alone]))[0] // 3]
+    piece = _one_of_each(len(alone), across[across[:, 0] != across[:, 1]])
+    for first in np.unique(piece[np.bincount(piece)[piece] > 1]):
+        members = [alone[at] for at in np.flatnonzero(piece == first)]
+        for index, part in zip(members, _parts_of_one([meshes[index] for index in members]), strict=True):
+            found[index] = part
+    return found
+
+
+def _parts_of_one(meshes: list) -> list:
+    """Meshes that go on in one another as parts of one."""
+    known = _known_parts.get(meshes[0], {})
+    others = tuple(hash(mesh) for mesh in meshes[1:])
+    if others not in known:
+        whole = without_seams(_as_one(meshes))
+        of_mesh = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
+        known[others] = [whole.part(of_mesh == index) for index in range(len(meshes))]
+        _known_parts.set(meshes[0], known)
+    return known[others]
+
+
+def _as_one(meshes: list) -> _core.Mesh:
+    """All triangles of meshes as one mesh, each with its vertices."""
+    first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    return _core.Mesh(np.concatenate([mesh.vertices for mesh in meshes]),
+                      np.concatenate([begin + np.asarray(mesh.triangles, np.int64) for begin, mesh in zip(first, meshes)]),
+                      np.concatenate([mesh.original_triangle for mesh in meshes]))
 
 
 def is_soup(mesh: _core.Mesh) -> bool:
@@ -33,25 +72,31 @@ def is_soup(mesh: _core.Mesh) -> bool:
     return len(mesh.vertices) == 3 * len(mesh.triangles)
 
 
-def _joined(mesh: _core.Mesh) -> _core.Mesh:
+def _joined(mesh: _core.Mesh) -> _core.Mesh | None:
     vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles, np.int64)
-    place = _places(vertices, triangles)
-    copy = _copies(triangles, place)
-    sides = _touching_sides(place[triangles], copy)
-    goes_on, same_way = _continuations(vertices, triangles, sides)
-    goes_on |= is_soup(mesh)
-    sides, same_way = sides[goes_on], same_way[goes_on]
+    sides, same_way, copy = _continuing_sides(mesh)
     turned = _turned_over(len(triangles), sides // 3, same_way)
     fits = (turned[sides[:, 0] // 3] != turned[sides[:, 1] // 3]) == same_way
     corner = _one_of_each(len(vertices), _common_corners(triangles, sides[fits], same_way[fits]))[triangles]
     if np.array_equal(corner, triangles) or _are_flattened(corner):
-        return mesh
+        return None
     corner[turned] = corner[turned][:, ::-1]
     if copy.any():  # they need vertices of their own
         return _core.Mesh(vertices, corner, mesh.original_triangle)
     input_vertices = np.zeros((mesh.num_input_vertices, 3))  # as many as a deformation has
     input_vertices[mesh.original_vertex] = vertices
     return _core.Mesh(input_vertices, np.asarray(mesh.original_vertex)[corner], mesh.original_triangle)
+
+
+def _continuing_sides(mesh: _core.Mesh) -> tuple:
+    """(pairs [N, 2] of sides over which the surface goes on, whether they run the same way [N], `_copies` [F])."""
+    vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles, np.int64)
+    place = _places(vertices, triangles)
+    copy = _copies(triangles, place)
+    sides = _touching_sides(place[triangles], copy)
+    goes_on, same_way = _continuations(vertices, triangles, sides)
+    goes_on |= is_soup(mesh)
+    return sides[goes_on], same_way[goes_on], copy
 
 
 def _are_flattened(triangles) -> bool:

@@ -1,4 +1,5 @@
 """Curved surfaces whose triangles touch without common corners, are wound either way or listed twice: spheres against Mie."""
+import gc
 import math
 import warnings
 
@@ -6,6 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.scene import seams
 from support.rcs_targets import RADIUS, SMOOTH_TOLERANCE_DB
 from support.shapes import FREQUENCY, METAL, decibel, scene_of, sphere
 
@@ -55,6 +57,45 @@ def test_seams_do_not_change_the_level_of_a_sphere(kind):
     middles, as_given = (one.vertices[one.triangles].mean(axis=1) for one in (joined, mesh))
     assert np.allclose(middles, as_given, rtol=0, atol=1e-9 * RADIUS)
     assert np.array_equal(joined.original_triangle, mesh.original_triangle)
+
+
+def test_meshes_of_a_list_go_on_in_one_another():
+    """Two halves of a sphere, as groups of a file are, seen where they meet; a facet behind them stays what it is."""
+    ball, aside = sphere((0, 0, 0), RADIUS, 4), ep.Mesh([[-.11, 0, 0], [-.11, .01, 0], [-.11, 0, .01]], [[0, 1, 2]])
+    is_left = ball.vertices[ball.triangles].mean(axis=1)[:, 1] > 0.0
+    given = [ep.Mesh(ball.vertices, ball.triangles[is_left]), aside, ep.Mesh(ball.vertices, ball.triangles[~is_left])]
+    named = list(zip(("left", "aside", "right"), given, strict=True))
+    scene = ep.Scene()
+    scene.add(named, name="ball", material="metal", smooth=True)
+    scene.add(named, name="another", material="metal", smooth=True, visible=False)
+    found = ep.rcs(scene, frequency=FREQUENCY, incidence=SEEN_FROM[::2], num_rays=2 * NUM_RAYS, max_bounces=1)
+    assert np.all(np.abs(decibel(found / ep.mie_rcs(RADIUS, FREQUENCY))) < SMOOTH_TOLERANCE_DB)
+    assert [len(mesh.mesh.triangles) for mesh in scene.meshes] == [len(mesh.triangles) for mesh in given]
+    assert scene.meshes[1].mesh is aside
+    assert all(one.mesh is two.mesh for one, two in zip(scene.nodes[1:4], scene.nodes[5:8], strict=True))
+
+
+def test_models_without_normals_have_no_seams(tmp_path):
+    ball = with_own_corners(sphere((0, 0, 0), RADIUS, 4))
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in ball.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in ball.triangles + 1]
+    (tmp_path / "ball.obj").write_text("\n".join(lines) + "\n")
+    scene = ep.Scene()
+    scene.add(ep.load_model(tmp_path / "ball.obj", smooth=True), name="ball", material="metal")
+    found = ep.rcs(scene, frequency=FREQUENCY, incidence=SEEN_FROM, num_rays=NUM_RAYS, max_bounces=1)
+    assert np.all(np.abs(decibel(found / ep.mie_rcs(RADIUS, FREQUENCY))) < SMOOTH_TOLERANCE_DB)
+
+
+def test_what_is_known_of_a_mesh_goes_with_it():
+    gc.collect()
+    before = len(seams._known)
+    ball = sphere((0, 0, 0), RADIUS, 2)
+    opened = ep.Mesh(ball.vertices, ball.triangles[1:])
+    scene_of(ball=(opened, METAL, True))
+    assert len(seams._known) == before + 1
+    del opened
+    gc.collect()
+    assert len(seams._known) == before
 
 
 def test_meshes_without_seams_and_flat_ones_stay_what_they_are():

@@ -209,13 +209,28 @@ class _Batch:
 
     def _add_model(self, model: Model, name, material, motion, place) -> None:
         indices = {-1: self._add(name, self._parent, place, model.motion if motion is None else motion, None, None)}
+        meshes = self._meshes_without_seams(model)
         for index, node in enumerate(model.nodes):
             own_material = material if material is not None and node.mesh is not None else node.material
             moved = node.motion if node.deformation is None else node.deformation
-            is_joined = (self._smooth or node.smooth) and node.mesh is not None and node.deformation is None
-            mesh = without_seams(node.mesh) if is_joined else node.mesh
-            indices[index] = self._add_mesh(node.name, indices[node.parent], node.placement, moved, mesh, own_material,
-                                            node.smooth)
+            indices[index] = self._add_mesh(node.name, indices[node.parent], node.placement, moved, meshes.get(index, node.mesh),
+                                            own_material, node.smooth)
+
+    def _meshes_without_seams(self, model: Model) -> dict:
+        """The smooth meshes of a model by the index of their node.
+
+        Those that keep their places to each other go on in one another.
+        """
+        of_place: dict[tuple, list[int]] = {}
+        for index, node in enumerate(model.nodes):
+            if node.mesh is None or node.deformation is not None or not (self._smooth or node.smooth):
+                continue
+            stands = node.placement is None and node.motion is None
+            of_place.setdefault((node.parent, None if stands else index), []).append(index)
+        found = {}
+        for indices in of_place.values():
+            found.update(zip(indices, without_seams_between([model.nodes[index].mesh for index in indices]), strict=True))
+        return found
 
     def _add_mesh(self, name, parent: int, place, motion, mesh, material, smooth: bool = False) -> int:
         """A node with the mesh; below it the mesh's regions where a skin moves them. Returns its index."""

@@ -9,9 +9,11 @@ SAME_PLACE = 1e-6                        # of the extent
 SHORTEST_SHARE = 0.01                    # of the shortest side, which corners of one place are nearer than
 SEAM_COSINE = np.cos(np.radians(20.0))   # of facets that go on over a seam; those that turn by more meet in an edge that is meant
 
-# Of what was joined before, as long as the (first) mesh that it was made of lives: the mesh without seams, None where it has
-# none; and the parts that several meshes have become, by the values of the others.
-_known, _known_parts = _core.MeshTable(), _core.MeshTable()
+MOST_WORK = 5e7                          # triangles of the whole times parts, each of which has its normals made by itself
+
+# What is known of a mesh while it lives: the one without seams, None where it has none; of the first one of a list the others,
+# and what was found of all.
+_known, _known_lists = _core.MeshTable(), _core.MeshTable()
 
 
 def without_seams(mesh: _core.Mesh) -> _core.Mesh:
@@ -32,31 +34,32 @@ def without_seams(mesh: _core.Mesh) -> _core.Mesh:
 
 def without_seams_between(meshes: list) -> list:
     """The meshes without seams; those whose surfaces go on in one another are parts of one, in whose frame all of them are."""
-    alone = [index for index, mesh in enumerate(meshes) if mesh.whole is None]
+    if len(meshes) < 2:
+        return [without_seams(mesh) for mesh in meshes]
+    others, found = _known_lists.get(meshes[0], ((), []))
+    if len(others) != len(meshes) - 1 or any(one is not two for one, two in zip(others, meshes[1:], strict=True)):
+        found = [None if new is mesh else new for new, mesh in zip(_joined_between(meshes), meshes, strict=True)]
+        _known_lists.set(meshes[0], (tuple(meshes[1:]), found))
+    return [mesh if new is None else new for new, mesh in zip(found, meshes, strict=True)]
+
+
+def _joined_between(meshes: list) -> list:
     found = [without_seams(mesh) for mesh in meshes]
+    alone = [index for index, mesh in enumerate(meshes) if mesh.whole is None]
     if len(alone) < 2:
         return found
-    begin = np.cumsum([0, *(len(meshes[index].triangles) for index in alone)])
-    of_mesh = np.repeat(np.arange(len(alone)), np.diff(begin))
+    of_mesh = np.repeat(np.arange(len(alone)), [len(meshes[index].triangles) for index in alone])
     across = of_mesh[_continuing_sides(_as_one([meshes[index] for index in alone]))[0] // 3]
     piece = _one_of_each(len(alone), across[across[:, 0] != across[:, 1]])
     for first in np.unique(piece[np.bincount(piece)[piece] > 1]):
         members = [alone[at] for at in np.flatnonzero(piece == first)]
-        for index, part in zip(members, _parts_of_one([meshes[index] for index in members]), strict=True):
-            found[index] = part
+        of_member = np.repeat(members, [len(meshes[index].triangles) for index in members])
+        if len(members) * len(of_member) > MOST_WORK:
+            continue
+        whole = without_seams(_as_one([meshes[index] for index in members]))
+        for index in members:
+            found[index] = whole.part(of_member == index)
     return found
-
-
-def _parts_of_one(meshes: list) -> list:
-    """Meshes that go on in one another as parts of one."""
-    known = _known_parts.get(meshes[0], {})
-    others = tuple(hash(mesh) for mesh in meshes[1:])
-    if others not in known:
-        whole = without_seams(_as_one(meshes))
-        of_mesh = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
-        known[others] = [whole.part(of_mesh == index) for index in range(len(meshes))]
-        _known_parts.set(meshes[0], known)
-    return known[others]
 
 
 def _as_one(meshes: list) -> _core.Mesh:

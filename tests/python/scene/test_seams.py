@@ -78,7 +78,8 @@ def test_meshes_of_a_list_go_on_in_one_another():
 def test_models_without_normals_have_no_seams(tmp_path):
     ball = with_own_corners(sphere((0, 0, 0), RADIUS, 4))
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in ball.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in ball.triangles + 1]
+    side = np.where(ball.vertices[ball.triangles].mean(axis=1)[:, 1] > 0.0, "left", "right")
+    lines += [f"g {group}\nf {a} {b} {c}" for group, (a, b, c) in zip(side, ball.triangles + 1, strict=True)]
     (tmp_path / "ball.obj").write_text("\n".join(lines) + "\n")
     scene = ep.Scene()
     scene.add(ep.load_model(tmp_path / "ball.obj", smooth=True), name="ball", material="metal")

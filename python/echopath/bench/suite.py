@@ -72,10 +72,12 @@ def _at_reference(row: dict, paces: list[float]) -> dict:
 
 def describe_judged(rows: list[dict], title: str = "", *, width: int = 44, measured: str = "12.4g", limit: str = "10.3g"
                     ) -> list[str]:
-    """A line for each row of `judged`: what, the figure, its limit, and whether it holds.
+    """A line for each row of `judged`, below their titles: what, the figure, its limit, and whether it holds. None of no rows.
 
     title: of the first column; width: of that column; measured, limit: how the numbers of the others are written
     """
+    if not rows:
+        return []
     lines = [f"{title:<{width}}{'measured':>{measured.partition('.')[0]}}{'limit':>{limit.partition('.')[0]}}"]
     for row in rows:
         lines.append(f"{row['what']:<{width}}{row['measured']:{measured}}{_judgement(row, limit)}")

@@ -47,8 +47,8 @@ def rows(*, quick: bool = False, folder=None) -> list[dict]:
 
 def describe(rows: list[dict]) -> list[str]:
     """A line for each file, then the figures of all of them."""
-    lines = [f"{'file':<52}{'meshes':>8}{'triangles':>11}{'seconds':>9}{'1 - sum':>10}{'speeds':>8}"]
-    lines += [_told(row) for row in rows if "file" in row]
+    files = [_told(row) for row in rows if "file" in row]
+    lines = [f"{'file':<52}{'meshes':>8}{'triangles':>11}{'seconds':>9}{'1 - sum':>10}{'speeds':>8}", *files] if files else []
     lines += [f"{row['what']}: not measured: {row['not_measured']}" for row in rows if "not_measured" in row]
     return lines + describe_judged([row for row in rows if "measured" in row])
 

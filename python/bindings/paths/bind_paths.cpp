@@ -10,6 +10,7 @@
 #include "call/argument.h"
 #include "call/define.h"
 #include "call/run_job.h"
+#include "echopath/base/text/streamed.h"
 #include "label/named_selections.h"
 #include "paths/from_arrays.h"
 #include "paths/pass_rows.h"
@@ -108,7 +109,7 @@ py::dict partition_paths(const Paths& paths, Arg<"parts", SelectionsByName> part
 }
 
 std::string paths_text(const Paths& self) {
-  return "Paths(" + std::to_string(self.num_paths()) + " paths, " + std::to_string(self.num_hits()) + " hits)";
+  return "Paths(" + counted(self.num_paths(), "path") + ", " + counted(self.num_hits(), "hit") + ")";
 }
 
 void bind_series(PathsClass& type) {

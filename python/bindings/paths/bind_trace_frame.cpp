@@ -105,15 +105,15 @@ void bind_trace_frame(py::module_& m) {
       "rays evenly over them. Raises TypeError or ValueError naming the argument.");
   define_record(bound_stratum, StratumKeywords{});
   bound_stratum.def_property_readonly("solid_angle", &Stratum::solid_angle, "sr").def("__repr__", [](const Stratum& self) {
-    return "Stratum('" + self.name + "', " + std::to_string(self.num_rays) + " rays)";
+    return "Stratum('" + self.name + "', " + counted(self.num_rays, "ray") + ")";
   });
 
   py::class_<TraceStatistics> bound_statistics(m, "TraceStatistics",
                                                "What a trace did. Raises TypeError or ValueError naming the argument.");
   define_record(bound_statistics, StatisticsKeywords{});
   bound_statistics.def("__repr__", [](const TraceStatistics& self) {
-    return streamed("TraceStatistics(", self.num_rays, " rays, ", self.num_queries, " queries, ", self.num_hits, " hits, ",
-                    self.num_paths, " paths)");
+    return streamed("TraceStatistics(", counted(self.num_rays, "ray"), ", ", counted(self.num_queries, "query", "queries"),
+                    ", ", counted(self.num_hits, "hit"), ", ", counted(self.num_paths, "path"), ")");
   });
 
   py::class_<TraceFrame> bound_frame(
@@ -123,8 +123,9 @@ void bind_trace_frame(py::module_& m) {
   bound_frame.def_property_readonly("transmitter", array_of(&TraceFrame::transmitter), "[3] m, where rays started, world")
       .def_property_readonly("receiver", array_of(&TraceFrame::receiver), "[3] m, where hits were connected to, world")
       .def("__repr__", [](const TraceFrame& self) {
-        return streamed("TraceFrame(", self.statistics.num_rays, " rays, ", self.strata.size(), " strata, seed ", self.seed,
-                        ", at ", self.trace_time, " s)");
+        return streamed("TraceFrame(", counted(self.statistics.num_rays, "ray"), ", ",
+                        counted(self.strata.size(), "stratum", "strata"), ", seed ", self.seed, ", at ", self.trace_time,
+                        " s)");
       });
 }
 

@@ -8,6 +8,7 @@
 #include "call/argument.h"
 #include "call/define.h"
 #include "call/run_job.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/validity.h"
 #include "values/array.h"
@@ -42,9 +43,8 @@ auto share(double ValidityShares::* field) {
 
 std::string repr_of(const Validity& self) {
   std::ostringstream text;
-  text << "Validity("
-       << (self.warnings().empty() ? "one trace serves" : std::to_string(self.warnings().size()) + " warnings") << ", "
-       << self.num_paths << " paths, phase error " << self.rms_phase_error << " rad rms)";
+  text << "Validity(" << (self.warnings().empty() ? "one trace serves" : counted(self.warnings().size(), "warning")) << ", "
+       << counted(self.num_paths, "path") << ", phase error " << self.rms_phase_error << " rad rms)";
   return text.str();
 }
 

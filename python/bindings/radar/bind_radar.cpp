@@ -124,9 +124,9 @@ double middle_of_frame(const Radar& self, const Arg<"start_time", Real>& start_t
 }
 
 std::string text_of(const Radar& r) {
-  return streamed("Radar(", part_text(r.waveform), ", ", r.transmitters.size(), " transmitters, ", r.receivers.size(),
-                  " receivers, at ", place_text(r.position, r.yaw, r.pitch), ", ", r.transmit_power, " W, noise figure ",
-                  r.noise_figure_db, " dB",
+  return streamed("Radar(", part_text(r.waveform), ", ", counted(r.transmitters.size(), "transmitter"), ", ",
+                  counted(r.receivers.size(), "receiver"), ", at ", place_text(r.position, r.yaw, r.pitch), ", ",
+                  r.transmit_power, " W, noise figure ", r.noise_figure_db, " dB",
                   (r.takes_turns() ? "" : std::string(", ") + kMultiplexing.name_of(r.multiplexing)),
                   (r.receiver ? ", receiver with faults" : ""), (r.is_moving() ? ", moving" : ""), ")");
 }

@@ -8,6 +8,7 @@
 #include "call/argument.h"
 #include "call/define.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/spectrum/array/steering.h"
 #include "echopath/spectrum/array/virtual_array.h"
 #include "values/array.h"
@@ -71,18 +72,18 @@ py::tuple default_axes(const VirtualArray& array, Arg<"largest_step", Real> larg
 
 std::string text_of(const VirtualArray& array) {
   std::ostringstream text;
-  text << "VirtualArray(" << array.num_transmitters << " x " << array.num_receivers << " channels, " << array.elements.size()
-       << " elements";
+  text << "VirtualArray(" << array.num_transmitters << " x " << array.num_receivers << " channels, "
+       << counted(array.elements.size(), "element");
   if (array.grid) {
     const ArrayGrid& grid = *array.grid;
     text << " on a grid of " << grid.num_rows << " x " << grid.num_columns;
     if (grid.num_rows > 1) text << ", " << grid.row_spacing / array.wavelength << " wavelengths up";
     if (grid.num_columns > 1) text << ", " << grid.column_spacing / array.wavelength << " wavelengths across";
-    text << ", " << array.gaps().size() << " gaps";
+    text << ", " << counted(array.gaps().size(), "gap");
   } else {
     text << " on no grid";
   }
-  text << ", " << array.num_overlaps() << " overlaps)";
+  text << ", " << counted(array.num_overlaps(), "overlap") << ")";
   return text.str();
 }
 

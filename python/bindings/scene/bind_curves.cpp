@@ -96,8 +96,9 @@ Before its first key and after its last one it holds their values. Raises TypeEr
       .def_property_readonly(
           "out_tangents", [](const Curve& self) { return tangents_of(self, self.out_tangents); }, "[T, C] per s, or None")
       .def("__repr__", [](const Curve& self) {
-        return streamed("Curve(", self.times.size(), " keys, ", self.times.front(), " to ", self.times.back(), " s, ",
-                        self.num_columns(), " columns, ", kCurveInterpolation.name_of(self.interpolation), ")");
+        return streamed("Curve(", counted(self.times.size(), "key"), ", ", self.times.front(), " to ", self.times.back(),
+                        " s, ", counted(self.num_columns(), "column"), ", ", kCurveInterpolation.name_of(self.interpolation),
+                        ")");
       });
   define(type, "at", &value_at, py::arg("time"), "Values [C] at `time` in s, column by column. Raises ValueError.");
   define_value(type);
@@ -162,7 +163,7 @@ A Skin moves its result with `Skin(..., shape=...)`. Raises TypeError or ValueEr
           "weights", [](const MorphTargets& self) { return self.weights(); }, "Curve of [T, K]")
       .def("__repr__", [](const MorphTargets& self) {
         return "MorphTargets(" + std::to_string(self.num_vertices()) + " vertices, " +
-               std::to_string(self.targets().size()) + " targets)";
+               counted(self.targets().size(), "target") + ")";
       });
   add_playback(type);
   define_value(type);

@@ -30,7 +30,7 @@ std::shared_ptr<Mesh> mesh(Arg<"vertices", Points> vertices, Arg<"triangles", Tr
 }
 
 std::string mesh_text(const Mesh& self) {
-  return streamed("Mesh(", self.vertices().size(), " vertices, ", self.triangles().size(), " triangles, ",
+  return streamed("Mesh(", self.vertices().size(), " vertices, ", counted(self.triangles().size(), "triangle"), ", ",
                   (self.is_closed() ? "closed" : "open"), ", ", self.area(), " m^2)");
 }
 

@@ -36,8 +36,8 @@ std::vector<NamedOverlap> named_overlaps(const Scene& scene, Arg<"time", Real> t
 }
 
 std::string overlap_text(const NamedOverlap& self) {
-  return streamed("CoplanarOverlap('", self.first, "', '", self.second, "', ", self.overlap.num_triangles, " triangles, ",
-                  self.overlap.area, " m^2)");
+  return streamed("CoplanarOverlap('", self.first, "', '", self.second, "', ",
+                  counted(self.overlap.num_triangles, "triangle"), ", ", self.overlap.area, " m^2)");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "call/shown.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/text/nearest_names.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/scene/scene.h"
 #include "scene/deformation_type.h"
 #include "values/array.h"
@@ -171,8 +172,8 @@ void require_scene_times(const Scene& scene, Arg<"begin", Real> begin, Arg<"end"
 }
 
 std::string scene_text(const Scene& self) {
-  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) + " meshes, " +
-         std::to_string(self.num_triangles()) + " triangles)";
+  return "Scene(" + counted(self.nodes().size(), "node") + ", " + counted(self.meshes().size(), "mesh", "meshes") + ", " +
+         counted(self.num_triangles(), "triangle") + ")";
 }
 
 void bind_nodes(py::module_& m) {
@@ -217,8 +218,8 @@ void bind_nodes(py::module_& m) {
           "as given, \"\" for a material without a name")
       .def("__repr__",
            [](const MeshEntry& self) {
-             const std::string count = std::to_string(self.node.mesh->triangles().size());
-             return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + " triangles)";
+             const std::string count = counted(self.node.mesh->triangles().size(), "triangle");
+             return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + ")";
            })
       .def(py::pickle(&state_of, &entry_of_state));
 }

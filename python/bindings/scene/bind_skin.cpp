@@ -14,6 +14,7 @@
 #include "call/define.h"
 #include "call/leaving.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/scene/readers/skin_parts.h"
 #include "scene/deformation_type.h"
 #include "values/shared.h"
@@ -182,8 +183,7 @@ Raises TypeError or ValueError naming the argument.)");
           "[V, K] joint of each weight")
       .def_property_readonly("shape", shared_of(&Skin::shape), "the Deformation before the joints move it, or None")
       .def("__repr__", [](const Skin& self) {
-        return "Skin(" + std::to_string(self.num_vertices()) + " vertices, " + std::to_string(self.joints().size()) +
-               " joints)";
+        return "Skin(" + std::to_string(self.num_vertices()) + " vertices, " + counted(self.joints().size(), "joint") + ")";
       });
   define(type, "joint_transforms", &joint_transforms, py::arg("time"),
          R"(What moves the vertices that follow one joint alone: skin_from_joint(time) * inverse_bind.

@@ -139,7 +139,7 @@ def test_representations_tell_what_they_are():
                       pitch=-0.1, speed=3)
     turned = ep.Antenna((0.1, 0.2, 0.3), yaw=0.1, pitch=0.2)
     radar = ep.Radar(reference(), transmitters=[ep.Antenna()], receivers=[ep.Antenna(pattern=ep.CosinePower(2))])
-    assert "77 GHz" in repr(radar) and "1 receivers" in repr(radar)
+    assert "77 GHz" in repr(radar) and "1 receiver," in repr(radar)
     assert "CosinePower" in repr(radar.receivers[0])
     assert "at (1, 2, 3) m, yaw 0.7 rad, pitch -0.1 rad" in repr(placed) and "moving" in repr(placed)
     assert "(0.1, 0.2, 0.3) m, yaw 0.1 rad, pitch 0.2 rad" in repr(turned)

@@ -272,7 +272,7 @@ def test_reprs_are_short(square):
     scene = ep.Scene()
     scene.add(square, name="wall", material="metal")
     assert repr(square) == "Mesh(4 vertices, 2 triangles, open, 1 m^2)"
-    assert repr(scene) == "Scene(1 nodes, 1 meshes, 2 triangles)"
+    assert repr(scene) == "Scene(1 node, 1 mesh, 2 triangles)"
     assert repr(scene.meshes) == "[SceneMesh(0, 'wall', 2 triangles)]"
     assert repr(scene.nodes) == "[Node('wall', mesh)]"
 

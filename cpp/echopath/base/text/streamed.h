@@ -13,6 +13,16 @@ std::string streamed(const Parts&... parts) {
   return text.str();
 }
 
+// Returns a count with the word for one thing or for several.
+template <class Count>
+std::string counted(Count count, const std::string& thing, const std::string& several) {
+  return std::to_string(count) + " " + (count == 1 ? thing : several);
+}
+template <class Count>
+std::string counted(Count count, const std::string& thing) {
+  return counted(count, thing, thing + "s");
+}
+
 // Returns a number with so many significant digits.
 inline std::string with_digits(int digits, double number) {
   std::ostringstream text;

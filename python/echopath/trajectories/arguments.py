@@ -15,7 +15,7 @@ FASTEST = 1e4           # m/s
 LATEST = 1e7            # s, beyond which a time in double precision is no longer known to nanoseconds
 RATE = real(high=1e6, unit="m/s^2", above=0.0)    # of accelerations
 NEAREST = 1e-3          # m, of points that follow each other
-SPACING = real(NEAREST, 1e3, "m")
+SPACING = real(NEAREST, FARTHEST, "m")
 GOES_ON = real(0.0, 1e5, "s")
 Outside = Literal["stands", "absent"]   # where something is before the begin and after the end of its trajectory
 

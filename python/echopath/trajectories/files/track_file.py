@@ -15,7 +15,7 @@ from ...arguments.checks import Rule, anything, array, checked, is_writable, one
 from ...arguments.checks import file as file_rule
 from ...base.callers import warn_user
 from ...base.counts import counted
-from ..arguments import GOES_ON, NEAREST, Outside
+from ..arguments import FARTHEST, GOES_ON, NEAREST, Outside
 from .doubts import doubt_of_turns, doubts_of
 from .geodesy import east_north_up
 from ..kinds import of_kind, usual_kind, warn_of_unused_kinds
@@ -151,7 +151,7 @@ class TrackFile:
 
 def _spacing_of(smoothing: float) -> float:
     """The spacing in m of a Trajectory through places that are smoothed by so many m."""
-    return max(LEAST_SCATTER, SCATTER * smoothing) if smoothing > 0.0 else NEAREST
+    return min(max(LEAST_SCATTER, SCATTER * smoothing), FARTHEST) if smoothing > 0.0 else NEAREST
 
 
 class _Placement(NamedTuple):

@@ -60,6 +60,13 @@ def faces_of(meshes):
     return np.concatenate([np.asarray(mesh.vertices)[np.asarray(mesh.triangles)] for mesh in meshes])
 
 
+def test_what_nobody_measured_has_a_dash():
+    levels, nothing = np.linspace(-20.0, 0.0, 4), np.full(4, np.nan)
+    one = measured.Pattern("sheet IIA", 7.0, "vv", np.arange(4.0), nothing, levels, levels - 1.0, levels, 64, (0.1, 0.2))
+    told = measured.describe([one])[2]
+    assert "- -> -" in told and "1.00 -> 0.00" in told and "nan" not in told
+
+
 @pytest.mark.parametrize("make, size, volume", [
     (measured_targets.camera_box, (1.0, 0.325, 0.8), 0.325 * (0.8 - 0.27 ** 2)),
     (measured_targets.cylindrical_duct, (1.0, 0.975, 1.6), 0.975 * (1.6 - 0.41 ** 2) - 0.75 * np.pi * 0.375 ** 2),

@@ -175,11 +175,16 @@ def describe(found: list[Pattern]) -> list[str]:
              "target               GHz  pol measurement     moments         measure          of the peak      measured   s"]
     for one in found:
         row = row_of(one)
-        pairs = "".join(f"{row[f'optics_{name}_db']:>9s} -> {row[f'edges_{name}_db']:<5s}"
+        pairs = "".join(f"{_told(row[f'optics_{name}_db']):>9s} -> {_told(row[f'edges_{name}_db']):<5s}"
                         for name in ("measured", "moments", "suite", "peaks"))
-        lines.append(f"{one.target:19s} {one.frequency_ghz:5.4g}   {one.polarization} {pairs}{row['moments_measured_db']:>9s}"
-                     f"   {row['optics_s']:>6s}, {row['edges_s']}")
+        lines.append(f"{one.target:19s} {one.frequency_ghz:5.4g}   {one.polarization} {pairs}"
+                     f"{_told(row['moments_measured_db']):>9s}   {row['optics_s']:>6s}, {row['edges_s']}")
     return [*lines, *_verdicts(found)]
+
+
+def _told(error: str) -> str:
+    """An error in dB, "-" beside what nobody has measured."""
+    return "-" if error == "nan" else error
 
 
 def _verdicts(found: list[Pattern]) -> list[str]:

@@ -64,10 +64,13 @@ def _antennas_see(paths, radar, time: float) -> np.ndarray:
 
 
 def _has_gain(antennas, points) -> np.ndarray:
-    """Whether any of the antennas has gain toward points [N, 3] in the radar's frame, bool [N]."""
+    """Whether any of the antennas has gain toward points [N, 3] in the radar's frame, bool [N]; one at an antenna has."""
     seen = np.zeros(len(points), bool)
     for antenna in antennas:
         ways = points - antenna.position
-        directions = ways / np.linalg.norm(ways, axis=1)[:, None] @ matrices(antenna.orientation)
-        seen |= antenna.pattern.field(directions) != 0.0
+        lengths = np.linalg.norm(ways, axis=1)
+        is_away = lengths > 0.0
+        directions = ways[is_away] / lengths[is_away, None] @ matrices(antenna.orientation)
+        seen[is_away] |= antenna.pattern.field(directions) != 0.0
+        seen |= ~is_away
     return seen

@@ -29,6 +29,13 @@ void meet_again(const Vec3& from, const Vec3& direction, const std::array<Vec3, 
   hit.v = static_cast<float>(v / sum);
 }
 
+// Returns whether a ray has a direction: it has none between points at one place, as an antenna on a surface and its image
+// there. Embree ends the program over numbers that are not finite.
+bool is_ray(const Vec3& from, const Vec3& direction) {
+  const double square = direction.squaredNorm();
+  return from.allFinite() && square > 0.0 && square < 2.0;
+}
+
 Eigen::AlignedBox3d world_box(const Scene& scene, const PosedScene& pose) {
   Eigen::AlignedBox3d box;
   for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
@@ -127,6 +134,7 @@ EmbreeScene::Verdict EmbreeScene::intersect_near(const Vec3& from, const Vec3& d
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const RayStart& start, const Vec3& direction, Sees sees,
                                             RayHit& out) const {
+  if (!is_ray(start.at, direction)) return Verdict::kMiss;
   RTCRayHit query;
   set_ray(query.ray, unpacked(start.at), unpacked(direction), static_cast<float>(start.end));
   query.ray.tnear = static_cast<float>(start.begin);

@@ -144,3 +144,16 @@ def test_another_receiver_finds_the_edges_of_its_own():
     radar = make_radar((2.0, 0.4, 0.1), (2.0, -0.2, 0.0), polarization=(0.0, 0.28, 0.96))
     paths = ep.trace(one_mesh(0.03, 0.05), radar, num_rays=1 << 12, edges=True, polarization="jones", max_bounces=3)
     assert min(paths.select(way).num_paths for way in ("T . E R", "T E . R", "T . E . R")) > 0
+
+
+def test_which_way_triangles_are_wound_does_not_count():
+    """It decides at which end edges begin; both faces and all of their edges are the same."""
+    corner = ep.actors.dihedral(0.15)
+    vertices, triangles = np.asarray(corner.vertices), np.asarray(corner.triangles)
+    found = []
+    for wound in (triangles, triangles[:, ::-1], np.roll(triangles, 1, axis=1)[::-1]):
+        scene = ep.Scene()
+        scene.add(ep.Mesh(vertices, wound), name="corner", material=METAL)
+        found.append(decibel(np.asarray(ep.rcs(scene, frequency=10e9, incidence=[(-1, 0.3, 0.2), (-0.5, 0.1, 1), (-1, 0.1, 0.5)],
+                                               polarization=["vv", "hh"], num_rays=1 << 13, edges=True))))
+    assert np.max(np.abs(np.array(found) - found[0])) < 0.01  # 4 dB where an end decides

@@ -89,13 +89,10 @@ class LitEdgeTracer {
         finder_(query.geometry, query.mirrors, query.settings.frequency, query.settings.polarization) {}
 
   void trace() {
-    const auto corners = query_.geometry.corners(edge_.mesh_id, edge_.edge.triangle);
     num_pieces_ = num_pieces();
     for (int piece = 0; piece < num_pieces_; ++piece) {
       const double at = (piece + 0.5) / num_pieces_;
-      const EdgePoint point = point_on_edge(edge_, at, corners);
-      hit_ = point.hit;
-      point_ = point.position;
+      stand_at(at);
       add_piece(at);
     }
   }
@@ -111,6 +108,12 @@ class LitEdgeTracer {
     OrderShares orders;
     std::complex<double> past_edge = 0.0;  // share of what the edge sends over the leg to a mirror (kPastEdge)
   };
+
+  void stand_at(double at) {
+    const EdgePoint point = point_on_edge(edge_, at, query_.geometry.corners(edge_.mesh_id, edge_.edge.triangle));
+    hit_ = point.hit;
+    point_ = point.position;
+  }
 
   int num_pieces() const {
     const double wavenumber = kTwoPi * query_.settings.frequency / kSpeedOfLight, length = edge_.line().norm();
@@ -155,22 +158,22 @@ class LitEdgeTracer {
   };
 
   std::vector<WeightedLeg> over_planes(const std::vector<const LitPlane*>& lit, const PlaneLegQuery& query) {
-    const auto& [antenna, other, at, is_end] = query;
     std::vector<WeightedLeg> legs;
     for (const LitPlane* over : lit) {
       const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
-      if (at < begin || at > end || std::ssize(over->mirrors) >= query_.settings.max_bounces) continue;
-      const std::optional<PlaneLeg> leg = planes_.find(point_, outward_, antenna, *over, block_.statistics.num_queries);
+      if (query.at < begin || query.at > end || std::ssize(over->mirrors) >= query_.settings.max_bounces) continue;
+      const std::optional<PlaneLeg> leg =
+          planes_.find(point_, outward_, query.antenna, *over, block_.statistics.num_queries);
       if (!leg || !may_leave(edge_.wedge, leg->to_antenna, leg->length)) continue;
       WeightedLeg& weighted = legs.emplace_back();
       for (const RayHit& bounce : leg->bounces) weighted.hits.push_back(bounce.hit);
       weighted.leg = {leg->to_antenna, leg->at_antenna, leg->length};
       weighted.gain = leg->gain;
       weighted.share = leg->share;
-      weighted.orders = kept_orders(*leg, *over, other);
-      if (is_end && weighted.orders.opposite < 1.0) {
+      weighted.orders = kept_orders(*leg, *over, query);
+      if (query.is_end && weighted.orders.opposite < 1.0) {
         weighted.past_edge = (1.0 - weighted.orders.opposite) *
-                             planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
+                             planes_.field_beside_rims(point_, query.antenna, *leg, block_.statistics.num_queries);
       }
     }
     return legs;
@@ -191,11 +194,20 @@ class LitEdgeTracer {
     return legs;
   }
 
-  // Returns the shares of the orders, which the pieces of one edge have in common.
-  OrderShares kept_orders(const PlaneLeg& leg, const LitPlane& over, const Vec3& other) {
+  // Returns the shares of the orders, which the pieces of one edge have in common: those in the middle of what is lit of it,
+  // whichever end comes first, or of the leg at hand where the middle has none.
+  OrderShares kept_orders(const PlaneLeg& leg, const LitPlane& over, const PlaneLegQuery& query) {
     if (const auto known = orders_.find(&over); known != orders_.end()) return known->second;
-    OrderShares orders = orders_of(leg, over, other);
+    const auto [begin, end] = stretch_within(edge_.from, edge_.to, over.box);
+    stand_at(0.5 * (begin + end));
+    std::optional<PlaneLeg> middle = planes_.find(point_, outward_, query.antenna, over, block_.statistics.num_queries);
+    if (!middle) {
+      stand_at(query.at);
+      middle = leg;
+    }
+    OrderShares orders = orders_of(*middle, over, query.other);
     if (meets_next_plane(over)) orders.opposite = 0.0;
+    stand_at(query.at);
     return orders_[&over] = orders;
   }
 

@@ -32,6 +32,17 @@ def test_a_plate_through_an_antenna_leaves_a_finite_signal(material, place, rece
     assert np.isfinite(frame.cube).all()
 
 
+def test_edges_have_no_legs_over_a_plane_on_which_the_antenna_lies():
+    """The plane's bounce is at the antenna itself: weights of such paths were no numbers, and refused."""
+    scene = ep.Scene()
+    scene.add(ep.actors.trihedral(0.3), name="corner", material="metal", position=(6.0, 0.0, 0.5), yaw=np.pi)
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(0.0, 0.15, 0.35), yaw=np.pi)
+    radar = ep.Radar(CHIRPS, transmitters=[ep.Antenna(ANTENNA)], receivers=[ep.Antenna(ANTENNA)])
+    paths = ep.trace(scene, radar, num_rays=2000, edges=True)
+    assert np.isfinite(paths.weight).all()
+    assert paths.select("T 'corner' R").num_paths > 0
+
+
 def test_a_rim_beside_the_antenna_hides_nothing_ahead_of_it():
     """The plane of the plate holds the antenna and its way to the box: the plate ends at the antenna, behind that way."""
     radar = ep.Radar(CHIRPS, transmitters=[ep.Antenna(ANTENNA)], receivers=[ep.Antenna(ANTENNA)])

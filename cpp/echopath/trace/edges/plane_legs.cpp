@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/record/near_antenna.h"
 #include "echopath/trace/mirrors/mirror_zone.h"
 #include "echopath/trace/mirrors/mirrors.h"
 
@@ -54,7 +55,7 @@ bool PlaneLegFinder::follow(const Vec3& point, const Vec3& lift, const Vec3& ant
     from = geometry_.lifted(position, met.normal);
   }
   ++num_queries;
-  return !geometry_.occluded(from, antenna);
+  return reaches_antenna((position - antenna).norm()) && !geometry_.occluded(from, antenna);
 }
 
 // Looks from a point toward an image behind the plane, and finds the point where the wave meets the plane.

@@ -30,6 +30,17 @@ void normalise_keys(Curve& curve) {
   }
 }
 
+// Returns whether all keys are one rotation, whose quaternions are q and -q; splines between these pass through others.
+bool is_one_rotation(const Curve& curve) {
+  if (curve.interpolation == CurveInterpolation::kHermite) return curve.is_constant();
+  const Eigen::Vector4d first = quaternion_at(curve.values, 0).coeffs();
+  for (size_t k = 1; k < curve.times.size(); ++k) {
+    const Eigen::Vector4d key = quaternion_at(curve.values, k).coeffs();
+    if (key != first && key != -first) return false;
+  }
+  return true;
+}
+
 Vec3 vector_at(const Curve& curve, const Playback& playback, double time) {
   Vec3 value;
   evaluate(curve, playback, time, {value.data(), 3});
@@ -95,7 +106,8 @@ CurveMotion::CurveMotion(MotionCurves curves, const Playback& playback) {
   }
   if (curves.scale) curves.scale->validate("scale", 3);
   const auto is_constant = [](const std::optional<Curve>& curve) { return !curve || curve->is_constant(); };
-  const bool rests = is_constant(curves.translation) && is_constant(curves.rotation) && is_constant(curves.scale);
+  const bool rests = is_constant(curves.translation) && is_constant(curves.scale) &&
+                     (!curves.rotation || is_one_rotation(*curves.rotation));
   data_ = std::make_shared<const Data>(Data{std::move(curves), playback, rests});
 }
 

@@ -45,6 +45,11 @@ TEST(Rests, OfCurvesTheyAreConstantWithTheirTangents) {
   const Curve still{{0, 1}, {1, 0, 0, 0, 1, 0, 0, 0}}, turning{{0, 1}, {1, 0, 0, 0, 0, 1, 0, 0}};
   EXPECT_TRUE(CurveMotion({{}, still, {}}).rests());
   EXPECT_FALSE(CurveMotion({{}, turning, {}}).rests());
+  Curve opposite{{0, 1}, {0.6, 0, 0.8, 0, -0.6, 0, -0.8, 0}};  // quaternions of one rotation
+  EXPECT_TRUE(CurveMotion({{}, opposite, {}}).rests());
+  opposite.interpolation = CurveInterpolation::kHermite;  // whose way leads through others
+  opposite.in_tangents = opposite.out_tangents = std::vector(8, 0.0);
+  EXPECT_FALSE(CurveMotion({{}, opposite, {}}).rests());
   EXPECT_FALSE(CurveMotion({{}, still, Curve{{0, 1}, {1, 1, 1, 1, 2, 1}}}).rests());
 }
 

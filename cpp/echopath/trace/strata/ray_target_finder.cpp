@@ -48,12 +48,23 @@ std::optional<RayTarget> RayTargetFinder::at_object(TargetMeshes& target) const 
                    [&]() -> const std::vector<Vec3>& { return target.vertices(); });
 }
 
-std::vector<RayTarget> RayTargetFinder::at_images(TargetMeshes& target) const {
-  std::vector<RayTarget> images;
+std::span<const MirrorFrustum> RayTargetFinder::frusta_over(int num_mirrors) const {
+  const auto found = std::ranges::equal_range(settings_.frusta, num_mirrors, {}, [](const MirrorFrustum& frustum) {
+    return static_cast<int>(frustum.mirrors.size());
+  });
+  return {found.begin(), found.end()};
+}
+
+bool RayTargetFinder::may_have_images(const TargetMeshes& target, int num_mirrors) const {
+  return std::ranges::any_of(frusta_over(num_mirrors), [&](const MirrorFrustum& frustum) {
+    return frustum.reaches(target.sphere.centre, target.sphere.radius);
+  });
+}
+
+void RayTargetFinder::add_images(TargetMeshes& target, int num_mirrors, std::vector<RayTarget>& images) const {
   std::vector<Vec3> vertices;
-  for (const MirrorFrustum& frustum : settings_.frusta) {
+  for (const MirrorFrustum& frustum : frusta_over(num_mirrors)) {
     if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
-    const int num_mirrors = static_cast<int>(frustum.mirrors.size());
     const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
       vertices.resize(target.vertices().size());
       const auto chain = chain_of(mirrors_, frustum.mirrors);
@@ -72,7 +83,6 @@ std::vector<RayTarget> RayTargetFinder::at_images(TargetMeshes& target) const {
     RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
     image.sequences.push_back(frustum.sequence);
   }
-  return images;
 }
 
 // Returns the sum of the bits of all that a stratum hangs on.

@@ -2,6 +2,7 @@
 // Fits the strata of one object and of its images over mirrors.
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,17 @@ class RayTargetFinder {
 
   // Returns the object itself as a target; nothing where no stratum holds it.
   std::optional<RayTarget> at_object(TargetMeshes& target) const;
-  // Returns targets at each image that a frustum may show.
-  std::vector<RayTarget> at_images(TargetMeshes& target) const;
+  // Returns the most mirrors of any frustum.
+  int most_mirrors() const {
+    return settings_.frusta.empty() ? 0 : static_cast<int>(settings_.frusta.back().mirrors.size());
+  }
+  // Returns whether a frustum over so many mirrors may show an image.
+  bool may_have_images(const TargetMeshes& target, int num_mirrors) const;
+  // Appends targets at each image that a frustum over so many mirrors may show to those over fewer.
+  void add_images(TargetMeshes& target, int num_mirrors, std::vector<RayTarget>& images) const;
 
  private:
+  std::span<const MirrorFrustum> frusta_over(int num_mirrors) const;
   using Vertices = std::function<const std::vector<Vec3>&()>;
   uint64_t input_of(const TargetMeshes& target, const std::vector<int>& sequence) const;
   std::optional<RayTarget> target_at(const TargetMeshes& target, uint64_t input, std::string name, int num_mirrors,

@@ -85,7 +85,9 @@ class TargetSearch {
     if (direct && (things.empty() || solid_angle_of(things) > kMostlyFilled * direct->stratum.solid_angle())) {
       own(object, target.object);
       objects_.push_back(std::move(*direct));
-      append(finder_.at_images(target), images_);
+      std::vector<RayTarget> images;
+      for (int n = 1; n <= finder_.most_mirrors(); ++n) finder_.add_images(target, n, images);
+      append(std::move(images), images_);
     } else {
       if (!direct) leave_to_field_of_view(target);
       take_still_and_moving(things);
@@ -241,16 +243,33 @@ class TargetSearch {
     out_.any_still_unaimed = out_.any_still_unaimed || count > 0;
   }
 
+  // Returns the images of the things, those over the fewest mirrors first. Behind the most that are kept none is looked for:
+  // a town that is one object has hundreds of thousands.
+  std::vector<RayTarget> images_of(std::vector<Thing>& things) {
+    std::vector<std::vector<RayTarget>> of_things(things.size());
+    size_t num_found = 0;
+    for (int num_mirrors = 1; num_mirrors <= finder_.most_mirrors(); ++num_mirrors) {
+      for (size_t k = 0; k < things.size(); ++k) {
+        const size_t before = of_things[k].size();
+        if (num_found < kMostThings) finder_.add_images(things[k].target, num_mirrors, of_things[k]);
+        else if (finder_.may_have_images(things[k].target, num_mirrors)) leave_out(1);
+        num_found += of_things[k].size() - before;
+      }
+    }
+    std::vector<RayTarget> images;
+    for (std::vector<RayTarget>& of_thing : of_things) append(std::move(of_thing), images);
+    std::ranges::stable_sort(images, has_fewer_mirrors);
+    return images;
+  }
+
   // Together the things have the weight of one object, and their images no more than that.
   void aim_at(std::vector<Thing>& things) {
     const double share = 1.0 / static_cast<double>(things.size());
-    std::vector<RayTarget> images;
     for (Thing& thing : things) {
       thing.direct.weight *= share;
       objects_.push_back(std::move(thing.direct));
-      append(finder_.at_images(thing.target), images);
     }
-    std::ranges::stable_sort(images, has_fewer_mirrors);
+    std::vector<RayTarget> images = images_of(things);
     const size_t num_kept = std::min(images.size(), kMostThings);
     leave_out(images.size() - num_kept);
     images.resize(num_kept);

@@ -46,8 +46,8 @@ struct RayTargets {
   int num_objects = 0;              // with the parts of those that surround the transmitter
   bool any_unaimed = false;         // some object has no stratum
   bool any_still_unaimed = false;   // likewise one that stands still, or one of which that is not known
-  // Counts the things and images of one object beyond those that have rays of their own, and what is beyond the strata that
-  // a record can tell apart; all objects where these are too many to aim at.
+  // Counts at least the things and images of one object beyond those that have rays of their own, and what is beyond the
+  // strata that a record can tell apart; all objects where these are too many to aim at.
   int64_t num_left_out = 0;
 };
 

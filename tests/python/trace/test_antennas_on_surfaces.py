@@ -43,6 +43,17 @@ def test_edges_have_no_legs_over_a_plane_on_which_the_antenna_lies():
     assert paths.select("T 'corner' R").num_paths > 0
 
 
+def test_an_antenna_has_no_image_in_a_mirror_on_which_it_lies():
+    """A radar that drives through it: the bounce was beside the antenna, and the echo of a way without a length no number."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=METAL_MIRROR, position=(2.8, -0.5, 0.7))
+    antenna = ep.Antenna((2.8, -1 / 3, 0.8666666666666666))
+    radar = ep.Radar(CHIRPS, transmitters=[antenna], receivers=[antenna], speed=3.0)
+    paths = ep.trace(scene, radar, num_rays=200)
+    assert np.isfinite(ep.synthesize(paths, radar)).all()
+    assert paths.select("T 'plate' R").num_paths == 0
+
+
 def test_a_rim_beside_the_antenna_hides_nothing_ahead_of_it():
     """The plane of the plate holds the antenna and its way to the box: the plate ends at the antenna, behind that way."""
     radar = ep.Radar(CHIRPS, transmitters=[ep.Antenna(ANTENNA)], receivers=[ep.Antenna(ANTENNA)])

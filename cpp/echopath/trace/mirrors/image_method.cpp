@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "echopath/em/polarization/mirrored_fields.h"
+#include "echopath/record/near_antenna.h"
 
 namespace echopath {
 namespace {
@@ -33,6 +34,9 @@ std::optional<ImagePath> ImageMethod::path_over(const std::vector<int>& sequence
 // Follows the sequence to a receiver; sets hits and points of the path and returns true where it gets through.
 bool ImageMethod::follow(const Vec3& receiver, ImagePath& path) {
   if (!find_points_toward(receiver, sequence_, points_)) return false;
+  if (!reaches_antenna((points_.front() - settings_.transmitter).norm()) ||
+      !reaches_antenna((points_.back() - settings_.receiver).norm()))
+    return false;
   std::vector<Hit> hits;
   Vec3 from = settings_.transmitter;
   for (size_t k = 0; k < points_.size(); ++k) {

@@ -82,7 +82,11 @@ class KeptSignal:
         if self._whole is None and radar != self._radar:
             self._whole = self._record.paths(progress)
         middle = time.perf_counter()
-        num_changed = self._bring_up(radar, progress)
+        try:
+            num_changed = self._bring_up(radar, progress)
+        except ValueError:  # of echoes that are no numbers, say: what is still to be added must not be asked for again
+            self._whole, self._pending = self._record.paths(), []
+            raise
         return Update(change["num_rays"], change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle,
                       change["added"] if change["is_whole"] else None)
 

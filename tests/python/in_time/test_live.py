@@ -8,6 +8,8 @@ import pytest
 import echopath as ep
 from echopath.bench.live.edits import crowded_street
 from echopath.bench.live.random_edits import KINDS, RandomEdits
+from echopath.live import kept_signal
+from echopath.transmit.signals import synthesize_slots
 from support.live import RAYS, difference, fresh_view, make_live
 
 ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
@@ -277,6 +279,23 @@ def test_a_bad_change_is_refused_and_nothing_is_lost(live):
     with pytest.raises(ValueError, match="sign_30"):
         live.update()
     live.scene["sign_30"].position = where
+    assert difference(live.update(), make_live().update()) < ROUNDING
+
+
+def test_a_scene_without_a_signal_is_refused_and_the_next_one_is_shown(live, monkeypatch):
+    """Paths whose echoes are no numbers were asked for again at each update from then on."""
+    def refuse_far_signs(paths, *args, **keywords):
+        signs = [mesh.id for mesh in paths.scene.meshes if mesh.name.startswith("sign_30")]
+        if any(paths.scene.world_vertices(sign, 0.0)[:, 0].max() > 29.4 for sign in signs):
+            raise ValueError("amplitude: must be finite, got nan")
+        return synthesize_slots(paths, *args, **keywords)
+
+    monkeypatch.setattr(kept_signal, "synthesize_slots", refuse_far_signs)
+    for step in (0.5, -0.5):
+        live.scene["sign_30"].position += (step, 0.0, 0.0)
+        if step > 0.0:
+            with pytest.raises(ValueError, match="amplitude"):
+                live.update()
     assert difference(live.update(), make_live().update()) < ROUNDING
 
 

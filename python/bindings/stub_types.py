@@ -51,7 +51,7 @@ RETURNS = {
     ("Paths", "to_xarray"): "Dataset", ("Paths", "to_dataframe"): "DataFrame",
     ("SignalProbe", "share_field"): COMPLEX, ("SignalProbe", "share_power"): REAL,
 }
-IMPORTS = ("from echopath.base.foreign_types import Axes, DataArray, DataFrame, Dataset\n"
+IMPORTS = ("from echopath.base.classes.foreign_types import Axes, DataArray, DataFrame, Dataset\n"
            "from echopath.effects.rules import Effect\nfrom echopath.frame_file.frame import LeftOut\n"
            "from echopath.receiver import Receiver\nfrom typing import Literal\n")
 

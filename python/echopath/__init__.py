@@ -23,7 +23,7 @@ from ._core import (
 )
 from .actors import Actor, Part
 from .arguments.settings import LabelSettings, SignalSettings, TraceSettings
-from .base.threads import num_threads, set_num_threads
+from .base.process.threads import num_threads, set_num_threads
 from .cavities.cavity import Cavity
 from .detections import Detections, detect
 from .effects import Effect, effects

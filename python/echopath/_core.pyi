@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from numpy.typing import ArrayLike
 import types
-from echopath.base.foreign_types import Axes, DataArray, DataFrame, Dataset
+from echopath.base.classes.foreign_types import Axes, DataArray, DataFrame, Dataset
 from echopath.effects.rules import Effect
 from echopath.frame_file.frame import LeftOut
 from echopath.receiver import Receiver

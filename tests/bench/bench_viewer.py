@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import echopath as ep
-from echopath.base.mesh_names import object_of
+from echopath.base.text.mesh_names import object_of
 from echopath.live.watch import FEWEST_PREVIEW_RAYS
 from echopath.paths.subset import strongest, subset
 from echopath_viewer.model import CellBox, Filters, from_file

@@ -7,8 +7,8 @@ import numpy as np
 import pyvista as pv
 
 import echopath as ep
-from echopath.base.callers import warn_user
-from echopath.base.origin import mark_png, origin_texts
+from echopath.base.process.callers import warn_user
+from echopath.base.storage.origin import mark_png, origin_texts
 from echopath.scene.lifetimes import scene_in_frame
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part

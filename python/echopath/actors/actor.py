@@ -7,7 +7,7 @@ from typing import Any
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.counts import counted
+from ..base.text.counts import counted
 
 
 @dataclass(frozen=True)

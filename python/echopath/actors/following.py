@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import an, optional, refused
-from ..base.rotations import quaternions
+from ..base.numerics.rotations import quaternions
 from ..trajectories.knots import curve_through
 from ..trajectories.profile import Profile
 from ..trajectories.trajectory import Trajectory

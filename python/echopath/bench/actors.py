@@ -15,8 +15,8 @@ import numpy as np
 import echopath as ep
 
 from .. import actors
-from ..base.files import write_texts
-from ..base.origin import FIXED_SEEDS
+from ..base.storage.files import write_texts
+from ..base.storage.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 from ..signals.measures import for_pictures
 from .steps import csv_text, told

@@ -5,7 +5,7 @@ import multiprocessing
 import warnings
 from collections.abc import Callable
 
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 
 
 def alone(work: Callable, *arguments, start: str = "spawn"):

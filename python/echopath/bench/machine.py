@@ -8,7 +8,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.origin import FIXED_SEEDS
+from ..base.storage.origin import FIXED_SEEDS
 
 
 def machine() -> dict:

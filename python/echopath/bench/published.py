@@ -13,7 +13,7 @@ import numpy as np
 import echopath as ep
 
 from ..actors import shapes
-from ..base.files import write_texts
+from ..base.storage.files import write_texts
 from ..effects.surfaces import bistatic_limit_deg
 from .steps import csv_text, told
 

@@ -9,7 +9,7 @@ from types import MappingProxyType, ModuleType
 
 import numpy as np
 
-from ..base.files import write_texts
+from ..base.storage.files import write_texts
 from .machine import machine
 from .pace import REFERENCE_MACHINE, pace, told_at_reference, verdict
 from .steps import told

@@ -7,7 +7,7 @@ import functools
 import numpy as np
 
 from .. import _core
-from ..base.triangles import areas_of
+from ..base.numerics.triangles import areas_of
 from .cavity import Cavity
 
 SIDE = 0.25              # wavelengths, of a square as large as a facet of a wall

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
-from ..base.interrupts import interrupts_are_kept
+from ..base.process.interrupts import interrupts_are_kept
 from .parser import command_parser
 from .resumable import Unread
 from .typed_names import with_typed_name

@@ -5,12 +5,12 @@ from pathlib import Path
 from shlex import quote
 
 from ..arguments.checks import file
-from ..base.files import require_writable
+from ..base.storage.files import require_writable
 
 
 def demo(options) -> None:
     from .demo import run_demo
-    from ..base.progress import progress_bars
+    from ..base.process.progress import progress_bars
 
     require_writable(options.out, "--out")
     if options.view:
@@ -36,7 +36,7 @@ def view(options) -> None:
 
 def run(options) -> None:
     from . import report
-    from ..base.progress import progress_bars
+    from ..base.process.progress import progress_bars
     from ..frame.unresolved import unresolved_of_frame
     from .resumable import print_resumable
     from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
@@ -105,7 +105,7 @@ def scene(options) -> None:
 def labels(options) -> None:
     from ..arguments.settings import LabelSettings
     from .labels import label_file, objects_of_options
-    from ..base.progress import progress_bars
+    from ..base.process.progress import progress_bars
 
     require_writable(options.out, "--out")
     settings = LabelSettings(objects=objects_of_options(options.object), plane=options.plane,
@@ -137,7 +137,7 @@ def bench(options) -> None:
                          run_actors, run_certificate, run_crowd, run_dataset, run_labels, run_live, run_measured, run_physics,
                          run_published, run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
     from ..bench.physics import report
-    from ..base.progress import progress_bars
+    from ..base.process.progress import progress_bars
 
     works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
              "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),

@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from ..base.counts import counted
+from ..base.text.counts import counted
 from ..dataset import Forecast, MadeScene, make
 from ..dataset.folder import MANIFEST
 from ..dataset.unresolved import UnresolvedEchoes, summary

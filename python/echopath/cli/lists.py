@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.counts import named
+from ..base.text.counts import named
 
 
 def strongest(powers: Sequence[float], visible_shares: Sequence[float], count: int) -> list[int]:

@@ -8,7 +8,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.counts import counted
+from ..base.text.counts import counted
 from ..readers.sizes import has_skin, names_of, unit_doubt
 from ..scene.boxes import box_of
 from . import report

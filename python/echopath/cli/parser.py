@@ -7,7 +7,7 @@ from typing import get_args
 from .. import _core
 from ..arguments.keywords import default_of
 from ..arguments.settings import LabelSettings, Plane
-from ..base.data_folder import data_folder
+from ..base.storage.data_folder import data_folder
 from ..readers.options import AXES
 from ..sequence.keep import Keep
 from ..spectra.range_doppler import CfarMethod, cfar

@@ -11,8 +11,8 @@ import echopath as ep
 
 from .. import plots
 from ..arguments.part_names import LEAKAGE, REST
-from ..base.counts import counted
-from ..base.stages import StageClock
+from ..base.text.counts import counted
+from ..base.process.stages import StageClock
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame

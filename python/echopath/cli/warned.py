@@ -7,9 +7,9 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-from ..base.callers import warn_user
-from ..base.counts import counted
-from ..base.work_at_hand import work_at_hand
+from ..base.process.callers import warn_user
+from ..base.text.counts import counted
+from ..base.process.work_at_hand import work_at_hand
 
 
 _QUOTED = re.compile(r"('[^']*')")

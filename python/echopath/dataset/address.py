@@ -12,7 +12,7 @@ from typing import Any
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.libraries import needed_module
+from ..base.process.libraries import needed_module
 from ..scene_file.load import parse
 from .folder import (
     MANIFEST,

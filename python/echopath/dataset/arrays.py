@@ -12,7 +12,7 @@ from ..presentation.xarray_maps import axis, words_of, xarray_module
 from .classes import CODES
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Dataset as XarrayDataset
+    from ..base.classes.foreign_types import Dataset as XarrayDataset
     from .opened import Dataset, DatasetFrame
 
 CELLS = ("nothing", "object", "ghost")

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 from .. import _core
 from ..arguments.names import first_names
 from ..arguments.objects import NamedGlobs
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 
 ClassName = Literal["car", "van", "truck", "bus", "train", "cyclist", "motorcycle", "pedestrian", "pedestrian_group", "animal",
                     "other", "static"]

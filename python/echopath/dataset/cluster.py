@@ -8,8 +8,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..base.libraries import needed_module
-from ..base.threads import set_num_threads
+from ..base.process.libraries import needed_module
+from ..base.process.threads import set_num_threads
 from .address import Address, is_address
 from .folder import RECORD, SceneRecord, record_text, scene_folder, scene_name
 from .scene_work import make_scene

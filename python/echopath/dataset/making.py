@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 from .. import _core
 from ..arguments.checks import array, checked, count, flag, optional, refused, text
 from ..arguments.checks import path as file_or_folder
-from ..base.counts import counted
-from ..base.files import require_writable
+from ..base.text.counts import counted
+from ..base.storage.files import require_writable
 from ..sequence.folder import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import anything, array, checked, optional, refused
 from ..arguments.checks import path as folder_rule
-from ..base.counts import counted
+from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
@@ -29,7 +29,7 @@ from .sources import Files, Remade, Source
 from .template import Template
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Dataset as XarrayDataset
+    from ..base.classes.foreign_types import Dataset as XarrayDataset
 
 _PLACES = array("[N]", kind="whole")
 

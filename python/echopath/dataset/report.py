@@ -15,8 +15,8 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import checked
 from ..arguments.checks import path as file_or_folder
-from ..base.decibels import in_dbm
-from ..base.files import write_texts
+from ..base.numerics.decibels import in_dbm
+from ..base.storage.files import write_texts
 from ..paths.resolution import RESOLVED_DB
 from ..plots.style import CURVE_COLOURS, new_figure
 from ..presentation.notebook import validity_html

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .. import _core
-from ..base.callers import warn_user
-from ..base.files import write_texts
+from ..base.process.callers import warn_user
+from ..base.storage.files import write_texts
 from ..frame.frame import Frame
 from ..sequence import Sequence
 from ..sequence.folder import NAME as CONTENTS

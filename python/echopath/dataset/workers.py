@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..base.callers import warn_user
-from ..base.threads import set_num_threads
+from ..base.process.callers import warn_user
+from ..base.process.threads import set_num_threads
 from .folder import RECORD, SceneRecord, read_record, scene_folder
 from .scene_work import claimed, make_scene, tidy
 from .template import Template

@@ -13,7 +13,7 @@ from ..arguments.keywords import parameters_of
 from ..arguments.objects import Objects, objects_rule
 from ..arguments.part_names import BESIDE, require_names
 from ..arguments.settings import LabelSettings
-from ..base.antennas import centre_of
+from ..base.radar.antennas import centre_of
 from ..labels.labels import Labels
 from ..labels.part_cells import floor_over
 from ..paths.families import families as find_families

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
 from ..presentation.tables import make_table, write_csv
 from .directions import toward
 from .echo_fields import EchoFields
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes, DataFrame
+    from ..base.classes.foreign_types import Axes, DataFrame
 
 DetectionsView = Literal["range_doppler", "above"]
 NOISE = "noise"  # part of a detection that no echo made

@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import array
-from ..base.progress import with_progress
+from ..base.process.progress import with_progress
 from ..labels.cell_owners import CellOwners
 from ..paths.resolution import mean_powers
 from .detections import NOISE

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
-from ..base.chirps import chirps_duration
+from ..base.radar.chirps import chirps_duration
 from ..paths.cells import chirp_times
 from ..spectra.windows import of_velocity, samples_of
 from ..transmit.signals import has_steps, repeated

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.effects import INTERFERENCE, is_on
-from ..base.decibels import in_dbm
+from ..base.numerics.decibels import in_dbm
 from .rules import Case, rule
 
 

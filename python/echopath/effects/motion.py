@@ -1,7 +1,7 @@
 """Effects of motion during a frame."""
 from __future__ import annotations
 
-from ..base.counts import counted
+from ..base.text.counts import counted
 from .rules import Case, rule
 
 SURFACE_SEARCHES = 32  # stretches in which new surface is looked for (sim/stream/keyframes.h)

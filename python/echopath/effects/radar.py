@@ -1,7 +1,7 @@
 """Effects of antennas, waveform and receiver."""
 from __future__ import annotations
 
-from ..base.antennas import antennas_of, are_crossed
+from ..base.radar.antennas import antennas_of, are_crossed
 from ..tracing.polarization import FIELD_VECTORS, need_of_field_vectors
 from .rules import Case, rule
 

@@ -12,7 +12,7 @@ from .. import _core
 from ..arguments.effects import Choices
 from ..arguments.names import MOST_NAMES, first_names
 from ..arguments.settings import Edges, FaintPower
-from ..base.made_by import made_by
+from ..base.classes.made_by import made_by
 from ..scene.interferers import interferers_of
 from ..tracing.polarization import COHERENT_SHARE, chosen_model, coherent_share
 from ..weather.weather import weather_of

@@ -1,7 +1,7 @@
 """How the rays are spread, and what they tell of their own error."""
 from __future__ import annotations
 
-from ..base.decibels import in_dbm
+from ..base.numerics.decibels import in_dbm
 from ..tracing.faint_paths import faint_power_of
 from ..tracing.lost_rays import unaimed
 from .rules import Case, rule

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.effects import ATTENUATION, RAIN_ECHOES, is_on
-from ..base.decibels import in_dbm
+from ..base.numerics.decibels import in_dbm
 from ..signals.rain_echoes import rain_power
 from ..weather.weather import DB_PER_NEPER, attenuation_of_weather
 from .rules import Case, rule

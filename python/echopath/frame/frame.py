@@ -10,10 +10,10 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import SignalSettings
-from ..base.counts import counted
-from ..base.known_attributes import known_attributes
-from ..base.made_by import made_by
-from ..base.stages import Stage
+from ..base.text.counts import counted
+from ..base.classes.known_attributes import known_attributes
+from ..base.classes.made_by import made_by
+from ..base.process.stages import Stage
 from ..effects import of_paths
 from ..paths.families import families as find_families
 from ..paths.resolution import mean_powers, unresolved_of
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ..arguments.checks import Progress
-    from ..base.foreign_types import Axes, Page
+    from ..base.classes.foreign_types import Axes, Page
     from ..detections.detections import Detections
     from ..effects import Effect
     from ..frame_file import LeftOut

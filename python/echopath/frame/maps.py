@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
 from ..detections.detections import Detections
 from ..labels.labels import Labels
 from ..truth import Truth

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 
 from .. import _core
-from ..base.counts import counted
+from ..base.text.counts import counted
 
 _BYTES = 16  # of a complex sample
 

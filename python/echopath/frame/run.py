@@ -8,7 +8,7 @@ from .. import _core
 from ..arguments.checks import refused
 from ..arguments.part_names import REST, require_names
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
-from ..base.stages import StageClock
+from ..base.process.stages import StageClock
 from ..detections.checks import RULES as DETECTION_RULES
 from ..detections.checks import checked_keywords
 from ..guard import check_planes, check_rays, check_signal, warn_of

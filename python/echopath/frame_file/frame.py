@@ -13,7 +13,7 @@ from ..arguments.part_names import REST
 from ..arguments.checks import an, anything, checked, real, refused
 from ..arguments.keywords import parameters_of
 from ..arguments.settings import Evaluate, Replay, Retrace
-from ..base.interrupts import interrupts_are_kept
+from ..base.process.interrupts import interrupts_are_kept
 from ..detections.uneven_fields import echo_fields
 from ..frame.frame import Frame, with_spectra
 from ..scene.scene import Scene

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from .. import _core
-from ..base.interrupts import heed
+from ..base.process.interrupts import heed
 from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of, text_types
 
 CHUNK_BYTES = 1 << 20   # of compression

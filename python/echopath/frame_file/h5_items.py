@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ..base.libraries import load_whole
+from ..base.process.libraries import load_whole
 
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core
-from ..base.files import file_state, flush, written_whole
+from ..base.storage.files import file_state, flush, written_whole
 from .container import our_file
 from .h5 import copy_items, read_array, read_attribute, read_group, reserve, write_array, write_attribute, writing
 from .opening import reading

@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping
 
 from ..arguments.checks import checked, refused, text
-from ..base.interrupts import interrupts_are_kept
+from ..base.process.interrupts import interrupts_are_kept
 from ..labels.labels import Labels
 from .container import new_file, our_file
 from .h5 import read_group

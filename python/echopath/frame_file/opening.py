@@ -8,7 +8,7 @@ from pathlib import Path
 from shlex import quote
 
 from .. import _core
-from ..base.interrupts import interrupts_are_kept
+from ..base.process.interrupts import interrupts_are_kept
 from .changing import has_journal, mend
 from .h5 import FAULTS, first_line, read_group
 from .h5_items import library

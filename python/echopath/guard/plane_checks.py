@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import LabelSettings
-from ..base.decibels import in_dbm
+from ..base.numerics.decibels import in_dbm
 from ..paths.subset import subset
 from ..scene.large_planes import large_planes
 from .check import Check

@@ -12,7 +12,7 @@ from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
 from ..arguments.iterables import iterable
 from ..arguments.part_names import BESIDE
 from ..arguments.settings import FRAME_KEYWORDS
-from ..base.chirps import chirp_period, chirps_duration
+from ..base.radar.chirps import chirp_period, chirps_duration
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..signals.beside import cubes_beside

@@ -10,7 +10,7 @@ from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, anything, checked, one_of
 from ..arguments.gates import gate, in_gate
 from ..arguments.settings import SignalSettings
-from ..base.chirps import chirp_period
+from ..base.radar.chirps import chirp_period
 from ..spectra.angles import Combine, range_azimuth
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..spectra.windows import of_range, of_velocity

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..arguments.checks import real
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
 from ..presentation.xarray_maps import time_map_array
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes, DataArray
+    from ..base.classes.foreign_types import Axes, DataArray
     from .spectrogram_labels import SpectrogramLabels
 
 

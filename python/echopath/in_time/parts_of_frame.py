@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.settings import FRAME_KEYWORDS
-from ..base.antennas import one_of_each_look
+from ..base.radar.antennas import one_of_each_look
 from ..frame.frame import Frame
 from ..labels.ghost_names import ghost_name
 from ..labels.planes import with_receivers

@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.gates import in_gate
-from ..base.chirps import chirp_period
+from ..base.radar.chirps import chirp_period
 from ..spectra.windows import of_range
 from .bursts import text_of_part
 from .maps import Spectrogram

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..arguments.checks import choice
 from ..arguments.part_names import BESIDE, REST
-from ..base.counts import counted
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
+from ..base.text.counts import counted
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
 from ..paths.resolution import Interval
 from ..paths.visibility import HIDDEN_SHARE
 from .dataset import dataset_of
@@ -20,7 +20,7 @@ from .report import text_of
 from .table import table_of
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes, DataFrame, Dataset
+    from ..base.classes.foreign_types import Axes, DataFrame, Dataset
 
 NONE = -1  # in a map of indices: no label
 COMES_INTO_VIEW = "comes into view"

@@ -4,7 +4,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 
 from .. import _core
-from ..base.known_attributes import known_attributes
+from ..base.classes.known_attributes import known_attributes
 from ..scene.scene import Scene
 from .changes import Changes
 

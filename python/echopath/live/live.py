@@ -14,8 +14,8 @@ from ..arguments.settings import (
     MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
-from ..base.counts import counted
-from ..base.known_attributes import known_attributes
+from ..base.text.counts import counted
+from ..base.classes.known_attributes import known_attributes
 from ..scene.lifetimes import scene_in_frame
 from ..scene.scene import Scene
 from ..signals.parts import as_partition

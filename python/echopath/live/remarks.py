@@ -1,7 +1,7 @@
 """What is wrong with a live scene, said as a fresh run says it."""
 from __future__ import annotations
 
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from ..scene.bodies import warn_of_bodies
 from ..scene.scene import Scene
 from ..signals.silence import warn_of_silence

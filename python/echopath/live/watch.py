@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from ..arguments.checks import anything, checked, optional, positive
 from .changes import Changes
 from .view import LiveView
-from ..base.callers import at_line_of_user
-from ..base.made_by import made_by
+from ..base.process.callers import at_line_of_user
+from ..base.classes.made_by import made_by
 
 if TYPE_CHECKING:
     from .live import Live

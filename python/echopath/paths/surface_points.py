@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..base.triangles import areas_of
+from ..base.numerics.triangles import areas_of
 
 _STEPS = 0.7548776662466927 ** np.array([1.0, 2.0])  # 1/g and 1/g^2 with g^3 = g + 1: an even sequence in the square
 

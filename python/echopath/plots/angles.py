@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new, require_drawable
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..base.foreign_types import Axes
+    from ..base.classes.foreign_types import Axes
 
 SHOWN_DB = 50.0  # below the peak
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from .. import _core
 from ..arguments.part_names import LEAKAGE
-from ..base.velocities import ambiguity_of, folded
+from ..base.radar.velocities import ambiguity_of, folded
 from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, hold_points
 from .points import draw_points
 from .style import axes_or_new, require_drawable
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes
+    from ..base.classes.foreign_types import Axes
     from ..detections import Detections
     from ..frame.frame import Frame
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import choice, refused
-from ..base.counts import counted
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.text.counts import counted
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
@@ -17,7 +17,7 @@ from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..base.foreign_types import Axes, Figure
+    from ..base.classes.foreign_types import Axes, Figure
     from ..labels.labels import Labels
 
 AZIMUTH_MARGIN = 4.0        # degrees

@@ -10,13 +10,13 @@ import numpy as np
 
 from ..arguments.part_names import REST
 from ..arguments.checks import optional, real, refused
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, require_drawable, set_title
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..base.foreign_types import Axes, Figure
+    from ..base.classes.foreign_types import Axes, Figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 LEAKED_DB = 10.0             # below a cell: where leakage alone comes so near to it, the cell tells nothing of the scene

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..paths.resolution import RESOLVED_DB
 from ..signals.measures import for_pictures, with_error
 from .style import new_figure, part_colours, require_drawable
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..base.foreign_types import Figure
+    from ..base.classes.foreign_types import Figure
 
 ROOM_BESIDE_DB = 6.0  # of the weakest and the strongest power
 

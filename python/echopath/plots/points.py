@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import choice, text
-from ..base.counts import counted
+from ..base.text.counts import counted
 from .maps import RANGE_LABEL, VELOCITY_LABEL
 from .style import axes_or_new, part_colours, require_drawable
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes
+    from ..base.classes.foreign_types import Axes
     from ..detections.detections import Detections
 
 VIEWS = ("range_doppler", "above")

@@ -11,14 +11,14 @@ from .. import _core
 from ..arguments.checks import LARGEST_COUNT, an, array
 from ..arguments.checks import count as whole
 from ..arguments.objects import Objects, named_globs
-from ..base.mesh_names import object_of
+from ..base.text.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from ..scene.lifetimes import scene_in_frame
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Figure
+    from ..base.classes.foreign_types import Figure
 
 BODY_COLOUR = np.array([0.35, 0.38, 0.44])
 MIRROR_COLOUR = (0.55, 0.65, 0.80)

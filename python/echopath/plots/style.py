@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.colours import colours_of
-from ..base.files import written_whole
-from ..base.origin import origin_texts
+from ..base.text.colours import colours_of
+from ..base.storage.files import written_whole
+from ..base.storage.origin import origin_texts
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes, Figure, SubFigure
+    from ..base.classes.foreign_types import Axes, Figure, SubFigure
 
 DPI = 160
 _MOST_LAYOUTS, _SETTLED = 5, 1e-9  # of a figure that is saved; of its sides, by which nothing moves any more

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from .maps import (
     DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
     limits_above, margin_of,
@@ -13,7 +13,7 @@ from .maps import (
 from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours, require_drawable
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes
+    from ..base.classes.foreign_types import Axes
     from ..in_time.maps import Spectrogram, TimeMap
     from ..in_time.spectrogram_labels import SpectrogramLabels
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
 from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, require_drawable, set_title
@@ -17,7 +17,7 @@ from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure,
 if TYPE_CHECKING:
     from .. import _core
     from ..arguments.checks import ArrayLike
-    from ..base.foreign_types import Axes, Figure
+    from ..base.classes.foreign_types import Axes, Figure
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
 LEAST_RANGES = 8               # cells shown at least

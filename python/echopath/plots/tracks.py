@@ -8,7 +8,7 @@ import numpy as np
 from .style import CURVE_COLOURS, axes_or_new, require_drawable
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes
+    from ..base.classes.foreign_types import Axes
     from ..tracks import Tracks
 
 SIZE = 6.0, 5.2  # inches

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.libraries import needed_module
+from ..base.process.libraries import needed_module
 
 AXES = {
     "time": {"units": "s", "long_name": "time, middle of the window"},

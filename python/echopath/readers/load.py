@@ -12,7 +12,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import (
     Rule, checked, choice, flag, optional, path as file_or_folder, positive, real, refused, text)
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from ..scene.meshes import UNIT
 from .material_names import Meaning, checked_materials, note_of_unused
 from .model import Model

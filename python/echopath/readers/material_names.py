@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, MutableMapping
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.counts import counted
-from ..base.node_names import composed
+from ..base.text.counts import counted
+from ..base.text.node_names import composed
 from ..scene.materials import known_material, materials
 
 Meaning = _core.Material | str

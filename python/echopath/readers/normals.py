@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.triangles import areas_of
+from ..base.numerics.triangles import areas_of
 
 FLAT_COSINE = np.cos(np.radians(0.1))     # normals of a facet that differ by less stand for a plane
 COARSE_FLAT_COSINE = np.cos(np.radians(1.0))  # the same of normals of few bits, which differ by rounding

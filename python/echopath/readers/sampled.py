@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.rotations import quaternions
+from ..base.numerics.rotations import quaternions
 from .options import ReadOptions
 
 HOLD = 1e5            # s for which vertices of the ends are held, from them and from time 0 of the scene

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.node_names import fit_name, unique
+from ..base.text.node_names import fit_name, unique
 from .itu import at_frequency, note_of_library_values
 from .material_names import material_of, note_of_unknown
 from .model import Model, ModelNode

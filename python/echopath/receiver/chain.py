@@ -8,8 +8,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
-from ..base.analytic import as_samples, turned
-from ..base.past import models_of
+from ..base.numerics.analytic import as_samples, turned
+from ..base.numerics.past import models_of
 from ..transmit import code_of, is_coded, radar_of_noise
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
 from .converter import converted, jittered, noise_of_branch, warn_of_levels

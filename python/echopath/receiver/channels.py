@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.analytic import turned
+from ..base.numerics.analytic import turned
 from .settings import LARGEST_DB, Receiver
 
 

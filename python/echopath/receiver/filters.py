@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.past import CHIRPS_AT_ONCE, with_pasts
+from ..base.numerics.past import CHIRPS_AT_ONCE, with_pasts
 from .settings import Receiver
 
 # Beat frequencies from -1/16 of the sampling rate on: below 0 stand the sidelobes of what is near.

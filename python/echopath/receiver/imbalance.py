@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.analytic import analytic, as_samples
+from ..base.numerics.analytic import analytic, as_samples
 from .settings import Receiver
 
 _ONE_DB = 10.0 ** 0.1 - 1.0  # power over saturation power where the gain is 1 dB lower

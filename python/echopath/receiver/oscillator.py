@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.analytic import analytic, as_samples
+from ..base.numerics.analytic import analytic, as_samples
 from .filters import NEGATIVE_SHARE
 from .leakage import leaked_tone
 from .settings import Receiver

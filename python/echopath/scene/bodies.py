@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 
 LARGE = 1000.0     # m, all sides of an object that no scene has
 LONG = 250.0       # m, all sides of a closed body: mountains are as high, but open below

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 from .. import _core
 from ..arguments.checks import Rule, an, array, one_of, optional, real, refused
 from ..arguments.settings import Settings, settings_class
-from ..base.counts import counted
+from ..base.text.counts import counted
 from .node import ALWAYS
 
 Over = Literal["both", "direct", "paths"]

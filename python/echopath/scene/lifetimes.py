@@ -5,7 +5,7 @@ import math
 
 from .. import _core
 from ..arguments.names import first_names
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from .scene import Scene
 
 _ROUNDING = 1e-9  # relative, of a lifetime that is the duration of a frame by another sum

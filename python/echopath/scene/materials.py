@@ -7,7 +7,7 @@ from functools import cached_property
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.data_folder import data_folder
+from ..base.storage.data_folder import data_folder
 
 
 class MaterialLibrary(Mapping[str, _core.Material]):

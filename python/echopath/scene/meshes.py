@@ -5,7 +5,7 @@ import os
 
 from .. import _core
 from ..arguments.checks import checked, real
-from ..base.node_names import fit_paths
+from ..base.text.node_names import fit_paths
 
 UNIT = real(1e-12, 1e9, "m")
 

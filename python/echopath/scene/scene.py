@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..actors import Actor
 from ..arguments.checks import an, anything, checked, flag, optional, real, refused, text, vector
-from ..base.known_attributes import known_attributes
+from ..base.classes.known_attributes import known_attributes
 from ..readers.model import Model
 from ..weather import Weather
 from ..weather.weather import weather_text

@@ -8,10 +8,10 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
-from ..base.antennas import polarization_across
-from ..base.counts import counted
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
+from ..base.radar.antennas import polarization_across
+from ..base.text.counts import counted
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
 
 
 @made_by("ep.sheet_coefficients")

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..base.node_names import fit_name
+from ..base.text.node_names import fit_name
 from ..readers import load_model
 from ..readers.options import ReadOptions
 from ..scene.scene import Scene

@@ -12,7 +12,7 @@ import numpy as np
 from .._core import Selection
 from ..arguments.objects import Objects
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
-from ..base.made_by import made_by
+from ..base.classes.made_by import made_by
 from ..signals.parts import Selections, as_partitions
 
 if TYPE_CHECKING:

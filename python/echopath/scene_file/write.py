@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from .. import _core
-from ..base.files import written_whole
-from ..base.node_names import fit_name
+from ..base.storage.files import written_whole
+from ..base.text.node_names import fit_name
 from ..readers import Model, load_model
 from ..scene.found_objects import find_objects, things_of
 from ..scene.scene import Scene

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.data_folder import data_folder
+from ..base.storage.data_folder import data_folder
 
 
 class Board(NamedTuple):

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from .. import _core
 from ..arguments.checks import checked, flag, optional, refused, text
 from ..arguments.checks import count as count_rule
-from ..base.callers import warn_user
-from ..base.made_by import made_by
+from ..base.process.callers import warn_user
+from ..base.classes.made_by import made_by
 from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
 from .cfg import Command, Lines, read_lines

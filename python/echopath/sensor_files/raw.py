@@ -16,7 +16,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import checked, path, refused
 from ..arguments.iterables import iterable
-from ..base.files import written_whole
+from ..base.storage.files import written_whole
 from ..frame.frame import Frame
 from ..receiver.chain import Reception
 from ..receiver.converter import converted

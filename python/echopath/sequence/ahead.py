@@ -6,8 +6,8 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
-from ..base.callers import at_line_of_user
-from ..base.threads import num_threads
+from ..base.process.callers import at_line_of_user
+from ..base.process.threads import num_threads
 
 Result = TypeVar("Result")
 Work = Callable[[Any], Result]  # of a progress callable (stage, fraction), or None

@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.names import first_names
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from ..scene.interferers import interferers_of
 from ..scene.node import ALWAYS
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..arguments.checks import refused
-from ..base.locks import is_at, takes
+from ..base.storage.locks import is_at, takes
 
 PATIENCE, PAUSE = 5.0, 0.02  # s that a shard waits for others to begin, and between its tries
 

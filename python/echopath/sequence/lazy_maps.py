@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..frame_file.container import our_file
 from ..frame_file.h5 import read_array, read_attribute, read_group
 from ..frame_file.labels import CELL_FIELDS, PLANES, read_names

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..arguments.checks import refused
-from ..base.files import flush, require_writable, written_whole
+from ..base.storage.files import flush, require_writable, written_whole
 from ..frame.frame import Frame
 from ..frame_file.changing import changing, mend_own, work_folder
 from ..frame_file.container import SEQUENCE, our_file

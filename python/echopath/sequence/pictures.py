@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from ..arguments.checks import Progress
-from ..base.progress import with_progress
+from ..base.process.progress import with_progress
 from ..scene.lifetimes import scene_in_frame
 from ..signals.beside import leakage_map
 from ..signals.measures import static_speed
@@ -62,7 +62,7 @@ def _driving(frames: Frames, times) -> Driving:
 
 def write_film_of(drive: Drive, path, interval: float, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:
     """Writes a film of the maps as `Row.film` has it; interval: of the frames in s."""
-    from ..base.film import write_film
+    from ..base.storage.film import write_film
     from ..plots import film_pictures
 
     pace = min(1.0 / abs(interval), FASTEST) if frames_per_second is None else frames_per_second

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from ..arguments.checks import Progress, anything, checked, count, optional, real, refused, text
 from ..arguments.checks import path as path_rule
-from ..base.progress import with_progress
+from ..base.process.progress import with_progress
 from .record import start_time_of
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Figure
+    from ..base.classes.foreign_types import Figure
 
 Item = TypeVar("Item")
 Self = TypeVar("Self", bound="Row[Any]")
@@ -115,7 +115,7 @@ class Row(Generic[Item]):
         Memory: as of `plot`, and the pictures of a GIF, .5 MB each. Raises what `plot` raises, ValueError for another kind of
         file, ModuleNotFoundError without imageio-ffmpeg, ep.FileError.
         """
-        from ..base.film import require_kind
+        from ..base.storage.film import require_kind
         from .pictures import drive_of, write_film_of
 
         require_kind(path)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import array, refused
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from ..frame.frame import Frame
 from ..frame_file.maps import start_time_in
 from .contents import Contents

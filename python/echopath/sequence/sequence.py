@@ -21,9 +21,9 @@ from ..arguments.settings import (
     Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
     SignalSettings, TraceSettings, settings_among,
 )
-from ..base.counts import counted
-from ..base.progress import automatic_bars
-from ..base.work_at_hand import at_work_on
+from ..base.text.counts import counted
+from ..base.process.progress import automatic_bars
+from ..base.process.work_at_hand import at_work_on
 from ..frame.frame import Frame
 from ..frame.run import WITHIN, FrameRun, Recorded, check_receiver
 from ..scene.lifetimes import warn_of_absence, warn_of_the_unseen

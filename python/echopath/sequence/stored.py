@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import checked, count, real
 from ..arguments.checks import path as path_rule
-from ..base.counts import counted
+from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..frame_file.frame import without_lists
@@ -26,7 +26,7 @@ from .one_file import store_of
 from .row import Row
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Dataset
+    from ..base.classes.foreign_types import Dataset
 
 LONGEST = 1_000_000  # frames that files may speak of: one look at each is taken in seconds
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN, RESIDUE
-from ..base.analytic import as_samples
+from ..base.numerics.analytic import as_samples
 from ..receiver.channels import transmitter_factors
 from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes

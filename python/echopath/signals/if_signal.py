@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, Progress, an, checked, one_of, optional, real
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from ..receiver.chain import transmitted_code
 from ..receiver.filters import has_filters
 from ..tracing.faint_paths import warn_of_other_noise

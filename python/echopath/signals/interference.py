@@ -12,7 +12,7 @@ from .. import _core
 from ..arguments.checks import an, checked, optional, real
 from ..arguments.motions import require_motion
 from ..arguments.settings import Polarization, Replay, SignalSettings, TraceSettings
-from ..base.chirps import chirps_duration
+from ..base.radar.chirps import chirps_duration
 from ..receiver.chain import transmitted_code
 from ..transmit import radar_of_noise
 from .interference_crossing import EDGE, FINE, Chirps, add_crossing

@@ -7,9 +7,9 @@ from .. import _core
 from ..arguments.effects import INTERFERENCE, Choices, is_on
 from ..arguments.motions import require_motion
 from ..arguments.settings import TraceSettings
-from ..base.callers import warn_user
-from ..base.chirps import start_with_middle
-from ..base.antennas import polarization_of
+from ..base.process.callers import warn_user
+from ..base.radar.chirps import start_with_middle
+from ..base.radar.antennas import polarization_of
 from ..scene.interferers import interferers_of, interferers_within
 from ..scene.node import ALWAYS
 from ..scene.sheets import passed_field

@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from ..base.antennas import one_of_each_look
+from ..base.radar.antennas import one_of_each_look
 from ..paths.subset import subset
 
 HELD, MOST_PATHS = 0.999, 1024  # share of the power of a trace, and of its paths: each is a crossing of its own in every chirp

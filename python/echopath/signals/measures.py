@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import ArrayLike, checked
-from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..spectra.windows import of_velocity, samples_of
 
 STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still, however narrow the cells of velocity are

@@ -11,8 +11,8 @@ from .._core import Grouping, Selection
 from ..arguments.checks import Progress, an, checked, optional, refused, text
 from ..arguments.names import first_names
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
-from ..base.equality import is_same
-from ..base.made_by import made_by
+from ..base.classes.equality import is_same
+from ..base.classes.made_by import made_by
 from ..paths.families import Families
 from ..transmit.signals import decompose_slots
 from .if_signal import RULES

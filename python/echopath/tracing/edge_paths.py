@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..base.callers import warn_user
-from ..base.counts import rounded
+from ..base.process.callers import warn_user
+from ..base.text.counts import rounded
 from ..paths.edge_hits import first_edge_hit, is_around_edge
 from ..paths.subset import subset
 

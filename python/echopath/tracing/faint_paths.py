@@ -5,8 +5,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import FaintPower
-from ..base.callers import warn_user
-from ..base.counts import at_least
+from ..base.process.callers import warn_user
+from ..base.text.counts import at_least
 
 SHARE_OF_NOISE = 0.025  # a cell as strong as the noise then sums up forty such paths or more, and fluctuates as with all
 MORE = 4.0              # as far over the noise another radar may hear the same paths: ten of them make a cell then

@@ -1,8 +1,8 @@
 """Remarks on rays and sequences of mirrors that a trace lost."""
 from __future__ import annotations
 
-from ..base.callers import warn_user
-from ..base.counts import at_least, counted
+from ..base.process.callers import warn_user
+from ..base.text.counts import at_least, counted
 
 LOST_SHARE = 0.01  # of the rays
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.names import MOST_NAMES, first_names
-from ..base.antennas import antennas_of, are_crossed, polarization_of
+from ..base.radar.antennas import antennas_of, are_crossed, polarization_of
 
 COHERENT_SHARE = 0.01  # of the reflected power, below it a surface has no coherent echo
 ALONG_NORMAL = 0.3     # of a polarisation, above it a tenth of the power is TM where a mirror is met

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from .. import _core
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from ..scene.seams import is_soup, without_seams
 from .polarization import COHERENT_SHARE
 

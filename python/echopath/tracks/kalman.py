@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.velocities import folded
+from ..base.radar.velocities import folded
 from .points import Points
 
 KNOWN = 0.25  # of the ambiguity, the most that a speed may be uncertain by to be told from those that look the same

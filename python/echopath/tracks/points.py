@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arguments.checks import array, refused
 from ..arguments.iterables import iterable
-from ..base.antennas import velocity_of_antennas
-from ..base.velocities import ambiguity_of
+from ..base.radar.antennas import velocity_of_antennas
+from ..base.radar.velocities import ambiguity_of
 from ..detections import Detections
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)

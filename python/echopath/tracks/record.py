@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.counts import counted
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
+from ..base.text.counts import counted
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
 from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes, DataFrame
+    from ..base.classes.foreign_types import Axes, DataFrame
 
 _UNITS = {"time": "s", "x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from .. import _core
 from ..arguments.names import first_names
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 
 T = TypeVar("T")
 

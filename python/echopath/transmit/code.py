@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..base.analytic import as_samples, continued
+from ..base.numerics.analytic import as_samples, continued
 
 
 def is_coded(radar: _core.Radar) -> bool:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import ArrayLike, checked, refused
-from ..base.chirps import chirp_period
+from ..base.radar.chirps import chirp_period
 from .code import code_of, hadamard, is_coded, num_frame_slots
 from .doppler_division import undo_doppler_division
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.callers import warn_user
+from ..base.process.callers import warn_user
 from .code import num_shares
 
 # Share of the cells of noise alone that seem to have a target.

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..base.rates import rate_of, step_within
-from ..base.triangles import areas_of
+from ..base.numerics.rates import rate_of, step_within
+from ..base.numerics.triangles import areas_of
 
 
 class Boxes(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..base.rotations import matrices
+from ..base.numerics.rotations import matrices
 
 _BORESIGHT = 1.0, 0.0, 0.0  # in an antenna's frame
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.objects import named_globs
-from ..base.antennas import centre_of
+from ..base.radar.antennas import centre_of
 from .boxes import boxes_at
 
 

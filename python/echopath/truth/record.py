@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import LARGEST_COUNT, count, refused
-from ..base.counts import counted
-from ..base.equality import has_same_fields
-from ..base.made_by import made_by
-from ..base.rotations import quaternions
+from ..base.text.counts import counted
+from ..base.classes.equality import has_same_fields
+from ..base.classes.made_by import made_by
+from ..base.numerics.rotations import quaternions
 from ..presentation.tables import make_table, write_csv
 from .fields import FIELDS, UNITS
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import DataFrame, Dataset
+    from ..base.classes.foreign_types import DataFrame, Dataset
 
 _SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 

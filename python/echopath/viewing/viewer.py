@@ -30,7 +30,7 @@ from ..sequence import Sequence, StoredSequence
 from ..signals.parts import Views, selection_rule
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Colormap, Plotter, QMainWindow
+    from ..base.classes.foreign_types import Colormap, Plotter, QMainWindow
     from ..dataset import Dataset  # takes its time to import
 
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]

@@ -6,7 +6,7 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.data_folder import data_folder
+from ..base.storage.data_folder import data_folder
 
 
 @functools.cache

@@ -11,7 +11,7 @@ from .. import _core
 from ..arguments.checks import Rule, anything, checked, real, refused, vector
 from ..arguments.effects import ATTENUATION, Choices, is_on
 from ..arguments.settings import Settings, settings_class
-from ..base.antennas import polarization_of
+from ..base.radar.antennas import polarization_of
 from .drops import reflectivities
 from .fog import fog_attenuation
 from .gas import gas_attenuation, saturation_pressure

@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import echopath as ep
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 
 names = ["asphalt_road", "gravel", "grass", "snow"]
 published = {name: np.loadtxt(data_folder("materials") / "backscatter" / f"{name}.csv", delimiter=",", skiprows=2).T

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 import echopath as ep
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 
 files = sorted((file for file in data_folder("scenes").iterdir() if file.name.endswith(".toml")), key=lambda file: file.name)
 FLAT = 0.05  # m: what is less high than this lies flat

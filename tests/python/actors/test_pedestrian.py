@@ -6,7 +6,7 @@ import echopath as ep
 from echopath.actors.human.anthropometry import Proportions
 from echopath.actors.human.boulic import Cycle, Walk
 from echopath.actors.human.gait import Gait
-from echopath.base.rotations import about_x, about_y, about_z, quaternions
+from echopath.base.numerics.rotations import about_x, about_y, about_z, quaternions
 from support.scenes.pedestrians import HEIGHT, SPEED, Person
 
 HIP_HEIGHT = 0.530                       # of the body height: Drillis and Contini (1966), in Winter (2009)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.mesh_names import object_of
+from echopath.base.text.mesh_names import object_of
 from echopath.bench import live
 from echopath.bench.live import drive, edits, street
 

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 import echopath as ep
-from echopath.base.files import require_writable
+from echopath.base.storage.files import require_writable
 from echopath.cli import main
 from echopath.scene_file import load_scene
 from support.background import heed_ctrl_c

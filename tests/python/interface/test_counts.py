@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import pytest
 
 import echopath as ep
-from echopath.base.counts import at_least, counted, named
+from echopath.base.text.counts import at_least, counted, named
 from echopath.cli.dataset import _forecast_line as forecast_line
 from echopath.cli.info import _describe_scene
 from echopath.dataset import Forecast

@@ -141,7 +141,7 @@ def test_ctrl_c_while_the_program_loads_is_one_line(delay, tmp_path):
 def test_ctrl_c_ends_a_command_wherever_it_comes(module, lines, tmp_path):
     (tmp_path / f"{module}.py").write_text(f"""
 import signal, sys, weakref
-from echopath.base.interrupts import interrupts_are_kept
+from echopath.base.process.interrupts import interrupts_are_kept
 from echopath.cli import commands, main
 class Thing: pass
 def work(options):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import echopath as ep
-from echopath.base import callers
+from echopath.base.process import callers
 from echopath.sequence.ahead import one_ahead
 
 METAL = ep.Material.metal()
@@ -72,7 +72,7 @@ def test_a_script_beside_a_package_behind_a_link(tmp_path):
     beside.mkdir()
     (tmp_path / "echopath").symlink_to(package)
     (beside / "run.py").write_text(
-        "from echopath.base import callers\n"
+        "from echopath.base.process import callers\n"
         "code = compile('level = level_of_user()', callers.__file__, 'exec')\n"
         "names = {'level_of_user': callers.level_of_user}\ndef main():\n    exec(code, names)\nmain()\n"
         "print(callers.__file__, names['level'])\n")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 from support import shapes
 from support.radars import build_radar
 from support.slides import TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 from support import shapes
 from support.slides import ROUGH, Ball
 from support.validity_scenes import BALL, radar_of, scene_of

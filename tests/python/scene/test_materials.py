@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 
 TWO_PLACES = 0.005     # the material file says it with two places
 THREE_PLACES = 0.0005  # with three
@@ -141,7 +141,7 @@ def test_the_data_are_found_beside_a_source_tree_that_is_not_installed(monkeypat
     def not_installed(name):
         raise ModuleNotFoundError(name)
 
-    monkeypatch.setattr("echopath.base.data_folder.resources.files", not_installed)
+    monkeypatch.setattr("echopath.base.storage.data_folder.resources.files", not_installed)
     assert (data_folder("materials") / "metal.toml").is_file()
 
 

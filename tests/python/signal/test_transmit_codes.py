@@ -4,7 +4,7 @@ import pytest
 from support.radars import build_radar
 
 import echopath as ep
-from echopath.base.chirps import chirp_period, chirps_duration
+from echopath.base.radar.chirps import chirp_period, chirps_duration
 
 C = ep.speed_of_light
 ROUNDING = 1e-12      # of sums of a few hundred terms, relative to the largest

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 from support.shapes import WAVELENGTH, make_radar, rectangle, scene_of
 
 BATCHES = 16

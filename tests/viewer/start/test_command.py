@@ -21,7 +21,7 @@ ANNOUNCED = """
 import sys
 import echopath as ep
 from echopath.cli import main
-from echopath.base.interrupts import interrupts_are_kept
+from echopath.base.process.interrupts import interrupts_are_kept
 from echopath_viewer.window.busy import run_with_progress
 from echopath_viewer.window.qt import QtCore
 from echopath_viewer.window import MainWindow

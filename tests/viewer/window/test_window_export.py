@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 import echopath as ep
-from echopath.base.film import write_film
+from echopath.base.storage.film import write_film
 from echopath_viewer.scene_builder.export import export_rays
 from echopath_viewer.scene_builder.web_page import ScenePage
 from echopath_viewer.window.files.exporting import export

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.files import file_state
+from echopath.base.storage.files import file_state
 from echopath.frame_file import kept
 from echopath.frame_file.h5 import write_array
 from echopath_viewer.model import CellBox, Filters, Session, from_file, from_frame

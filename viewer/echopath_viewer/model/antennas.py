@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from echopath.base.rotations import matrices
+from echopath.base.numerics.rotations import matrices
 
 
 def world_from_antenna(radar, antenna, time: float):

@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from echopath.base.mesh_names import object_of
+from echopath.base.text.mesh_names import object_of
 from echopath.plots.style import BOUNCE_COLOURS
 
 from .palette import rgb_of

@@ -5,7 +5,7 @@ import colorsys
 
 import numpy as np
 
-from echopath.base.mesh_names import object_of
+from echopath.base.text.mesh_names import object_of
 
 # Paul Tol's "muted" and "light" colours without the greys: told apart with most colour vision.
 _PALETTE = ("#cc6677", "#44aa99", "#aa4499", "#999933", "#88ccee", "#117733", "#ddcc77", "#882255", "#332288",

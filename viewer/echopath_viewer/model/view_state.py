@@ -57,7 +57,7 @@ def apply_state(session, state: dict) -> list[str]:
 
 def save_state(state: dict, path) -> None:
     """Writes a state to a file, whole or not at all."""
-    from echopath.base.files import written_whole
+    from echopath.base.storage.files import written_whole
 
     with written_whole(path) as temporary:
         temporary.write_text(json.dumps(state, indent=1), encoding="utf-8")

@@ -5,8 +5,8 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-from echopath.base.files import written_whole
-from echopath.base.origin import origin_texts
+from echopath.base.storage.files import written_whole
+from echopath.base.storage.origin import origin_texts
 
 from .polydata import lines_of, triangles_of
 

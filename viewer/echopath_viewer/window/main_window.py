@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from echopath.base.mesh_names import object_of
+from echopath.base.text.mesh_names import object_of
 
 from ..model import Session
 from ..model.history import History

@@ -6,7 +6,7 @@ import numpy as np
 from ... import _core
 from ...arguments.checks import checked, positive, real, refused
 from ...arguments.number_rules import start_time_rule
-from ...base.rotations import about_y, about_z, quaternions
+from ...base.numerics.rotations import about_y, about_z, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates

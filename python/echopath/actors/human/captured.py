@@ -9,7 +9,7 @@ import numpy as np
 
 from ... import _core
 from ...arguments.checks import checked, choice, optional, positive, real
-from ...base.rotations import about_z, quaternions
+from ...base.numerics.rotations import about_z, quaternions
 from ...scene.meshes import UNIT
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _core
-from ...base.rotations import about_z, matrices, product, quaternions
+from ...base.numerics.rotations import about_z, matrices, product, quaternions
 from ...trajectories.path import second_derivatives
 from .gait import Frames
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.rotations import about_x, about_y, about_z
+from ...base.numerics.rotations import about_x, about_y, about_z
 from .boulic import LIMIT, Cycle, Walk
 from .foot import Sole
 from .steps import Steps

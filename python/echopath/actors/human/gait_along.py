@@ -7,7 +7,7 @@ from one to the next, and the legs are bent to reach it. A stop is reached with 
 import numpy as np
 
 from ...arguments.checks import refused
-from ...base.rotations import about_y, about_z
+from ...base.numerics.rotations import about_y, about_z
 from ..laid_line import LaidLine
 from .gait import MIN_KNEE, Frames, bend_leg
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ... import _core
-from ...base.rotations import about_x, about_y, about_z
+from ...base.numerics.rotations import about_x, about_y, about_z
 
 MOST_JOINTS = 10_000
 MOST_VALUES = 200_000_000  # joints times frames

@@ -4,7 +4,7 @@ Frames are those of gait.py: T instants, axes x forward, y left, z up.
 """
 import numpy as np
 
-from ...base.rotations import about_x, about_y, about_z
+from ...base.numerics.rotations import about_x, about_y, about_z
 from .gait import ARM_ABDUCTION, Frames, bend_leg
 
 STANDING_KNEE = np.radians(8.0)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ...base.callers import warn_user
+from ...base.process.callers import warn_user
 from ...trajectories.knots import curve_through
 from ...trajectories.profile import Profile, hermite_pieces
 from ...trajectories.trajectory import TOLERANCE

@@ -7,7 +7,7 @@ import numpy as np
 
 from ... import _core
 from ...arguments.checks import checked, flag, real
-from ...base.rotations import about_y
+from ...base.numerics.rotations import about_y
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import trajectory_rule

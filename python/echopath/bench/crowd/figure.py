@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.origin import FIXED_SEEDS
+from ...base.storage.origin import FIXED_SEEDS
 from ...plots.style import CURVE_COLOURS, new_figure, save_png
 from .. import scale_ends
 

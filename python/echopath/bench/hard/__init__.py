@@ -5,7 +5,7 @@ import dataclasses
 import json
 import time
 
-from ...base.files import write_texts
+from ...base.storage.files import write_texts
 from ..machine import machine
 from ..steps import told
 from . import faults, geometry, heavy, materials, meshes, motions, oracle, places, repeat, scenes, signals

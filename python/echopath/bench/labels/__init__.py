@@ -10,8 +10,8 @@ import numpy as np
 
 import echopath as ep
 
-from ...base.data_folder import data_folder
-from ...base.files import write_texts
+from ...base.storage.data_folder import data_folder
+from ...base.storage.files import write_texts
 from ...scene_file import load_scene
 from ...signals.measures import residual
 from ..machine import machine

@@ -15,7 +15,7 @@ import numpy as np
 
 import echopath as ep
 
-from ...base.data_folder import data_folder
+from ...base.storage.data_folder import data_folder
 from ...sequence.unused_memory import resident_memory
 from ..alone import alone
 from ..crowd.scenes import BACKDROPS, flat_city, radar, rounded_car, street

@@ -15,8 +15,8 @@ import numpy as np
 
 import echopath as ep
 
-from ...base.data_folder import data_folder
-from ...base.files import write_texts
+from ...base.storage.data_folder import data_folder
+from ...base.storage.files import write_texts
 from ..steps import csv_text, told
 from .figure import draw_patterns
 from .targets import INCH, Target, almond, camera_box, cavity_of_cobra_duct, cobra_duct, cylindrical_duct, fan_in_a_duct

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.origin import FIXED_SEEDS
+from ...base.storage.origin import FIXED_SEEDS
 from ...plots.style import CURVE_COLOURS, new_figure, save_png
 
 SHOWN_DB = 58.0  # below the strongest level of a panel

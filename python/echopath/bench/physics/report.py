@@ -4,7 +4,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from ...base.files import write_texts
+from ...base.storage.files import write_texts
 from ..steps import csv_text
 
 MUST_REACH = (  # target, rays, dB

@@ -10,7 +10,7 @@ import numpy as np
 import echopath as ep
 
 from ...actors import shapes
-from ...base.files import write_texts
+from ...base.storage.files import write_texts
 from ..machine import machine
 from ..timing import fastest
 from .cases import CHIRPS, FREQUENCY, Case, all_cases, person_scene, radar

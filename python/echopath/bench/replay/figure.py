@@ -1,7 +1,7 @@
 """What replay gains and errs, in one picture."""
 from __future__ import annotations
 
-from ...base.origin import FIXED_SEEDS
+from ...base.storage.origin import FIXED_SEEDS
 from ...plots.style import CURVE_COLOURS, new_figure, save_png
 from .. import scale_ends
 

@@ -10,7 +10,7 @@ import numpy as np
 
 import echopath as ep
 
-from ...base.files import write_texts
+from ...base.storage.files import write_texts
 from ..machine import machine
 from ..replay import cases as replay_cases
 from ..steps import csv_text

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.origin import FIXED_SEEDS
+from ...base.storage.origin import FIXED_SEEDS
 from ...plots.style import new_figure, save_png
 
 OURS, OWN_SPEED, FINUFFT, SUMS, GREY = "#0072b2", "#56b4e9", "#d55e00", "#009e73", "#666666"  # Okabe and Ito

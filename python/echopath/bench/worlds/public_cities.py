@@ -21,7 +21,7 @@ import numpy as np
 
 import echopath as ep
 
-from ...base.stages import StageClock
+from ...base.process.stages import StageClock
 from ...paths.absent import NO_STRATUM
 from ..alone import alone
 from ..suite import describe_judged, judged, judged_row

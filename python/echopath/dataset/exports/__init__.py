@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..._core import Radar
 from ...arguments import part_names
 from ...arguments.checks import refused
-from ...base.files import folder_written_whole, require_writable
+from ...base.storage.files import folder_written_whole, require_writable
 from ...frame.detections import detect_frame
 from ...detections.detections import Detections
 from ...frame.frame import Frame

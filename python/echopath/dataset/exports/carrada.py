@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...arguments.checks import checked, refused
 from ...arguments.checks import path as folder_rule
 from ...arguments.settings import LabelSettings
-from ...base.files import write_texts, written_whole
+from ...base.storage.files import write_texts, written_whole
 from ...frame.frame import Frame
 from ..opened import Dataset, dataset_rule
 from . import exported

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from ...arguments.checks import checked, one_of, refused
 from ...arguments.checks import path as folder_rule
-from ...base.antennas import centre_of
-from ...base.files import write_texts, written_whole
-from ...base.rates import radar_rate
-from ...base.velocities import ambiguity_of, folded
+from ...base.radar.antennas import centre_of
+from ...base.storage.files import write_texts, written_whole
+from ...base.numerics.rates import radar_rate
+from ...base.radar.velocities import ambiguity_of, folded
 from ...detections.detections import Detections
 from ...detections.directions import toward
 from ...frame_file.h5 import writing

@@ -10,8 +10,8 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from ...arguments.objects import NamedGlobs, objects_rule
-from ...base.counts import counted
-from ...base.golden import golden_place
+from ...base.text.counts import counted
+from ...base.numerics.golden import golden_place
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of

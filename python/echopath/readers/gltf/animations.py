@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ... import _core
-from ...base.node_names import fit_name, unique
+from ...base.text.node_names import fit_name, unique
 from ..options import ReadOptions
 from ..sampled import chosen_animation, period_of
 from .accessors import FLOAT, Accessors

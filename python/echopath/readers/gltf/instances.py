@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.rotations import matrices
+from ...base.numerics.rotations import matrices
 from ..axes import Axes
 from .accessors import FLOAT, Accessors
 from .item import Item

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...base.rotations import matrices, product
+from ...base.numerics.rotations import matrices, product
 from .animations import Animation
 from .nodes import Nodes
 

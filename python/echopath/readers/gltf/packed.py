@@ -8,7 +8,7 @@ from types import ModuleType
 
 import numpy as np
 
-from ...base.libraries import needed_module
+from ...base.process.libraries import needed_module
 from .item import Item
 
 DRACO, MESHOPT = "KHR_draco_mesh_compression", "EXT_meshopt_compression"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.node_names import fit_name
+from ...base.text.node_names import fit_name
 from ..axes import Axes
 from ..model import Model
 from ..options import ReadOptions

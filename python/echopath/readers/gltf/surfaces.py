@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ... import _core
-from ...base.node_names import unique
+from ...base.text.node_names import unique
 from .accessors import FLOAT, Accessors
 from .animations import Animation
 from .document import Document

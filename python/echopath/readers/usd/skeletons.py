@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...base.node_names import fit_name, unique
+from ...base.text.node_names import fit_name, unique
 from ..axes import Axes
 from ..sampled import Clock, moved_rigidly, moved_with_scale
 from ..tree import Tree

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ...base.libraries import needed_module
+from ...base.process.libraries import needed_module
 from .trial import first_line, refuse_what_ends_usd, unreadable
 
 LEFT_OUT = ("guide", "proxy")  # purposes that are not part of the scene

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from ... import _core
 from ...arguments.checks import Rule, anything, array, checked, is_writable, one_of, real, refused, vector
 from ...arguments.checks import file as file_rule
-from ...base.callers import warn_user
-from ...base.counts import counted
+from ...base.process.callers import warn_user
+from ...base.text.counts import counted
 from ..arguments import FARTHEST, GOES_ON, NEAREST, Outside
 from .doubts import doubt_of_turns, doubts_of
 from .geodesy import east_north_up

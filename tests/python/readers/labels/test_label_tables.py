@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 import echopath as ep
-from echopath.base.colours import colours_of
+from echopath.base.text.colours import colours_of
 from echopath.cli import main
 from echopath.plots import plot_ghosts, plot_labels
 from support.files.scene_files import without_line

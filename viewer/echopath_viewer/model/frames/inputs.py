@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.base.files import file_state
+from echopath.base.storage.files import file_state
 from echopath.frame_file import KeptMeshes, read_frame
 from echopath.paths.subset import part_of_path
 from echopath.scene.lifetimes import scene_in_frame

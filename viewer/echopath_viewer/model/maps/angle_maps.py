@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.base.decibels import SMALLEST_POWER, in_dbm
+from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.signals.measures import for_pictures
 
 SPECTROGRAM_COLUMNS = 48

@@ -8,8 +8,8 @@ import numpy as np
 
 import echopath as ep
 from echopath import _core
-from echopath.base.decibels import SMALLEST_POWER, in_dbm
-from echopath.base.mesh_names import object_of
+from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
+from echopath.base.text.mesh_names import object_of
 from echopath.spectra.windows import of_range, of_velocity, samples_of
 from echopath.transmit.signals import decompose_slots
 

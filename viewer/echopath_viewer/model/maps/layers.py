@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from echopath.base.colours import colours_of
+from echopath.base.text.colours import colours_of
 from echopath.labels.ghost_names import ghost_name
 from echopath.plots.labels import CLASSES
 from echopath.signals.measures import for_pictures

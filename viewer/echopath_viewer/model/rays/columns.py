@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 import echopath as ep
-from echopath.base.decibels import SMALLEST_POWER, in_dbm
+from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.paths.cells import OUTSIDE
 
 CLOSE = 1e-9  # of a power: nearer ones are compared in decibels

@@ -5,7 +5,7 @@ from importlib.resources import as_file
 
 from echopath.cli.demo import limb_partitions
 from echopath.cli.run import simulate_file
-from echopath.base.data_folder import data_folder
+from echopath.base.storage.data_folder import data_folder
 from echopath.scene_file import load_scene
 
 NUM_RAYS = 20_000

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from echopath.base.files import written_whole
-from echopath.base.film import KINDS as FILMS
-from echopath.base.film import write_film
-from echopath.base.origin import origin_texts
+from echopath.base.storage.files import written_whole
+from echopath.base.storage.film import KINDS as FILMS
+from echopath.base.storage.film import write_film
+from echopath.base.storage.origin import origin_texts
 
 from ...scene_builder.web_page import ScenePage
 from .pictures import drawing_of, picture_of, png_of

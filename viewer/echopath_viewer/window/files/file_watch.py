@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from echopath.base.files import file_state
+from echopath.base.storage.files import file_state
 
 from ..qt import QtCore, Signal
 

@@ -5,7 +5,7 @@ from collections import deque
 
 import numpy as np
 
-from echopath.base.mesh_names import object_of
+from echopath.base.text.mesh_names import object_of
 
 from ...model.frames.live_session import live_of, session_of_view, show_state
 from ..qt import QtCore, Signal

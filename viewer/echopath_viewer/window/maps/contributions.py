@@ -5,7 +5,7 @@ from html import escape
 
 import numpy as np
 
-from echopath.base.decibels import SMALLEST_POWER, in_dbm
+from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.signals.measures import for_pictures
 
 from ...model.maps.attribution import Attribution

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import echopath as ep
-from echopath.base.antennas import mixes_polarisations
+from echopath.base.radar.antennas import mixes_polarisations
 from echopath.signals.measures import for_pictures
 
 from ...model import CellBox

@@ -5,7 +5,7 @@ import dataclasses
 from functools import cached_property
 from typing import Any, TypeVar
 
-from .. import _core
+from ... import _core
 
 Kind = TypeVar("Kind", bound=type)
 

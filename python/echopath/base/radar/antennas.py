@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from .rates import radar_rate
+from ..numerics.rates import radar_rate
 
 NO_PART = 1e-9       # of a polarisation: what rounding leaves of its part across a way along it
 CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal

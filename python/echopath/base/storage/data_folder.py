@@ -10,4 +10,4 @@ def data_folder(name: str):
     try:
         return resources.files("echopath.data") / name
     except ModuleNotFoundError:
-        return Path(__file__).resolve().parents[3] / "data" / name
+        return Path(__file__).resolve().parents[4] / "data" / name

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from .files import written_whole
-from .libraries import needed_module
+from ..process.libraries import needed_module
 
 KINDS = (".gif", ".mp4")
 

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable
 
 # As the code of the package names its files: unresolved, and apart from folders whose names only begin alike.
-_PACKAGE = os.path.dirname(os.path.dirname(__file__)) + os.sep
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(__file__))) + os.sep
 
 
 def level_of_user(*beside: str) -> int:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import colorsys
 
-from .golden import golden_place
+from ..numerics.golden import golden_place
 
 REST_COLOUR = (128, 128, 128)       # of the part "other"
 # Okabe and Ito: told apart with any colour vision; beyond them hues a golden angle apart.

@@ -8,8 +8,8 @@ import tempfile
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .. import _core
-from .interrupts import heed, interrupts_are_kept
+from ... import _core
+from ..process.interrupts import heed, interrupts_are_kept
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from .. import _core
+from ... import _core
 from .files import written_whole
 
 FIXED_SEEDS = "fixed in the source of this version"  # of benchmarks

@@ -1,8 +1,8 @@
 """How many threads the work takes."""
 from __future__ import annotations
 
-from .. import _core
-from ..arguments.checks import LARGEST_COUNT, checked, count
+from ... import _core
+from ...arguments.checks import LARGEST_COUNT, checked, count
 
 
 @checked(num_threads=count(0, LARGEST_COUNT))

@@ -1,0 +1,1 @@
+"""What classes have in common: equality, attributes, who makes them."""

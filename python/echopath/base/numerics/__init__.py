@@ -1,0 +1,1 @@
+"""Numerics: decibels, rotations, rates of change, analytic signals."""

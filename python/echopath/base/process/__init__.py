@@ -1,0 +1,1 @@
+"""The running program: Ctrl-C, progress, threads, libraries loaded late, and the user's own code."""

@@ -1,0 +1,1 @@
+"""Words: counts, names, and the colours that stand for names."""

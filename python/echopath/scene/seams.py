@@ -194,10 +194,11 @@ def _common_corners(triangles, sides, same_way) -> np.ndarray:
 def _one_of_each(num_vertices: int, pairs) -> np.ndarray:
     """The first vertex [V] of those that pairs join."""
     first = np.arange(num_vertices)
-    while True:
-        least = first[pairs].min(axis=1)
-        if np.array_equal(first[pairs[:, 0]], least) and np.array_equal(first[pairs[:, 1]], least):
-            return first
-        np.minimum.at(first, pairs[:, 0], least)
-        np.minimum.at(first, pairs[:, 1], least)
-        first = first[first]
+    while len(pairs):
+        one, other = first[pairs].T
+        apart = one != other
+        pairs, least, greatest = pairs[apart], np.minimum(one, other)[apart], np.maximum(one, other)[apart]
+        np.minimum.at(first, greatest, least)
+        while not np.array_equal(first, above := first[first]):
+            first = above
+    return first

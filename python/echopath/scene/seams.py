@@ -123,11 +123,15 @@ def _places(vertices, triangles) -> np.ndarray:
     corners = vertices[triangles]
     shortest = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=-1).min()
     within = min(SAME_PLACE * float(np.ptp(vertices, axis=0).max()), SHORTEST_SHARE * shortest)
-    steps = np.empty(vertices.shape, np.int64)
-    for axis, along in enumerate(vertices.T):
-        order = np.argsort(along, kind="stable")
-        steps[order, axis] = np.cumsum(np.diff(along[order], prepend=along[order[0]]) > within)
-    return _numbers(*steps.T)
+    place, num_places = np.zeros(len(vertices), np.int64), 0
+    while place.max() >= num_places:  # where many vertices leave no gap along an axis, the next ones part them
+        num_places = place.max() + 1
+        for along in vertices.T:
+            order = np.lexsort((along, place))
+            parts = (np.diff(along[order]) > within) | (np.diff(place[order]) > 0)
+            place[order[1:]] = np.cumsum(parts)
+            place[order[0]] = 0
+    return place
 
 
 def _copies(triangles, place) -> np.ndarray:

@@ -118,6 +118,21 @@ def test_most_triangles_keep_their_winding():
     assert np.all(np.linalg.det(corners) > 0.0)  # outward
 
 
+def test_vertices_of_a_long_rough_pipe_are_told_apart():
+    """Across it there is one at each millionth of its length, so that coordinates alone tell none from the others."""
+    rings, around = 301, 12
+    along, angle = np.repeat(10.0 * np.arange(rings), around), np.tile(2 * math.pi * np.arange(around) / around, rings)
+    angle += 1e-3 * along
+    radius = 0.5 + 0.01 * np.random.default_rng(1).standard_normal(rings * around).clip(-2, 2)
+    here = np.arange((rings - 1) * around).reshape(-1, around)
+    beside = np.roll(here, -1, axis=1)
+    triangles = np.stack([here, here + around, beside, beside, here + around, beside + around], axis=-1).reshape(-1, 3)
+    pipe = ep.Mesh(np.stack([along, radius * np.cos(angle), radius * np.sin(angle)], axis=-1), triangles)
+    joined = scene_of(pipe=(with_own_corners(pipe), METAL, True)).meshes[0].mesh
+    assert len(joined.vertices) == rings * around
+    assert np.array_equal(joined.vertices[joined.triangles], pipe.vertices[pipe.triangles])
+
+
 @pytest.mark.parametrize("turn_deg, num_vertices", [(15, 6), (25, 8)])
 def test_surfaces_stay_cut_where_they_turn(turn_deg, num_vertices):
     """Two squares with corners of their own that meet along y, as files with normals part them along an edge."""

@@ -24,20 +24,32 @@ struct Placed {
   std::vector<Eigen::AlignedBox3d> contacts;
 };
 
-void add_placed(const Scene& scene, uint32_t mesh_id, std::vector<Placed>& all) {
-  const auto [group, place] = place_in_group(scene, mesh_id);
-  const MeshPtr& mesh = scene.node_of(mesh_id).mesh;
-  const Mesh* surface = &mesh->surface();
-  // Parts of one whole stand one after the other.
-  if (!all.empty() && all.back().group == group && all.back().surface == surface && mesh->whole() &&
-      all.back().place.matrix() == place.matrix()) {
-    all.back().meshes.push_back(mesh_id);
-    return;
+// Gathers the surfaces of a scene, each once where it stands, whatever is between its parts in the order of the meshes.
+class PlacedSurfaces {
+ public:
+  void add(const Scene& scene, uint32_t mesh_id) {
+    const auto [group, place] = place_in_group(scene, mesh_id);
+    const MeshPtr& mesh = scene.node_of(mesh_id).mesh;
+    const Mesh* surface = &mesh->surface();
+    if (mesh->whole()) {
+      std::vector<size_t>& there = of_parts_[{group, surface}];
+      const auto is_here = [&](size_t index) { return all[index].place.matrix() == place.matrix(); };
+      if (const auto found = std::ranges::find_if(there, is_here); found != there.end()) {
+        all[*found].meshes.push_back(mesh_id);
+        return;
+      }
+      there.push_back(all.size());
+    }
+    Placed one{group, surface, place, {mesh_id}, {}, {}};
+    for (const Vec3& vertex : surface->vertices()) one.box.extend(place * vertex);
+    all.push_back(std::move(one));
   }
-  Placed one{group, surface, place, {mesh_id}, {}, {}};
-  for (const Vec3& vertex : surface->vertices()) one.box.extend(place * vertex);
-  all.push_back(std::move(one));
-}
+
+  std::vector<Placed> all;
+
+ private:
+  std::map<std::pair<int, const Mesh*>, std::vector<size_t>> of_parts_;  // by group and surface: where in `all`
+};
 
 // Sets what of each box others of the same group touch. Sweeps along x.
 void find_contacts(std::vector<Placed>& all) {
@@ -174,10 +186,11 @@ Transform place_at_rest(const Node& node) {
 
 // Returns the surfaces that touch others, group by group.
 std::vector<std::vector<Placed>> touching_groups(const Scene& scene) {
-  std::vector<Placed> all;
+  PlacedSurfaces placed;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    if (has_echoing_edges(scene, id)) add_placed(scene, id, all);
+    if (has_echoing_edges(scene, id)) placed.add(scene, id);
   }
+  std::vector<Placed>& all = placed.all;
   find_contacts(all);
   std::map<int, std::vector<Placed>> groups;
   for (Placed& one : all) {

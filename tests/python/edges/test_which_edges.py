@@ -32,6 +32,18 @@ def test_a_box_of_six_meshes_is_one_box():
     assert parts.sum() == pytest.approx(whole.sum(), rel=SAME)
 
 
+def test_parts_of_one_mesh_have_its_edges_whatever_is_added_between_them():
+    whole = box((0.4, 0.5, 0.6))
+    is_first = np.arange(len(whole.triangles)) < 5  # which parts two triangles of a face, too
+    scene = ep.Scene()
+    for name, mesh, aside in (("a", whole.part(is_first), 0.0), ("other", sheet(), 40.0), ("b", whole.part(~is_first), 0.0)):
+        scene.add(mesh, name=name, material=ep.Material.metal(), position=(0.0, aside, 0.0))
+    expected = fields(on_edges(trace(scene_of(whole), radar_at(), max_bounces=1)))
+    found = fields(on_edges(trace(scene, radar_at(), max_bounces=1)).select("~ T .* 'other' .* R"))
+    assert len(found) == len(expected)
+    assert found.sum() == pytest.approx(expected.sum(), rel=SAME)
+
+
 def test_a_sheet_cut_in_two_has_no_rim_where_it_is_cut():
     cut = [ep.Mesh(np.array(corners) @ np.diag([1.0, 0.5, 0.5]), np.array([(0, 1, 3), (0, 3, 2)])) for corners in (
         [(0, y, z) for y in (-1, 0) for z in (-1, 1)], [(0, y, z) for y in (0, 1) for z in (-1, 1)])]

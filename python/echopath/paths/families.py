@@ -102,7 +102,8 @@ def families(paths: _core.Paths, objects: Objects = None) -> Families:
     several mirrors by the largest group that does not, so that the walls of a street are told apart.
     paths: of `trace`
     objects: {name: glob or list of globs}, or a list of globs, which are then the names; None: the children of the scene's
-        root that are neither flagged mirrors nor around the antenna at mid-frame, in a `Sequence` at that of its first frame.
+        root that are neither flagged mirrors, with what `mark_mirrors` cuts from them, nor around the antenna at mid-frame, in a
+        `Sequence` at that of its first frame.
         Around it is what it stands in or on, within 0.5 m of the box along the own axes, unless all of it is ahead of the
         transmitters' boresight by more than 5 cm, as a person close by is; and what is flat, as a wall or a
         road, and so wide that its bounding sphere holds the antenna; `find_objects` names what stands in a town that is

@@ -31,7 +31,7 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     the area over the length of the rim (the side of a square), windows and other holes counted to the rim. At least a tenth
     of what it reflects must keep its phase. Smooth meshes, sheets, and what moves or deforms stay as they are, and so do
     planes that only several meshes make up together. What has more than eight smaller planes, as a house with windows that
-    are set back, is cut: they become a mesh below it, "house/small_planes", which keeps the material.
+    are set back, is cut: they become a mesh below it, "house/small_planes", which keeps the material and is no object of labels.
     Each flagged plane costs time: paths go over up to two of them on each side of a target.
 
     scene: is changed
@@ -53,20 +53,15 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
 
 
 def _cut(scene, name: str, small: np.ndarray, cuts: dict) -> None:
-    """Moves triangles of a node's mesh into a mesh below it; `cuts` holds the two meshes of each that was cut before."""
+    """Moves triangles of a node's mesh into a mesh below it; `cuts` holds the two parts of each that was cut before."""
     node = scene[name]._node
     key = (id(node.mesh), small.tobytes())
     if key not in cuts:
         is_small = np.isin(np.arange(len(node.mesh.triangles)), small)
-        cuts[key] = _part(node.mesh, ~is_small), _part(node.mesh, is_small), node.mesh  # the last keeps its identity
+        cuts[key] = node.mesh.part(~is_small), node.mesh.part(is_small), node.mesh  # the last keeps its identity
     scene[name]._change(mesh=cuts[key][0])
-    scene.add(cuts[key][1], name=_free_name(scene, name), parent=name, material=node.material)
-
-
-def _part(mesh, of_part: np.ndarray):
-    """The marked triangles [F] of a mesh."""
-    used, corners = np.unique(mesh.triangles[of_part], return_inverse=True)
-    return _core.Mesh(mesh.vertices[used], corners.reshape(-1, 3))
+    below = scene.add(cuts[key][1], name=_free_name(scene, name), parent=name, material=node.material)
+    scene[below]._change(material_name=node.material_name)
 
 
 def _free_name(scene, parent: str) -> str:

@@ -121,6 +121,69 @@ def test_windows_that_are_set_back_are_cut_from_a_front_and_are_no_mirrors():
     assert ep.mark_mirrors(scene, radar()) == ()
 
 
+def street_of_a_house() -> ep.Scene:
+    """A house with windows that are set back, on the left of the radar, and a car ahead of it."""
+    vertices, triangles = street.house()
+    scene = ep.Scene()
+    scene.add(ep.Mesh(vertices, triangles, np.arange(len(triangles)) + 1000), name="house",
+              material=ep.Material(permittivity=5 - 0.3j), position=(10.0, 10.0, 0.0))
+    scene.add(ep.actors.car(), name="car", position=(20.0, 0.0, 0.0))
+    return scene
+
+
+def test_windows_that_were_cut_are_the_houses_not_objects_for_labels():
+    """The house had been an object of its windows and a mirror of the same name: ghosts of "house" over "house"."""
+    scene = street_of_a_house()
+    at = radar(position=(0.0, 0.0, 1.5))
+    assert set(ep.find_objects(scene, at)) == {"house", "car"}
+    assert ep.mark_mirrors(scene, at) == ("house",)
+    assert ep.find_objects(scene, at) == {"car": "car"}
+    paths = ep.trace(scene, at, num_rays=3000, max_bounces=2)
+    found = ep.families(paths)
+    assert found.objects == ("car",)
+    assert len({str(family) for family in found.families}) == len(found.families)
+    of_windows = paths.select("T .* 'house/small_planes' .* R").num_paths
+    assert 0 < of_windows <= paths.select("T .* 'house' .* R").num_paths
+
+
+def test_windows_in_a_row_are_no_thing_of_a_scene():
+    """Those of a hall are together no larger than a vehicle, and had been a thing called "small_planes"."""
+    sizes = [(20.0, 9.0, 10.0), *[(0.5, 0.5, 10.2)] * 9]  # m: along x, upwards and from the radar, of the front and its windows
+    middles = [0.0, *np.linspace(-8.0, 8.0, 9)]
+    vertices = [(x + 0.5 * size * side, y, 0.5 * height * up) for x, (size, height, y) in zip(middles, sizes)
+                for side, up in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    triangles = [(k, k + i, k + i + 1) for k in range(0, len(vertices), 4) for i in (1, 2)]
+    scene = ep.Scene()
+    scene.add(ep.Mesh(vertices, triangles), name="hall", material="concrete", position=(10.0, 0.0, 0.0))
+    assert ep.mark_mirrors(scene, radar()) == ("hall",) and "hall/small_planes" in scene
+    assert ep.find_objects(scene, radar()) == {}
+
+
+def test_what_is_cut_keeps_the_faces_and_the_material_of_its_file():
+    scene = street_of_a_house()
+    scene["house"]._change(material_name="Brick")
+    ep.mark_mirrors(scene, radar(position=(0.0, 0.0, 1.5)))
+    meshes = [scene[name].mesh for name in ("house", "house/small_planes")]
+    faces = np.concatenate([mesh.original_triangle for mesh in meshes])
+    assert np.array_equal(np.sort(faces), np.arange(len(faces)) + 1000)
+    assert [node.material_name for node in scene.nodes if node.name.startswith("house")] == ["Brick", "Brick"]
+
+
+def test_a_thing_beside_a_mirror_of_the_same_mesh_stays_an_object():
+    """A part of a mesh is a mirror, a part beside it a thing of its own: only what is below a mirror is the mirror's."""
+    whole = two_plates()
+    scene = ep.Scene()
+    scene.add(whole.part([0, 1]), name="wall", material=ep.Material(permittivity=5, mirror=True))
+    scene.add(whole.part([2, 3]), name="table", material="wood")
+    assert ep.families(ep.trace(scene, radar(), num_rays=500, max_bounces=1)).objects == ("table",)
+
+
+def two_plates() -> ep.Mesh:
+    """One mesh of two squares across +x, 10 m and 15 m ahead."""
+    vertices = [(x, y, z) for x in (10.0, 15.0) for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return ep.Mesh(vertices, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+
+
 def corners_of(scene, mesh_id: int) -> np.ndarray:
     """Corners of all triangles of a mesh in the world, [3 F, 3] in m, to 1e-9 m."""
     return np.round(scene.world_vertices(mesh_id)[scene.meshes[mesh_id].triangles].reshape(-1, 3), 9)

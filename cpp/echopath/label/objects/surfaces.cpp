@@ -140,6 +140,23 @@ bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& ob
   return bounding_sphere(all, {0}).holds(from.antenna) && is_flat_or_holds(vertices, from);
 }
 
+// Returns whether a mesh was cut from the flagged mirror above it, as the windows of a front are: both are parts of one mesh.
+bool is_cut_from_mirror(const Scene& scene, uint32_t mesh) {
+  const Node& node = scene.node_of(mesh);
+  if (node.parent < 0 || !node.mesh->whole()) return false;
+  const Node& above = scene.nodes()[node.parent];
+  return above.mesh && above.material->mirror && above.mesh->whole() == node.mesh->whole();
+}
+
+// Returns the objects but for what was cut from flagged mirrors: by itself it would be an object of the mirror's name.
+std::vector<SceneObject> objects_beside_mirrors(const Scene& scene) {
+  std::vector<SceneObject> objects = objects_of(scene);
+  for (SceneObject& object : objects)
+    std::erase_if(object.mesh_ids, [&](uint32_t mesh) { return is_cut_from_mirror(scene, mesh); });
+  std::erase_if(objects, [](const SceneObject& object) { return object.mesh_ids.empty(); });
+  return objects;
+}
+
 // Returns the nodes of the objects that surround the antenna at `time` (s). What is not there then surrounds nothing.
 std::set<int> nodes_around(const Scene& scene, double time, const Standpoint& from) {
   if (scene.has_lifetimes()) {
@@ -149,7 +166,7 @@ std::set<int> nodes_around(const Scene& scene, double time, const Standpoint& fr
   }
   const PosedScene pose(scene, time);
   std::set<int> around;
-  for (const SceneObject& object : objects_of(scene)) {
+  for (const SceneObject& object : objects_beside_mirrors(scene)) {
     if (surrounds(scene, pose, object, from)) around.insert(object.node);
   }
   return around;
@@ -189,7 +206,7 @@ SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna, co
   SurfaceMap map;
   map.of_mesh.assign(scene.meshes().size(), kNone);
   const std::set<int> around = nodes_around(scene, time, {antenna, ahead});
-  for (const SceneObject& object : objects_of(scene)) {
+  for (const SceneObject& object : objects_beside_mirrors(scene)) {
     if (around.contains(object.node)) continue;
     for (const uint32_t mesh : object.mesh_ids) map.of_mesh[mesh] = map.num_objects;
     map.names.push_back(scene.nodes()[object.node].name);

@@ -330,15 +330,23 @@ def test_who_goes_on_as_before_behind_steps_that_a_file_of_sumo_lacks_is_the_sam
     assert list(ep.read_trajectories(write(tmp_path, "fcd.xml", steps_of(seldom, speed='speed="2"')))) == ["a"]
 
 
+@pytest.mark.parametrize("speed", [' speed="1.2"', ""])  # SUMO leaves it out if its --fcd-output.attributes do
 @pytest.mark.parametrize("interval, jump", [(1.0, 8.0), (0.1, 3.0), (1.0, 1.3)])
-def test_persons_of_sumo_who_jump_across_a_junction_are_others_from_there(tmp_path, interval, jump):
+def test_persons_of_sumo_who_jump_across_a_junction_are_others_from_there(tmp_path, interval, jump, speed):
     """At 1.2 m/s for ten steps, across in one, and on for ten; 1.3 m in a second are no jump."""
     ways = 1.2 * interval * np.arange(10)
-    persons = [f'<person id="ann" x="3" y="{y:.3f}" angle="0" speed="1.2"/>' for y in [*ways, *(ways + ways[-1] + jump)]]
+    persons = [f'<person id="ann" x="3" y="{y:.3f}" angle="0"{speed}/>' for y in [*ways, *(ways + ways[-1] + jump)]]
     text = "".join(f'<timestep time="{step * interval:.1f}">{row}</timestep>' for step, row in enumerate(persons))
     found = ep.read_trajectories(write(tmp_path, "fcd.xml", f"<fcd-export>{text}</fcd-export>"))
     assert list(found) == (["ann", "ann_2"] if jump > 2.0 else ["ann"])
     assert len(ep.add_traffic(ep.Scene(), found)) == len(found)
+
+
+def test_persons_of_sumo_without_speeds_who_ride_are_not_parted(tmp_path):
+    """Bicycles at 6 m/s by a row a second."""
+    persons = [f'<person id="ann" x="3" y="{6 * step}" angle="0"/>' for step in range(5)]
+    text = "".join(f'<timestep time="{step}">{row}</timestep>' for step, row in enumerate(persons))
+    assert list(ep.read_trajectories(write(tmp_path, "fcd.xml", f"<fcd-export>{text}</fcd-export>"))) == ["ann"]
 
 
 @pytest.mark.parametrize("together", [True, False])

@@ -21,7 +21,8 @@ def parted(tracks: Mapping[str, Samples], speeds: Mapping[str, ArrayLike], steps
     """Samples {name: Samples} by ways: the first has the name, those after an absence or a jump are "name_2" and so on.
 
     speeds: {name: [P] m/s} of the rows, NaN where the file has none: who is gone for steps but goes on as fast as before and
-    behind is one, and who goes as fast as that does not jump; steps: s, ascending, of all in the file
+    behind is one, and who goes as fast as that, or without speeds as usual, does not jump; steps: s, ascending, of all in the
+    file
     """
     found: dict[str, Samples] = {}
     for name, samples in tracks.items():
@@ -44,10 +45,16 @@ def _ways_of(samples: Samples, speeds: NDArray[np.float64], steps: NDArray[np.fl
     differ = (by_place > MOST_RATIO * by_speed) | (by_speed > MOST_RATIO * by_place)
     goes = np.maximum(by_place, by_speed) > LEAST_WAY
     leaves = (num_steps > np.median(num_steps)) & differ & goes
-    by_legs = np.maximum(MOST_RATIO * np.maximum(speeds[:-1], speeds[1:]), FASTEST_WALK) * durations
-    jumps = samples.is_person & (by_place > by_legs + LEAST_JUMP)
-    cuts = (1 + np.flatnonzero(leaves | jumps)).tolist()
+    cuts = (1 + np.flatnonzero(leaves | (samples.is_person & _jumps(by_place, durations, speeds)))).tolist()
     return [_part(samples, begin, end) for begin, end in zip([0, *cuts], [*cuts, len(times)])]
+
+
+def _jumps(ways: NDArray[np.float64], durations: NDArray[np.float64], speeds: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether no legs go ways [P - 1] in m from row to row, by speeds [P] in m/s or, where these are NaN, the usual one."""
+    told = np.fmax(speeds[:-1], speeds[1:])
+    usual = np.median(ways / durations) if len(ways) else 0.0
+    fastest = np.maximum(MOST_RATIO * np.where(np.isnan(told), usual, told), FASTEST_WALK)
+    return ways > fastest * durations + LEAST_JUMP
 
 
 def _part(samples: Samples, begin: int, end: int) -> Samples:

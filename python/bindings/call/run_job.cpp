@@ -74,7 +74,7 @@ class Listener {
  public:
   explicit Listener(const py::object& progress) : told_(progress), is_ours_(progress.is(py::bool_(true))) {
     if (progress.is(py::bool_(false))) told_ = py::none();
-    if (is_ours_) told_ = in_package("base.progress", "automatic_bars")();
+    if (is_ours_) told_ = in_package("base.process.progress", "automatic_bars")();
     if (!told_.is_none() && !PyCallable_Check(told_.ptr()))
       throw py::type_error("progress: must be None, True or a callable (stage, fraction), got " +
                            std::string(Py_TYPE(told_.ptr())->tp_name));

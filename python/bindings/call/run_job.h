@@ -14,7 +14,7 @@ namespace echopath::bindings {
 
 // Runs `work(job)` on a thread of its own without the GIL. Meanwhile the caller looks for signals and calls
 // `progress(stage, fraction)` about 20 times a second, and once with 1.0 at the end; `progress` may be None, and True for
-// the bars of echopath.base.progress.
+// the bars of echopath.base.process.progress.
 // Ctrl-C and an exception of `progress` cancel the job, wait for it to end and are raised here; so is what `work` throws.
 // When Python ends, the job is cancelled and this thread ended (leaving.h).
 // `work` must not touch Python objects, nor a scene that Python may change meanwhile: who works on one takes it by value.

@@ -63,7 +63,7 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
 
 
 def _through(stage, parts: dict, radar) -> dict:
-    """Parts behind a stage that is linear, of real samples where it knows the whole of them (`base.analytic.turned`)."""
+    """Parts behind a stage that is linear, of real samples where it knows the whole of them (`base.numerics.analytic.turned`)."""
     whole = sum(parts.values()) if radar.waveform.real else None
     return {name: stage(cube, whole) for name, cube in parts.items()}
 

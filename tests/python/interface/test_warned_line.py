@@ -78,7 +78,7 @@ def test_a_script_beside_a_package_behind_a_link(tmp_path):
         "print(callers.__file__, names['level'])\n")
     run = subprocess.run([sys.executable, beside / "run.py"], env={**os.environ, "PYTHONPATH": str(tmp_path)},
                          capture_output=True, text=True, check=True)
-    assert run.stdout.split() == [str(tmp_path / "echopath" / "base" / "callers.py"), "2"]
+    assert run.stdout.split() == [str(tmp_path / "echopath" / "base" / "process" / "callers.py"), "2"]
 
 
 def test_a_package_beside_this_one_is_not_the_user():

@@ -85,7 +85,7 @@ def test_pedestrian_road_and_spheres_lie_within_the_published_bands(tmp_path, ca
     assert [row.name for row in rows if row.is_held and not row.is_within] == []
     assert any(not row.is_held for row in rows)
     text = "\n".join(published.describe(rows))
-    assert all(row.source in text for row in rows) and "not valid there" in text
+    assert all(row.source in text for row in rows) and "where the model is not valid" in text
     with open(tmp_path / "targets.csv", newline="", encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     assert [row["target"] for row in table] == [row.name for row in rows]

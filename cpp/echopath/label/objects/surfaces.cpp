@@ -140,7 +140,8 @@ bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& ob
   return bounding_sphere(all, {0}).holds(from.antenna) && is_flat_or_holds(vertices, from);
 }
 
-// Returns whether a mesh was cut from the flagged mirror above it, as the windows of a front are: both are parts of one mesh.
+// Returns whether a mesh was cut from the flagged mirror above it, as the windows of a front are: both are parts of one
+// mesh.
 bool is_cut_from_mirror(const Scene& scene, uint32_t mesh) {
   const Node& node = scene.node_of(mesh);
   if (node.parent < 0 || !node.mesh->whole()) return false;

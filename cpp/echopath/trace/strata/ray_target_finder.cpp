@@ -55,10 +55,11 @@ std::span<const MirrorFrustum> RayTargetFinder::frusta_over(int num_mirrors) con
   return {found.begin(), found.end()};
 }
 
-bool RayTargetFinder::may_have_images(const TargetMeshes& target, int num_mirrors) const {
-  return std::ranges::any_of(frusta_over(num_mirrors), [&](const MirrorFrustum& frustum) {
+size_t RayTargetFinder::least_images(const TargetMeshes& target, int num_mirrors) const {
+  const auto found = std::ranges::count_if(frusta_over(num_mirrors), [&](const MirrorFrustum& frustum) {
     return frustum.reaches(target.sphere.centre, target.sphere.radius);
   });
+  return static_cast<size_t>(std::ceil(static_cast<double>(found) / std::tgamma(num_mirrors + 1.0)));
 }
 
 void RayTargetFinder::add_images(TargetMeshes& target, int num_mirrors, std::vector<RayTarget>& images) const {

@@ -45,8 +45,8 @@ class RayTargetFinder {
   int most_mirrors() const {
     return settings_.frusta.empty() ? 0 : static_cast<int>(settings_.frusta.back().mirrors.size());
   }
-  // Returns whether a frustum over so many mirrors may show an image.
-  bool may_have_images(const TargetMeshes& target, int num_mirrors) const;
+  // Returns how many images frusta over so many mirrors may show, where those over the same mirrors in all orders are one.
+  size_t least_images(const TargetMeshes& target, int num_mirrors) const;
   // Appends targets at each image that a frustum over so many mirrors may show to those over fewer.
   void add_images(TargetMeshes& target, int num_mirrors, std::vector<RayTarget>& images) const;
 

@@ -252,7 +252,7 @@ class TargetSearch {
       for (size_t k = 0; k < things.size(); ++k) {
         const size_t before = of_things[k].size();
         if (num_found < kMostThings) finder_.add_images(things[k].target, num_mirrors, of_things[k]);
-        else if (finder_.may_have_images(things[k].target, num_mirrors)) leave_out(1);
+        else leave_out(finder_.least_images(things[k].target, num_mirrors));
         num_found += of_things[k].size() - before;
       }
     }

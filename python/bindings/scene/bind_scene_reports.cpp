@@ -51,9 +51,11 @@ py::tuple traits_of_meshes(const Scene& scene) {
                         flags(traits.deforming));
 }
 
-std::vector<std::pair<uint32_t, std::vector<uint32_t>>> large_planes(
-    const Scene& scene, const Radar& radar, double wavelength, double time, double least_coherent, double least_area,
-    double least_extent, double least_area_of_short, double vehicle_length, double vehicle_width, int most_small_planes) {
+std::vector<std::pair<uint32_t, std::vector<uint32_t>>> large_planes(const Scene& scene, const Radar& radar,
+                                                                     double wavelength, double time, double least_coherent,
+                                                                     double least_area, double least_extent,
+                                                                     double least_area_of_short, double vehicle_length,
+                                                                     double vehicle_width, int most_small_planes) {
   LargePlaneRule rule{{},           wavelength,          time,           least_coherent, least_area,
                       least_extent, least_area_of_short, vehicle_length, vehicle_width,  most_small_planes};
   for (const auto& antennas : {radar.transmitters, radar.receivers}) {

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...base.text.node_names import unique
 from .doubts import LEAST_WAY, MOST_RATIO
 from .samples import Samples
 
@@ -25,13 +26,12 @@ def parted(tracks: Mapping[str, Samples], speeds: Mapping[str, ArrayLike], steps
     file
     """
     found: dict[str, Samples] = {}
+    taken = dict.fromkeys(tracks, 1)
     for name, samples in tracks.items():
         first, *others = _ways_of(samples, np.asarray(speeds[name], float), steps)
-        found[name], number = first, 2
+        found[name] = first
         for other in others:
-            while f"{name}_{number}" in tracks or f"{name}_{number}" in found:
-                number += 1
-            found[f"{name}_{number}"] = other
+            found[unique(name, taken)] = other
     return found
 
 

@@ -11,9 +11,10 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from ... import _core
+from ...base.text.node_names import unique
 from .absences import parted
 from .markup import attribute, parse
-from .samples import MOST_SAMPLES, Samples, free_name, number, refuse
+from .samples import MOST_SAMPLES, Samples, number, refuse
 
 _GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
 _CLOCK = re.compile(r"(?:(\d{1,5}):)?(\d\d?):(\d\d):(\d\d(?:\.\d+)?)")
@@ -49,12 +50,11 @@ def _names_of(everybody: Collection[_Who]) -> dict[_Who, str]:
     """{who: name}, each of its own: vehicles and persons of a file are counted for themselves, mostly from 0 on."""
     vehicles = {who.id for who in everybody if not who.is_person}
     names: dict[_Who, str] = {who: who.id for who in everybody if not who.is_person}
-    taken = set(vehicles)
+    taken = dict.fromkeys(vehicles, 1)
     for who in everybody:
         if who.is_person:
             own = f"{who.id}_person" if who.id in vehicles else who.id
-            names[who] = free_name(own if who.way == 1 else f"{own}_{who.way}", taken)
-            taken.add(names[who])
+            names[who] = unique(own if who.way == 1 else f"{own}_{who.way}", taken)
     return names
 
 

@@ -5,8 +5,9 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
+from ...base.text.node_names import unique
 from .markup import attribute, parse
-from .samples import Samples, free_name, instant, number, refuse
+from .samples import Samples, instant, number, refuse
 
 
 def read_gpx(path: Path) -> dict[str, Samples]:
@@ -22,6 +23,7 @@ class _Gpx:
     def __init__(self, path: Path):
         self.tracks: dict[str, Samples] = {}
         self._path, self._name, self._count = path, "", 0
+        self._taken: dict[str, int] = {}        # names of the tracks
         self._samples: Samples | None = None    # of the track, from its first point on
         self._point: tuple[int, float, float] | None = None
         self._texts: dict[str, str] = {}        # of the elements right in the point
@@ -57,7 +59,7 @@ class _Gpx:
         if "time" not in self._texts:
             refuse(self._path, line, "<trkpt>: time is missing")
         if self._samples is None:
-            self._samples = self.tracks[free_name(self._name, self.tracks)] = Samples()
+            self._samples = self.tracks[unique(self._name, self._taken)] = Samples()
         self._samples.lines.append(line)
         self._samples.times.append(instant(self._path, line, "time", self._texts["time"]))
         height = number(self._path, line, "ele", self._texts["ele"], 1e5) if "ele" in self._texts else math.nan

@@ -4,7 +4,6 @@ from __future__ import annotations
 import datetime
 import math
 from array import array
-from collections.abc import Container
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -54,14 +53,6 @@ class Samples:
             times = np.array(self.times)
             heights = np.interp(times, times[is_known], heights[is_known]) if is_known.any() else np.zeros(len(times))
             self.coordinates[2::3] = array("d", heights)
-
-
-def free_name(name: str, taken: Container[str]) -> str:
-    """The name, or "name_2" and so on where it is taken."""
-    found, number = name, 2
-    while found in taken:
-        found, number = f"{name}_{number}", number + 1
-    return found
 
 
 def refuse(path: Path, line: int, what: str) -> NoReturn:

@@ -197,4 +197,11 @@ std::vector<MeshOfLargePlanes> meshes_of_large_planes(const Scene& scene, const 
   return found;
 }
 
+bool is_cut_from_mirror(const Scene& scene, uint32_t mesh_id) {
+  const Node& node = scene.node_of(mesh_id);
+  if (node.parent < 0 || !node.mesh->whole()) return false;
+  const Node& above = scene.nodes()[node.parent];
+  return above.mesh && above.material->mirror && above.mesh->whole() == node.mesh->whole();
+}
+
 }  // namespace echopath

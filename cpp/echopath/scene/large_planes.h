@@ -34,4 +34,8 @@ struct MeshOfLargePlanes {
 // that several meshes share is measured in each mesh by itself.
 std::vector<MeshOfLargePlanes> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
 
+// Returns whether a mesh was cut from the flagged mirror above it, as the windows of a front are: both are parts of one
+// mesh.
+bool is_cut_from_mirror(const Scene& scene, uint32_t mesh_id);
+
 }  // namespace echopath

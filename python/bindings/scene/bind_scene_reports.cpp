@@ -70,6 +70,13 @@ std::vector<std::pair<uint32_t, std::vector<uint32_t>>> large_planes(const Scene
   return found;
 }
 
+std::vector<uint32_t> meshes_cut_from_mirrors(const Scene& scene) {
+  std::vector<uint32_t> found;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id)
+    if (is_cut_from_mirror(scene, id)) found.push_back(id);
+  return found;
+}
+
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
   std::vector<std::string> names;
   for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[scene.meshes().at(id).node].name);
@@ -88,6 +95,8 @@ void bind_scene_reports(py::module_& m) {
         py::arg("vehicle_length"), py::arg("vehicle_width"), py::arg("most_small_planes"),
         "Meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s: [(ID, triangles of "
         "their other planes, none where these are few)].");
+  m.def("meshes_cut_from_mirrors", &meshes_cut_from_mirrors, py::arg("scene"),
+        "IDs of the meshes that are parts of one mesh with the flagged mirror above them.");
   m.def("look_at_bodies", &look_at_bodies, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the "
         "first transmitter stands, or the first receiver, [(node, whether it is the receiver)]).");

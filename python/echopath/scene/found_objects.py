@@ -62,15 +62,9 @@ def _names_of(scene: Scene, radar: _core.Radar, usual: Things, time: float) -> l
         found += _things_of_usual(own, child) if own.meshes else []
         rest = child.without(of_usual)
         found += _things_among(rest.parts()) if rest.meshes and not child.is_thing else []
-    mirrors = _mirrors(scene).union(large_planes(scene, radar, time))
+    mirrors = {mesh.id for mesh in scene.meshes if mesh.material.mirror}.union(
+        _core.meshes_cut_from_mirrors(scene), large_planes(scene, radar, time))
     return [part.name for part in found if part.name in usual or mirrors.isdisjoint(part.meshes)]
-
-
-def _mirrors(scene: Scene) -> set[int]:
-    """IDs of the flagged mirrors, and of what was cut from them: its mesh is below the mirror's, and both are parts of one."""
-    wholes = {mesh.name: mesh.mesh.whole for mesh in scene.meshes if mesh.material.mirror}
-    return {mesh.id for mesh in scene.meshes if mesh.material.mirror or (
-        mesh.mesh.whole is not None and wholes.get(mesh.name.rpartition("/")[0]) is mesh.mesh.whole)}
 
 
 def _things_of_usual(own: _Part, child: _Part) -> list[_Part]:

@@ -1,12 +1,11 @@
 """Planes that are large enough to be mirrors, found and flagged in whole scenes."""
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from .. import _core
 from ..arguments.checks import an, checked, real
+from ..base.text.node_names import unique
 from .scene import Scene
 
 LEAST_COHERENT = 0.1  # share of the reflected power that keeps its phase: rougher walls have next to no images
@@ -43,30 +42,29 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     with scene._edit():
         found = _found(scene, radar, time)
         names = tuple(_core.mesh_names(scene, [mesh_id for mesh_id, _ in found]))
-        cuts = {}
+        cuts, taken = {}, dict.fromkeys(scene, 1)
         for name, (_, small) in zip(names, found):
             if small:
-                _cut(scene, name, np.array(small), cuts)
+                _cut(scene, name, np.array(small), cuts, taken)
             node = scene[name]
             node._change(material=node._node.material.replace(mirror=True))  # of its own mesh alone, not of those below it
     return names
 
 
-def _cut(scene, name: str, small: np.ndarray, cuts: dict) -> None:
-    """Moves triangles of a node's mesh into a mesh below it; `cuts` holds the two parts of each that was cut before."""
+def _cut(scene, name: str, small: np.ndarray, cuts: dict, taken: dict[str, int]) -> None:
+    """Moves triangles of a node's mesh into a mesh below it.
+
+    cuts: the two parts of each mesh that was cut before; taken: full names, of `unique`
+    """
     node = scene[name]._node
     key = (id(node.mesh), small.tobytes())
     if key not in cuts:
         is_small = np.isin(np.arange(len(node.mesh.triangles)), small)
         cuts[key] = node.mesh.part(~is_small), node.mesh.part(is_small), node.mesh  # the last keeps its identity
     scene[name]._change(mesh=cuts[key][0])
-    below = scene.add(cuts[key][1], name=_free_name(scene, name), parent=name, material=node.material)
+    own_name = unique(f"{name}/{SMALL_PLANES}", taken).rpartition("/")[2]
+    below = scene.add(cuts[key][1], name=own_name, parent=name, material=node.material)
     scene[below]._change(material_name=node.material_name)
-
-
-def _free_name(scene, parent: str) -> str:
-    names = (SMALL_PLANES if number == 1 else f"{SMALL_PLANES}_{number}" for number in itertools.count(1))
-    return next(name for name in names if f"{parent}/{name}" not in scene)
 
 
 def large_planes(scene: _core.Scene, radar: _core.Radar, time: float) -> list[int]:

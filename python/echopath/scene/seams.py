@@ -8,7 +8,6 @@ from .. import _core
 SAME_PLACE = 1e-6                        # of the extent
 SHORTEST_SHARE = 0.01                    # of the shortest side, which corners of one place are nearer than
 SEAM_COSINE = np.cos(np.radians(20.0))   # of facets that go on over a seam; those that turn by more meet in an edge that is meant
-
 MOST_WORK = 5e7                          # triangles of the whole times parts, each of which has its normals made by itself
 
 # What is known of a mesh while it lives: the one without seams, None where it has none; of the first one of a list the others,

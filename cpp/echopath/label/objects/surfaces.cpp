@@ -8,6 +8,7 @@
 #include "echopath/base/principal_box.h"
 #include "echopath/base/text/nearest_names.h"
 #include "echopath/posed/posed_scene.h"
+#include "echopath/scene/large_planes.h"
 #include "echopath/trace/strata/scene_objects.h"
 
 namespace echopath {
@@ -138,15 +139,6 @@ bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& ob
   }
   const VerticesOf all = [&](uint32_t) -> const std::vector<Vec3>& { return vertices; };
   return bounding_sphere(all, {0}).holds(from.antenna) && is_flat_or_holds(vertices, from);
-}
-
-// Returns whether a mesh was cut from the flagged mirror above it, as the windows of a front are: both are parts of one
-// mesh.
-bool is_cut_from_mirror(const Scene& scene, uint32_t mesh) {
-  const Node& node = scene.node_of(mesh);
-  if (node.parent < 0 || !node.mesh->whole()) return false;
-  const Node& above = scene.nodes()[node.parent];
-  return above.mesh && above.material->mirror && above.mesh->whole() == node.mesh->whole();
 }
 
 // Returns the objects but for what was cut from flagged mirrors: by itself it would be an object of the mirror's name.

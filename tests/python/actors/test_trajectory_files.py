@@ -240,6 +240,8 @@ def test_the_smoothest_is_that_of_the_dense_equations():
     np.testing.assert_allclose(residual, weight * force, atol=1e-9)
 
 
+WALK = '<timestep time="{0}">\n<person id="a" x="{0}" y="0" angle="90"/></timestep>\n'.format
+TWICE = "<fcd-export>\n" + WALK(0) + WALK(1) + WALK(2).replace("</", '\n<person id="a" x="0" y="0" angle="90"/></') + "</fcd-export>"
 WRONG = {
     "a.csv": [("", "must name columns"), ("a,b\n1,2\n", "line 1: must name columns"), ("t,x,y\n", "holds no positions"),
               ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: x: must be a number"), ("t,x,y\n0,0,0\n1,5\n", "line 3: must have at least 3"),
@@ -258,6 +260,7 @@ WRONG = {
               ("<fcd-export>" * 80, "elements within each other"),
               (FCD.replace('x="20.00"', 'x="far"'), "line 8: x: must be a number .*'far'"),
               (FCD.replace('time="1.00"', 'time="0.00"'), "line 8: time: must be later"),
+              (TWICE, "line 8: time: must be later"),
               ('<fcd-export><vehicle id="a" x="0" y="0" angle="0"/></fcd-export>', "must stand in a <timestep>")],
     "a.gpx": [("<gpx/>", "holds no positions"),
               (GPX.replace("<time>2026-05-01T12:00:00Z</time>", ""), "line 2: <trkpt>: time is"),
@@ -319,6 +322,13 @@ def test_who_is_missing_in_a_file_of_sumo_and_comes_back_elsewhere_is_another(tm
     scene = ep.Scene()
     ep.add_traffic(scene, found)
     assert scene["a_2"].lifetime == (10, 12)
+
+
+def test_a_person_of_sumo_with_a_single_position_is_left_out(tmp_path, recwarn):
+    there = '<person id="b" x="0" y="3" angle="0"/>'
+    text = "<fcd-export>" + WALK(0).replace("</", there + "</") + WALK(1) + "</fcd-export>"
+    assert list(ep.read_trajectories(write(tmp_path, "fcd.xml", text))) == ["a"]
+    assert [str(one.message).split(": ")[1] for one in recwarn] == ["1 object with a single position is left out, such as 'b'"]
 
 
 @pytest.mark.parametrize("speed", ['speed="10"', ""])

@@ -38,7 +38,8 @@ def parted(tracks: Mapping[str, Samples], speeds: Mapping[str, ArrayLike], steps
 def _ways_of(samples: Samples, speeds: NDArray[np.float64], steps: NDArray[np.float64]) -> list[Samples]:
     times = np.array(samples.times)
     num_steps, durations = np.diff(np.searchsorted(steps, times)), np.diff(times)
-    if not (samples.is_person or np.any(num_steps > 1)):
+    has_legs = len(times) > 1 and bool(np.all(durations > 0.0))  # times that are not later are refused behind this
+    if not has_legs or not (samples.is_person or np.any(num_steps > 1)):
         return [samples]
     by_place = np.linalg.norm(np.diff(samples.places[:, :2], axis=0), axis=1)
     by_speed = 0.5 * (speeds[:-1] + speeds[1:]) * durations
@@ -52,7 +53,7 @@ def _ways_of(samples: Samples, speeds: NDArray[np.float64], steps: NDArray[np.fl
 def _jumps(ways: NDArray[np.float64], durations: NDArray[np.float64], speeds: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether no legs go ways [P - 1] in m from row to row, by speeds [P] in m/s or, where these are NaN, the usual one."""
     told = np.fmax(speeds[:-1], speeds[1:])
-    usual = np.median(ways / durations) if len(ways) else 0.0
+    usual = np.median(ways / durations)
     fastest = np.maximum(MOST_RATIO * np.where(np.isnan(told), usual, told), FASTEST_WALK)
     return ways > fastest * durations + LEAST_JUMP
 

@@ -3,13 +3,13 @@ from __future__ import annotations
 
 from functools import partial
 
-from fuzz.arrays import feed_arrays
-from fuzz.datasets import feed_sequence, feed_template
-from fuzz.foreign import feed_foreign, feed_frames_folder, feed_mtl
-from fuzz.frames import feed_frame_bytes, feed_frame_structure
-from fuzz.gltf import feed_gltf_bin, feed_gltf_bytes, feed_gltf_json
-from fuzz.texts import feed_antenna, feed_scene
-from fuzz.tracks import GPX, SUMO, TABLES, feed_sensor, feed_tracks
+from fuzz.feeds.arrays import feed_arrays
+from fuzz.feeds.datasets import feed_sequence, feed_template
+from fuzz.feeds.foreign import feed_foreign, feed_frames_folder, feed_mtl
+from fuzz.feeds.frames import feed_frame_bytes, feed_frame_structure
+from fuzz.feeds.gltf import feed_gltf_bin, feed_gltf_bytes, feed_gltf_json
+from fuzz.feeds.texts import feed_antenna, feed_scene
+from fuzz.feeds.tracks import GPX, SUMO, TABLES, feed_sensor, feed_tracks
 
 TARGETS = {"frame_bytes": feed_frame_bytes, "frame_structure": feed_frame_structure, "arrays": feed_arrays,
            "scene": feed_scene, "antenna": feed_antenna, "gltf_bytes": feed_gltf_bytes, "gltf_json": feed_gltf_json,

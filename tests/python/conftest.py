@@ -12,9 +12,9 @@ from support.labelled import trace_plates_and_wall
 
 # Seconds each: whoever comes to one of them last would be waited for by all others.
 LONGEST_FILES = ("documents/test_docs_site.py", "replay/test_reference.py", "bench/test_hard.py", "actors/test_crowds.py",
-                 "trace/test_published.py", "labels/test_resolution.py", "dataset/test_dataset_kills.py",
+                 "trace/cross_sections/test_published.py", "labels/test_resolution.py", "dataset/test_dataset_kills.py",
                  "trace/test_chain_glints.py", "replay/test_validity.py", "dataset/test_dataset_exports.py",
-                 "edges/test_corners.py", "trace/test_surface_scatterers.py", "bench/test_bench_crowd.py")
+                 "edges/test_corners.py", "trace/rough/test_surface_scatterers.py", "bench/test_bench_crowd.py")
 
 
 class _LastFirst(pytest.Dir):

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
-#include "echopath/power/power_interval.h"
+#include "echopath/power/interval/power_interval.h"
 #include "echopath/record/paths.h"
 
 namespace echopath {

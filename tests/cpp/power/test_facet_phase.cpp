@@ -3,7 +3,7 @@
 
 #include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
-#include "echopath/power/facet_phase.h"
+#include "echopath/power/interval/facet_phase.h"
 
 namespace echopath::test_facet_phase {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
-#include "echopath/power/plane_rims.h"
+#include "echopath/power/interval/plane_rims.h"
 
 namespace echopath::test_plane_rims {
 namespace {

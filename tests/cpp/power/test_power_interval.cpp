@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "echopath/power/power_interval.h"
+#include "echopath/power/interval/power_interval.h"
 
 namespace echopath::test_power_interval {
 namespace {

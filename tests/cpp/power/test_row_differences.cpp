@@ -6,7 +6,7 @@
 #include <functional>
 #include <random>
 
-#include "echopath/power/row_differences.h"
+#include "echopath/power/interval/row_differences.h"
 #include "echopath/record/paths.h"
 #include "echopath/trace/launch/launch_lattice.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "echopath/power/triangle_points.h"
+#include "echopath/power/interval/triangle_points.h"
 #include "echopath/trace/scatter/surface_points.h"
 
 namespace echopath::test_triangle_points {

@@ -9,7 +9,7 @@ import pytest
 import echopath as ep
 from echopath.actors.human.captured_joints import find_joints, missing_joints, plain
 from echopath.actors.human.motion_capture import read_capture
-from fuzz.foreign_seeds import bvh_text, walk_frames
+from fuzz.feeds.foreign_seeds import bvh_text, walk_frames
 
 CM = 0.01
 KEY_ROUNDING = 1e-9  # m, of a spline at its own keys

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from fuzz.foreign_seeds import USD, archive
+from fuzz.feeds.foreign_seeds import USD, archive
 from support.files.mesh_texts import npz, obj, off, ply, stl, stl_text, usda
 
 SPHERE = ep.actors.sphere(0.5, subdivisions=4)

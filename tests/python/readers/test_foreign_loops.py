@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.truth import boxes_at
-from fuzz.foreign_seeds import archive
+from fuzz.feeds.foreign_seeds import archive
 from support.files.mesh_texts import obj
 
 LATE = 12345.625  # s, far beyond anything that is stored

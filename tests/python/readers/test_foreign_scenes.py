@@ -13,8 +13,8 @@ import echopath as ep
 from echopath.cli import main
 from echopath.readers.material_names import material_of, note_of_unknown
 from echopath.readers.sizes import unit_doubt
-from fuzz.foreign import SQUARE
-from fuzz.foreign_seeds import bvh_text, walk_frames
+from fuzz.feeds.foreign import SQUARE
+from fuzz.feeds.foreign_seeds import bvh_text, walk_frames
 from support.files.mesh_texts import obj_boxes
 from support.files.scene_text import WAVEFORM
 

@@ -9,7 +9,7 @@ import pytest
 import echopath as ep
 from echopath.readers.usd import trial
 from fuzz import targets, usd_trials, worker
-from fuzz.foreign_seeds import seeds_by_suffix
+from fuzz.feeds.foreign_seeds import seeds_by_suffix
 from fuzz.seeds import frames
 
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,

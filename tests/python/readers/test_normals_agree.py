@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from fuzz.foreign_seeds import archive
+from fuzz.feeds.foreign_seeds import archive
 from support.files.gltf_files import GltfFile
 from support.files.mesh_texts import usd_mesh
 

@@ -6,7 +6,7 @@ import pytest
 from pxr import Usd, UsdGeom, UsdSkel
 
 import echopath as ep
-from fuzz.foreign_seeds import USD
+from fuzz.feeds.foreign_seeds import USD
 
 SINGLE = 1e-6  # m, of what USD keeps in float
 HALF = 1e-3    # m, of scales up to 2 of two joints, which USD keeps and interpolates in half precision: 2^-11 each

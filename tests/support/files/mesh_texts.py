@@ -5,7 +5,7 @@ import struct
 
 import numpy as np
 
-from fuzz.foreign_seeds import archive
+from fuzz.feeds.foreign_seeds import archive
 
 
 def obj(vertices, faces, name: str = "") -> bytes:

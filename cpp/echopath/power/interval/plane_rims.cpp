@@ -1,4 +1,4 @@
-#include "echopath/power/plane_rims.h"
+#include "echopath/power/interval/plane_rims.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-CORPUS = Path(__file__).parent / "corpus"
+CORPUS = Path(__file__).parents[1] / "corpus"
 MITSUBA = ["""<scene version="3.0.0">
 <default name="spp" value="16"/>
 <bsdf type="twosided" id="mat-itu_concrete">

@@ -1,4 +1,4 @@
-#include "echopath/power/triangle_points.h"
+#include "echopath/power/interval/triangle_points.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,7 +13,7 @@ from fuzz.mutate import damaged, mistaken
 from fuzz.tables import Tables
 
 MANY_TRIANGLES = 1_000_000  # of an actor: up to 20 million are made, at a microsecond or two each, which is no fault of a reader
-DATA = Path(__file__).parents[2] / "data"
+DATA = Path(__file__).parents[3] / "data"
 ANTENNA = ("# of a patch\nazimuth_deg,elevation_deg,gain_db,phase_deg\n" +
            "\n".join(f"{azimuth},{elevation},{3 - abs(azimuth) / 20:g},0"
                      for azimuth in (-60, 0, 60) for elevation in (-30, 0, 30)))

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"
-#include "echopath/power/plane_rims.h"
+#include "echopath/power/interval/plane_rims.h"
 #include "echopath/record/paths.h"
 
 namespace echopath {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "echopath/scene/readers/triangulate.h"
+#include "echopath/scene/polygons/triangulate.h"
 
 namespace echopath::test_triangulate {
 namespace {

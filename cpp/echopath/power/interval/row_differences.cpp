@@ -1,4 +1,4 @@
-#include "echopath/power/row_differences.h"
+#include "echopath/power/interval/row_differences.h"
 
 #include <algorithm>
 #include <cmath>

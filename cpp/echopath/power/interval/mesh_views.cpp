@@ -1,4 +1,4 @@
-#include "echopath/power/mesh_views.h"
+#include "echopath/power/interval/mesh_views.h"
 
 #include <algorithm>
 #include <limits>

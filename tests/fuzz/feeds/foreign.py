@@ -10,7 +10,7 @@ import numpy as np
 
 import echopath as ep
 from fuzz.folder import memory_folder
-from fuzz.foreign_seeds import frame_text, seeds_by_suffix
+from fuzz.feeds.foreign_seeds import frame_text, seeds_by_suffix
 from fuzz.mutate import damaged, mistaken
 from fuzz.usd_trials import fork_trials
 

@@ -1,4 +1,4 @@
-#include "echopath/scene/readers/corner_tree.h"
+#include "echopath/scene/polygons/corner_tree.h"
 
 #include <algorithm>
 

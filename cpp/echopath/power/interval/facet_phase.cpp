@@ -1,4 +1,4 @@
-#include "echopath/power/facet_phase.h"
+#include "echopath/power/interval/facet_phase.h"
 
 #include <array>
 #include <cmath>

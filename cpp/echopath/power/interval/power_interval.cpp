@@ -1,4 +1,4 @@
-#include "echopath/power/power_interval.h"
+#include "echopath/power/interval/power_interval.h"
 
 #include <algorithm>
 #include <cmath>

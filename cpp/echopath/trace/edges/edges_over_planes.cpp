@@ -90,11 +90,7 @@ class LitEdgeTracer {
 
   void trace() {
     num_pieces_ = num_pieces();
-    for (int piece = 0; piece < num_pieces_; ++piece) {
-      const double at = (piece + 0.5) / num_pieces_;
-      stand_at(at);
-      add_piece(at);
-    }
+    for (int piece = 0; piece < num_pieces_; ++piece) add_piece((piece + 0.5) / num_pieces_);
   }
 
  private:
@@ -109,10 +105,8 @@ class LitEdgeTracer {
     std::complex<double> past_edge = 0.0;  // share of what the edge sends over the leg to a mirror (kPastEdge)
   };
 
-  void stand_at(double at) {
-    const EdgePoint point = point_on_edge(edge_, at, query_.geometry.corners(edge_.mesh_id, edge_.edge.triangle));
-    hit_ = point.hit;
-    point_ = point.position;
+  EdgePoint point_at(double at) const {
+    return point_on_edge(edge_, at, query_.geometry.corners(edge_.mesh_id, edge_.edge.triangle));
   }
 
   int num_pieces() const {
@@ -126,19 +120,20 @@ class LitEdgeTracer {
   void add_piece(double at) {
     if (!is_within(edge_.transmit, at) && !is_within(edge_.receive, at)) return;
     const Vec3 &transmitter = query_.settings.transmitter, &receiver = query_.settings.receiver;
-    const std::vector<WeightedLeg> in_direct = direct(transmitter), out_direct = direct(receiver);
-    const std::vector<WeightedLeg> in = over_planes(edge_.transmit, {transmitter, receiver, at, false}),
-                                   out = over_planes(edge_.receive, {receiver, transmitter, at, !in_direct.empty()});
+    const EdgePoint point = point_at(at);
+    const std::vector<WeightedLeg> in_direct = direct(point, transmitter), out_direct = direct(point, receiver);
+    const std::vector<WeightedLeg> in = over_planes(edge_.transmit, {point, at, transmitter, receiver, false}),
+                                   out = over_planes(edge_.receive, {point, at, receiver, transmitter, !in_direct.empty()});
     if (in.empty() && out.empty()) return;
     ++block_.statistics.num_hits;
     for (const WeightedLeg& one : in) {
-      for (const WeightedLeg& other : out) add_path(one, other, 1.0, 0);
-      for (const WeightedLeg& other : out_direct) add_path(one, other, one.orders.own, 0);
+      for (const WeightedLeg& other : out) add_path(point, one, other, 1.0, 0);
+      for (const WeightedLeg& other : out_direct) add_path(point, one, other, one.orders.own, 0);
     }
     for (const WeightedLeg& one : in_direct) {
       for (const WeightedLeg& other : out) {
-        add_path(one, other, other.orders.opposite, kReversedPath);
-        add_path(one, other, other.past_edge, kPastEdge);
+        add_path(point, one, other, other.orders.opposite, kReversedPath);
+        add_path(point, one, other, other.past_edge, kPastEdge);
       }
     }
   }
@@ -150,10 +145,11 @@ class LitEdgeTracer {
     });
   }
 
-  // Asks for the legs from the place `at` in [0, 1] of the edge to an antenna.
+  // Asks for the legs from a point of the edge, `at` in [0, 1] of it, to an antenna.
   struct PlaneLegQuery {
-    Vec3 antenna, other;
+    EdgePoint point;
     double at;
+    Vec3 antenna, other;
     bool is_end;  // waves leave the edge over these legs, to which they came directly
   };
 
@@ -163,7 +159,7 @@ class LitEdgeTracer {
       const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
       if (query.at < begin || query.at > end || std::ssize(over->mirrors) >= query_.settings.max_bounces) continue;
       const std::optional<PlaneLeg> leg =
-          planes_.find(point_, outward_, query.antenna, *over, block_.statistics.num_queries);
+          planes_.find(query.point.position, outward_, query.antenna, *over, block_.statistics.num_queries);
       if (!leg || !may_leave(edge_.wedge, leg->to_antenna, leg->length)) continue;
       WeightedLeg& weighted = legs.emplace_back();
       for (const RayHit& bounce : leg->bounces) weighted.hits.push_back(bounce.hit);
@@ -172,15 +168,16 @@ class LitEdgeTracer {
       weighted.share = leg->share;
       weighted.orders = kept_orders(*leg, *over, query);
       if (query.is_end && weighted.orders.opposite < 1.0) {
-        weighted.past_edge = (1.0 - weighted.orders.opposite) *
-                             planes_.field_beside_rims(point_, query.antenna, *leg, block_.statistics.num_queries);
+        weighted.past_edge =
+            (1.0 - weighted.orders.opposite) *
+            planes_.field_beside_rims(query.point.position, query.antenna, *leg, block_.statistics.num_queries);
       }
     }
     return legs;
   }
 
-  std::vector<WeightedLeg> direct(const Vec3& antenna) {
-    LegQuery query{point_, outward_, 0};
+  std::vector<WeightedLeg> direct(const EdgePoint& point, const Vec3& antenna) {
+    LegQuery query{point.position, outward_, 0};
     query.faces_all = true;
     finder_.find(query, {antenna, {}, {}}, legs_, search_);
     block_.statistics.num_queries += std::exchange(search_.num_queries, 0);
@@ -199,22 +196,20 @@ class LitEdgeTracer {
   OrderShares kept_orders(const PlaneLeg& leg, const LitPlane& over, const PlaneLegQuery& query) {
     if (const auto known = orders_.find(&over); known != orders_.end()) return known->second;
     const auto [begin, end] = stretch_within(edge_.from, edge_.to, over.box);
-    stand_at(0.5 * (begin + end));
-    std::optional<PlaneLeg> middle = planes_.find(point_, outward_, query.antenna, over, block_.statistics.num_queries);
-    if (!middle) {
-      stand_at(query.at);
-      middle = leg;
-    }
-    OrderShares orders = orders_of(*middle, over, query.other);
-    if (meets_next_plane(over)) orders.opposite = 0.0;
-    stand_at(query.at);
+    const Vec3 middle = point_at(0.5 * (begin + end)).position;
+    const std::optional<PlaneLeg> of_middle =
+        planes_.find(middle, outward_, query.antenna, over, block_.statistics.num_queries);
+    const Vec3& point = of_middle ? middle : query.point.position;
+    OrderShares orders = orders_of(of_middle.value_or(leg), point, over, query.other);
+    if (meets_next_plane(point, over)) orders.opposite = 0.0;
     return orders_[&over] = orders;
   }
 
   // Returns the shares of both orders in which rays go over these planes and the face of the edge, to the other antenna.
-  OrderShares orders_of(const PlaneLeg& leg, const LitPlane& over, const Vec3& other) {
+  // `leg` begins at `point` of the edge.
+  OrderShares orders_of(const PlaneLeg& leg, const Vec3& point, const LitPlane& over, const Vec3& other) {
     const Plane& plane = lit_.planes()[over.plane];
-    const Vec3 normal = plane.height(point_ + leg.to_antenna) >= plane.height(point_) ? plane.normal : Vec3(-plane.normal);
+    const Vec3 normal = plane.height(point + leg.to_antenna) >= plane.height(point) ? plane.normal : Vec3(-plane.normal);
     const Vec3 middle = over.box.center() - plane.height(over.box.center()) * plane.normal;
     RayHit face;
     ++block_.statistics.num_queries;
@@ -229,17 +224,17 @@ class LitEdgeTracer {
         std::max(planes_.cover_of(face, line.normalized(), line.norm(), behind, block_.statistics.num_queries), 1e-9));
   }
 
-  // Returns whether the lit face goes on from the edge to the plane that is next to it, as in a corner.
-  bool meets_next_plane(const LitPlane& over) {
+  // Returns whether the lit face goes on from a point of the edge to the plane that is next to it, as in a corner.
+  bool meets_next_plane(const Vec3& point, const LitPlane& over) {
     const int next = over.mirrors.back();
     const Plane& mirror = lit_.planes()[next];
     const double gap = query_.geometry.plane_tolerance(kSpeedOfLight / query_.settings.frequency);
     for (const WedgeFace& face : edge_.wedge.faces) {
-      const Vec3 from = point_ + gap * (face.inward + face.normal);
+      const Vec3 from = point + gap * (face.inward + face.normal);
       RayHit met;
       block_.statistics.num_queries += 2;
       if (query_.geometry.intersect_from_surface(from, face.inward, met) != EmbreeScene::Verdict::kHit ||
-          lit_.plane_of(met.hit) != next || std::abs(mirror.height(point_)) < gap)
+          lit_.plane_of(met.hit) != next || std::abs(mirror.height(point)) < gap)
         continue;
       const Vec3 beside = from + std::max(met.distance - 2.0 * gap, 0.0) * face.inward;
       if (query_.geometry.intersect_from_surface(beside, -face.normal, met) == EmbreeScene::Verdict::kHit &&
@@ -259,7 +254,8 @@ class LitEdgeTracer {
     return query_.estimate.power(edge_.wedge, in.leg, out.leg, std::abs(weight) * coupled) >= query_.least_power;
   }
 
-  void add_path(const WeightedLeg& in, const WeightedLeg& out, std::complex<double> share, uint32_t flag) {
+  void add_path(const EdgePoint& point, const WeightedLeg& in, const WeightedLeg& out, std::complex<double> share,
+                uint32_t flag) {
     if (share == 0.0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
     const WeightedLeg& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
     const Material& material = *query_.scene.node_of(edge_.mesh_id).material;
@@ -268,7 +264,7 @@ class LitEdgeTracer {
     if (!is_strong(in, out, weight, flag == kPastEdge)) return;
     std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());
     const int at = static_cast<int>(hits.size());
-    hits.push_back(hit_);
+    hits.push_back(point.hit);
     hits.insert(hits.end(), out.hits.begin(), out.hits.end());
     block_.add(hits.data(), static_cast<int>(hits.size()), 0, std::complex<float>(weight), kNoStratum);
     block_.set_edge(at, num_pieces_);
@@ -287,8 +283,6 @@ class LitEdgeTracer {
   LegSearch search_;
   std::map<const LitPlane*, OrderShares> orders_;  // by what is lit
   int num_pieces_ = 1;
-  Hit hit_;     // of the piece at hand
-  Vec3 point_;  // m, likewise
 };
 
 template <class Coefficients>

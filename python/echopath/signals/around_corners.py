@@ -13,6 +13,7 @@ from ..transmit import signal_shape
 
 _STREAM = 0x65646765  # tells these random numbers from others of the same seed
 NODES = np.array([0.0, 0.5, 1.0])  # of the frame, between which lengths are parabolas
+LARGEST_BEND = 0.1  # m, of what keeps its edge
 
 
 @checked(start_time=start_time_rule, seed=count(0, 2**32 - 1), num_rays=count(1, 2**24))
@@ -48,29 +49,36 @@ def _add(cube, scene, radar, hidden: Hidden, amplitudes, start_time) -> None:
     """Adds the echoes of one object, amplitudes [N] in sqrt(W), to every channel."""
     times = start_time + NODES * radar.frame_duration
     points = [hidden.points.at(scene, time) for time in times]
-    ends = {end: [_lengths(scene, radar, end, points, times) for end in antennas]
+    ends = {end: [_legs(scene, radar, end, points, times) for end in antennas]
             for end, antennas in (("out", radar.transmitters), ("back", radar.receivers))}
-    kept = np.all([is_kept for ways in ends.values() for _, is_kept in ways], axis=0) & (amplitudes != 0.0)
+    kept = np.all([is_kept for ways in ends.values() for _, is_kept, _ in ways], axis=0) & (amplitudes != 0.0)
     if not kept.any():
         return
     # Rows as far apart as they are on the average, by which delays change within a chirp.
     waveform = radar.waveform.replace(chirp_interval=radar.waveform.mean_interval, extra_idle=())
-    for i, (out, _) in enumerate(ends["out"]):
+    for i, (out, _, sent) in enumerate(ends["out"]):
         share = np.array([radar.chirp_time(i, chirp) for chirp in range(waveform.num_chirps)]) / radar.frame_duration
-        for j, (back, _) in enumerate(ends["back"]):
+        for j, (back, _, received) in enumerate(ends["back"]):
             delays = _parabolas(share) @ (out + back)[:, kept] / _core.speed_of_light
-            cube[i, j] += _core.synthesize_echoes(waveform, delays, np.broadcast_to(amplitudes[kept], delays.shape),
+            fields = (amplitudes * sent * received)[kept]
+            cube[i, j] += _core.synthesize_echoes(waveform, delays, np.broadcast_to(fields, delays.shape),
                                                   num_slots=radar.num_slots)
 
 
-def _lengths(scene, radar, antenna, points, times) -> tuple[np.ndarray, np.ndarray]:
-    """m [nodes, N] from an antenna, and which points [N] keep their edge."""
+def _legs(scene, radar, antenna, points, times) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """m [nodes, N] from an antenna, which points [N] keep their edge, and the antenna's pattern [N] in the frame's middle."""
     ways = [ways_to(scene, radar, antenna, at, time) for at, time in zip(points, times)]
     meshes = np.array([way["mesh_id"] for way in ways])
-    steps = np.linalg.norm(np.diff([way["point"] for way in ways], axis=0), axis=-1)  # of the point on the edge
-    moved = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    is_kept = np.all(meshes == meshes[0], axis=0) & np.all((steps <= moved + 0.1) | (meshes[0] == NO_MESH), axis=0)
-    return np.array([way["length"] for way in ways]), is_kept & np.all([way["share"] > 0.0 for way in ways], axis=0)
+    goes_on = _bend([way["point"] for way in ways]) <= _bend(points) + LARGEST_BEND
+    is_kept = np.all(meshes == meshes[0], axis=0) & (goes_on | (meshes[0] == NO_MESH))
+    return (np.array([way["length"] for way in ways]), is_kept & np.all([way["share"] > 0.0 for way in ways], axis=0),
+            ways[1]["pattern"])
+
+
+def _bend(places) -> np.ndarray:
+    """m [N], by which the second half of ways [nodes, N, 3] differs from the first: along an edge a point goes on evenly,
+    from one edge to another it leaps."""
+    return np.linalg.norm(np.diff(places, n=2, axis=0)[0], axis=-1)
 
 
 def _parabolas(share) -> np.ndarray:

@@ -13,6 +13,7 @@ from ..base.radar.chirps import start_with_middle
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.text.mesh_names import object_of
+from ..base.numerics.rotations import matrices
 from ..base.radar.antennas import polarization_of
 from ..paths.absent import NO_MESH
 from ..paths.resolution import Interval
@@ -21,6 +22,7 @@ from ..scene.lifetimes import scene_in_frame
 from .traces import trace
 
 NUM_POINTS = 256  # of an object's surface that are looked at
+LEAST_LENGTH = 1e-12  # m: a way that is shorter has no direction
 
 
 @made_by("ep.around_corners")
@@ -64,10 +66,11 @@ def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0,
 
     `trace` follows no wave into a shadow. This says what it neglects: the level of each object alone, its sharp edges with it,
     times the power that the uniform theory of diffraction brings around the best edge to each of its hidden points, from the
-    first transmitter and back to the first receiver. The points are 256, spread over the object's area; what is hidden on less
-    of it may be missed. Edges are those of all bodies that keep their shape, as of perfect conductors; the part of the shadow
-    is that of any body. Waves around two edges, and what the objects' own shadows let pass, are left out; levels are good to
-    some 3 dB where an object is much smaller than its distance from the corner, and `resolved`.
+    first transmitter and back to the first receiver, with their gains toward that edge. The points are 256, spread over the
+    object's area; what is hidden on less of it may be missed. Edges are those of all bodies that keep their shape, as of
+    perfect conductors; the part of the shadow is that of any body. Waves around two edges, and what the objects' own shadows
+    let pass, are left out; levels are good to some 3 dB where an object is much smaller than its distance from the corner,
+    and `resolved`.
     scene, radar: of the frame, without what is absent from it (`SceneNode.lifetime`); time: s, of its middle
     num_rays: for the level of each object alone
     progress: callable (stage, fraction), True for bars, or None
@@ -84,6 +87,7 @@ class Hidden:
     """Points [N] of an object that face the radar, and what comes to them around edges.
 
     ways: of the first transmitter and the first receiver; is_hidden: [N], from either
+    straight: [N], power gain of both toward the points themselves
     """
 
     name: str
@@ -91,11 +95,17 @@ class Hidden:
     points: SurfacePoints
     ways: tuple[dict, dict]
     is_hidden: np.ndarray
+    straight: np.ndarray
 
     @property
     def shares(self) -> np.ndarray:
         """[N], of the field there and back; 0 where nothing hides the point."""
         return np.where(self.is_hidden, self.ways[0]["share"] * self.ways[1]["share"], 0.0)
+
+    @property
+    def factors(self) -> np.ndarray:
+        """[N], of the power that isotropic antennas in sight would send and receive."""
+        return self.shares ** 2 * np.abs(self.ways[0]["pattern"] * self.ways[1]["pattern"]) ** 2
 
 
 def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
@@ -106,9 +116,11 @@ def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
         return []
     places = np.concatenate([one.points.at(scene, time) for one in facing])  # together: each search finds the scene's edges anew
     ways = [ways_to(scene, radar, end, places, time, progress=progress) for end in _first_antennas(radar)]
+    straight = np.prod([np.abs(_pattern_toward(radar, end, places, time)) ** 2 for end in _first_antennas(radar)], axis=0)
     stops = np.cumsum([len(one.points) for one in facing])
-    found = [_hidden(one, [{key: values[stop - len(one.points):stop] for key, values in way.items()} for way in ways])
-             for one, stop in zip(facing, stops)]
+    spans = [slice(stop - len(one.points), stop) for one, stop in zip(facing, stops)]
+    found = [_hidden(one, [{key: values[span] for key, values in way.items()} for way in ways], straight[span])
+             for one, span in zip(facing, spans)]
     return [one for one in found if one.is_hidden.any()]
 
 
@@ -127,8 +139,8 @@ def _facing(scene, radar, name, names, time) -> _Facing:
     return _Facing(name, alone, points[np.all([_is_free(way) for way in ways], axis=0)])
 
 
-def _hidden(facing: _Facing, ways) -> Hidden:
-    return Hidden(*facing, tuple(ways), ~np.all([_is_free(way) for way in ways], axis=0))
+def _hidden(facing: _Facing, ways, straight) -> Hidden:
+    return Hidden(*facing, tuple(ways), ~np.all([_is_free(way) for way in ways], axis=0), straight)
 
 
 def _first_antennas(radar) -> tuple:
@@ -136,7 +148,7 @@ def _first_antennas(radar) -> tuple:
 
 
 def _told(scene, radar, hidden: Hidden, time, num_rays, progress) -> AroundCorner:
-    factor, share = hidden.shares ** 2, float(hidden.is_hidden.mean())
+    factor, share = hidden.factors, float(hidden.is_hidden.mean())
     if not factor.any():
         return AroundCorner(hidden.name, share, "", np.zeros(3), 0.0, np.inf, 0.0, 0.0, 0.0)
     best = int(np.argmax(factor))
@@ -144,7 +156,11 @@ def _told(scene, radar, hidden: Hidden, time, num_rays, progress) -> AroundCorne
     level, mean = level_of(hidden.alone, radar, time, num_rays, progress), float(factor.mean())
     return AroundCorner(hidden.name, share, scene.meshes[int(around["mesh_id"][best])].name, around["point"][best],
                         0.5 * float(sum(way["length"][best] for way in hidden.ways)),
-                        -10.0 * float(np.log10(factor[hidden.is_hidden].mean())), *(mean * end for end in level))
+                        _decibels(hidden.straight[hidden.is_hidden].sum() / factor.sum()), *(mean * end for end in level))
+
+
+def _decibels(ratio) -> float:
+    return 10.0 * float(np.log10(ratio)) if ratio > 0.0 else -np.inf
 
 
 def _alone(scene, name, names):
@@ -162,18 +178,34 @@ def _is_free(ways) -> np.ndarray:
 
 
 def ways_to(scene, radar, antenna, points, time, *, edges=True, progress=None) -> dict:
-    """The ways from an antenna at a time in s to points [N, 3] in m (_core.legs_around_edges)."""
+    """The ways from an antenna at a time in s to points [N, 3] in m (_core.legs_around_edges).
+
+    With them "pattern" [N], complex: the root of the antenna's gain, with its phase, toward where each way begins.
+    """
     world_from_radar = radar.world_from_radar(time)
     rotation, place = world_from_radar[:3, :3], world_from_radar[:3, 3]
-    return _core.legs_around_edges(scene, time=time, frequency=radar.waveform.start_frequency,
+    ways = _core.legs_around_edges(scene, time=time, frequency=radar.waveform.start_frequency,
                                    antenna=rotation @ antenna.position + place,
                                    polarization=rotation @ polarization_of(antenna), points=points, edges=edges,
                                    progress=progress)
+    ahead = np.where((ways["mesh_id"] == NO_MESH)[:, None], points, ways["point"])
+    return ways | {"pattern": _pattern_toward(radar, antenna, ahead, time)}
+
+
+def _pattern_toward(radar, antenna, points, time) -> np.ndarray:
+    """[N], complex: the root of an antenna's gain, with its phase, toward points [N, 3] in m at a time in s."""
+    world_from_radar = radar.world_from_radar(time)
+    away = (points - world_from_radar[:3, 3]) @ world_from_radar[:3, :3] - antenna.position
+    away /= np.maximum(np.linalg.norm(away, axis=1), LEAST_LENGTH)[:, None]
+    return antenna.pattern.field(away @ matrices(antenna.orientation))
 
 
 def level_of(alone, radar, time, num_rays, progress=None) -> Interval:
-    """W that a scene and its sharp edges send straight back."""
+    """W that a scene and its sharp edges would send straight back from and to isotropic antennas."""
+    radar = radar.replace(**{ends: [one.replace(pattern=None) for one in getattr(radar, ends)]
+                             for ends in ("transmitters", "receivers")})
     begin = start_with_middle(radar, time)  # rays see the scene at the middle of a frame
-    paths = trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin, edges=True, progress=progress)
+    paths = trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin, edges=True, faint_power=0.0,
+                  progress=progress)
     power = _core.received_power(paths, progress=progress)
     return Interval(power.power, power.low, power.high)

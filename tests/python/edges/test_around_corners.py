@@ -248,3 +248,44 @@ def test_channels_differ_by_the_lengths_of_their_ways():
     turned = found * np.exp(-2j * np.pi * middle * (ways - ways[0, 0]) / 299792458.0)
     assert np.abs(found).min() > 0.0
     assert np.angle(turned) == pytest.approx(np.zeros((2, 2)), abs=0.1)
+
+
+def test_gains_are_those_toward_the_corner(radar):
+    """Of beams that look aside, the block behind the corner gets what leaves for the corner, not for the block."""
+    scene, exponent, yaw = hidden_block(), 12, 0.7
+    pattern = ep.CosinePower(exponent, peak_gain=1.0)
+    beams = radar.replace(**{ends: [one.replace(pattern=pattern, yaw=yaw) for one in getattr(radar, ends)]
+                             for ends in ("transmitters", "receivers")})
+    plain, turned = (next(one for one in ep.around_corners(scene, each, num_rays=500) if one.name == "block")
+                     for each in (radar, beams))
+    ahead = (np.array((20.0, -1.0)) / np.hypot(20.0, 1.0)) @ (np.cos(yaw), np.sin(yaw))  # level but for a hundredth
+    straight = (np.array((30.0, -2.6)) / np.hypot(30.0, 2.6)) @ (np.cos(yaw), np.sin(yaw))
+    assert turned.power / plain.power == pytest.approx(ahead ** (2 * exponent), rel=0.02)
+    gained = 20.0 * exponent * np.log10(ahead / straight)
+    assert plain.loss_db - turned.loss_db == pytest.approx(gained, abs=0.2)
+    powers = [np.sum(np.abs(ep.synthesize_around_corners(scene, each.replace(
+        waveform=radar.waveform.replace(num_samples=256)), num_rays=500)) ** 2) for each in (radar, beams)]
+    assert powers[1] / powers[0] == pytest.approx(ahead ** (2 * exponent), rel=0.02)
+
+
+@pytest.mark.parametrize("driving", ["radar", "building"])
+def test_a_corner_may_slide_by_during_the_frame(radar, driving):
+    """By 0.4 m in each half of the frame: past the top of a wall, or with the building, at 30 m/s."""
+    waveform = radar.waveform.replace(num_samples=256, num_chirps=16, chirp_interval=1.6e-3)
+    velocity = ep.LinearMotion(velocity=(30.0, 0.0, 0.0))
+    scene = ep.Scene()
+    if driving == "radar":
+        radar = radar.replace(waveform=waveform, motion=velocity)
+        wall = np.array([(-50.0, 2.0, 0.0), (80.0, 2.0, 0.0), (80.0, 2.0, 1.6), (-50.0, 2.0, 1.6)])
+        scene.add(ep.Mesh(wall, np.array([(0, 1, 2), (0, 2, 3)])), name="wall", material="metal")
+        place = (10.0, 3.5, 0.0)
+    else:
+        radar = radar.replace(waveform=waveform)
+        scene.add(block((8.0, -12.0, 0.0), (20.0, -1.0, 8.0)), name="building", material="concrete", motion=velocity)
+        place = (30.0, -2.6, 0.3)
+    scene.add(block((-0.2, -0.2, 0.0), (0.2, 0.2, 1.4)), name="block", position=place, yaw=0.4,
+              material=ep.Material(conductor=True, scattering=1.0))
+    told = next(one for one in ep.around_corners(scene, radar, time=0.5 * radar.frame_duration, num_rays=500)
+                if one.name == "block")
+    powers = [np.mean(np.abs(ep.synthesize_around_corners(scene, radar, seed=seed, num_rays=500)) ** 2) for seed in range(6)]
+    assert 10.0 * np.log10(np.mean(powers) / told.power) == pytest.approx(0.0, abs=3.0)  # six speckles: 2 dB

@@ -8,6 +8,7 @@ from ..arguments.checks import Progress, checked, count
 from ..arguments.number_rules import start_time_rule
 from ..arguments.shown import shown
 from ..paths.absent import NO_MESH
+from ..scene.lifetimes import scene_in_frame
 from ..tracing.around_corners import Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
 
@@ -25,7 +26,8 @@ def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_t
     their edges are followed over the frame; on the average over `seed` the power is that which `around_corners` tells of the
     middle of the frame, `resolved` there or not. A point that comes into sight, or whose edge changes within the frame, is left
     out.
-    scene, radar: of the frame, whose transmitters take turns, with chirps that are all alike
+    scene: without what is absent from the frame (`SceneNode.lifetime`)
+    radar: whose transmitters take turns, with chirps that are all alike
     start_time: s, within 1e9 s of zero; seed: of the phases
     num_rays, progress: as there
     Returns an array in the shape of `synthesize`, in sqrt(W), without noise. Raises ValueError for transmitters that send at
@@ -36,6 +38,7 @@ def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_t
             raise ValueError(f"radar: must have chirps that are all alike, got {steps} {shown(getattr(radar.waveform, steps))}")
     if len(radar.transmitters) > 1 and radar.multiplexing != "tdm":
         raise ValueError(f'radar: must have multiplexing "tdm", got {radar.multiplexing!r}')
+    scene = scene_in_frame(scene, radar, start_time)
     cube = np.zeros(signal_shape(radar), complex)
     middle = radar.middle_of_frame(start_time)
     for number, hidden in enumerate(hidden_objects(scene, radar, middle, progress)):

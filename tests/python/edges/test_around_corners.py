@@ -152,6 +152,17 @@ def test_a_timing_that_is_told_in_two_ways_gives_one_signal(radar):
     assert one.any() and np.abs(other - one).max() <= 1e-9 * np.abs(one).max()
 
 
+def test_what_is_absent_neither_sends_nor_hides(radar):
+    """Its motion need not be known before it comes."""
+    radar, comes = radar.replace(waveform=radar.waveform.replace(num_samples=256)), (1.0, 2.0)
+    for name in ("building", "block"):
+        scene = hidden_block()
+        scene[name].motion = ep.KeyframeMotion(comes, translations=[(0.0, 0.0, 0.0)] * 2)
+        scene[name].lifetime = comes
+        assert not ep.synthesize_around_corners(scene, radar, num_rays=500).any()
+        assert ep.synthesize_around_corners(scene, radar, start_time=1.5, num_rays=500).any()
+
+
 @pytest.mark.parametrize("steps", ["frequency_steps", "bandwidth_steps"])
 def test_steps_are_refused_in_signals_around_corners(radar, steps):
     stepped = radar.replace(waveform=radar.waveform.replace(**{steps: (0.0, 1e6)}))

@@ -77,8 +77,8 @@ std::string text_of(const VirtualArray& array) {
   if (array.grid) {
     const ArrayGrid& grid = *array.grid;
     text << " on a grid of " << grid.num_rows << " x " << grid.num_columns;
-    if (grid.num_rows > 1) text << ", " << grid.row_spacing / array.wavelength << " wavelengths up";
-    if (grid.num_columns > 1) text << ", " << grid.column_spacing / array.wavelength << " wavelengths across";
+    if (grid.num_rows > 1) text << ", steps of " << grid.row_spacing / array.wavelength << " wavelengths up";
+    if (grid.num_columns > 1) text << ", steps of " << grid.column_spacing / array.wavelength << " wavelengths across";
     text << ", " << counted(array.gaps().size(), "gap");
   } else {
     text << " on no grid";

@@ -268,7 +268,7 @@ def _describe_array(array) -> list[str]:
         return [report.line("virtual array", f"{num_elements} elements, no grid")]
     (rows, columns), (up, across) = array.grid_shape, np.array(array.grid_spacing) / array.wavelength
     steps = [f"{step:.3g} wavelengths {way}" for step, way in ((across, "across"), (up, "up")) if step > 0.0]
-    grid = f"{num_elements} elements, {columns} across x {rows} up, {' and '.join(steps)}"
+    grid = f"{num_elements} elements, {columns} across x {rows} up, in steps of {' and '.join(steps)}"
     return [report.line("virtual array", grid),
             report.line("overlaps, gaps", f"{array.num_overlaps}, {len(array.gaps)}")]
 

@@ -16,7 +16,7 @@ from ..paths.visibility import HIDDEN_SHARE
 from .dataset import dataset_of
 from .left_out import LeftOut
 from .part_cells import PartCells
-from .report import text_of
+from .report import ghost_words, object_words, text_of
 from .table import table_of
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def is_occluded(seen) -> bool:
 
 
 @made_by("ep.annotate")
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class ObjectLabel:
     """What a map shows of one object of the scene, by echoes that take no mirror.
 
@@ -117,9 +117,12 @@ class ObjectLabel:
         """
         return is_occluded(self)
 
+    def __repr__(self) -> str:
+        return f"ObjectLabel({object_words(self)})"
+
 
 @made_by("ep.annotate")
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class GhostLabel:
     """What a map shows of one ghost: an object's echoes over the same mirrors, of the same type and order.
 
@@ -143,6 +146,9 @@ class GhostLabel:
     peak: Peak | AzimuthPeak | None
     box: Box | AzimuthBox | None
     received: Interval | None
+
+    def __repr__(self) -> str:
+        return f"GhostLabel({ghost_words(self)})"
 
 
 @made_by("ep.annotate")

@@ -10,8 +10,8 @@ from ..paths.visibility import occluder_words
 
 def text_of(labels) -> str:
     """A table of the parts, objects and ghosts of Labels, with the cells that each has and its peak."""
-    rows = [_header(labels), *_parts(labels), *map(_object, labels.objects),
-            *(_ghost(ghost) for ghost in _with_cells(labels))]
+    rows = [_header(labels), *_parts(labels), *(f"object {object_words(label)}" for label in labels.objects),
+            *(f"ghost  {ghost_words(ghost)}" for ghost in _with_cells(labels))]
     hidden = len(labels.ghosts) - len(_with_cells(labels))
     rows += [f"{hidden:,} more {named(hidden, 'ghost')} {'have' if hidden > 1 else 'has'} no cells"] if hidden else []
     rows += _left_out(labels.left_out)
@@ -47,8 +47,9 @@ def cell_words(count) -> str:
     return counted(count, "cell")
 
 
-def _object(label) -> str:
-    return f"object {label.name}: {label.status}{_occluders(label)}{_cells(label)}{_resolution(label)}"
+def object_words(label) -> str:
+    """What a map shows of one object, in a line."""
+    return f"{label.name}: {label.status}{_occluders(label)}{_cells(label)}{_resolution(label)}"
 
 
 def _occluders(label) -> str:
@@ -60,9 +61,10 @@ def _with_cells(labels) -> list:
     return [ghost for ghost in labels.ghosts if ghost.cells]
 
 
-def _ghost(label) -> str:
+def ghost_words(label) -> str:
+    """What a map shows of one ghost, in a line."""
     way = f"type {label.ghost_type}, order {label.order}, via {', '.join(label.via)}"
-    return f"ghost  {label.object}: {way}{_cells(label)}{_resolution(label)}"
+    return f"{label.object}: {way}{_cells(label)}{_resolution(label)}"
 
 
 def _resolution(label) -> str:

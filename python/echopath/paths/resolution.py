@@ -57,7 +57,7 @@ class Interval(NamedTuple):
 
 
 @made_by("ep.unresolved")
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Unresolved:
     """An echo whose power the rays do not know to 0.3 dB.
 
@@ -80,6 +80,9 @@ class Unresolved:
 
     def __str__(self) -> str:
         return f"{self.title}: {self.interval}; {self.advice}"
+
+    def __repr__(self) -> str:
+        return f"Unresolved({self})"
 
 
 def interval_of(power) -> Interval:

@@ -74,11 +74,12 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
             axes.tick_params(labelbottom=True)  # the lowest of its column, perhaps above an empty place
         for axes in panels[len(maps):]:
             axes.remove()
-        if len(maps) == 1:  # labels of axes have room of their own above the legend of a narrow sector
+        if len(maps) == 1:  # labels of axes stand right beside these, and above the legend of a narrow sector
             panels[0].set_xlabel(LEFT_LABEL, fontsize=9)
+            panels[0].set_ylabel(AHEAD_LABEL, fontsize=9)
         else:
             figure.supxlabel(LEFT_LABEL, fontsize=9)
-        figure.supylabel(AHEAD_LABEL, fontsize=9)
+            figure.supylabel(AHEAD_LABEL, fontsize=9)
         set_title(figure, title, 11)
         colour_bar(figure, image, panels[:len(maps)])
         if ring:

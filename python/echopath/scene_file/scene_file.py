@@ -35,7 +35,7 @@ class SimulateKeywords(TypedDict):
 
 
 @made_by("ep.load_scene")
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class SceneFile:
     """What a scene file says.
 
@@ -59,6 +59,11 @@ class SceneFile:
     guard: bool = True
     sequence: SequenceTable | None = None
     truth: TruthTable | None = None
+
+    def __repr__(self) -> str:
+        asked = ("labels", "detections", "truth", "sequence")
+        return ", ".join([f"SceneFile({self.path.name!r}", repr(self.scene), *(["no radar"] if self.radar is None else []),
+                          *(["parts"] if self.parts else []), *(one for one in asked if getattr(self, one) is not None)]) + ")"
 
     def angle_settings(self) -> dict[str, object]:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""

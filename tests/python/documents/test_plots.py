@@ -230,6 +230,12 @@ def test_left_is_left_and_ahead_is_up_from_above(from_above):
     assert axes.get_ylim()[0] < ahead < axes.get_ylim()[1] < 9.0
 
 
+def test_labels_of_a_map_from_above_stand_beside_its_axes(from_above):
+    """Not at the edge of the figure, which a sector of another shape does not fill."""
+    axes = plot_range_azimuth(from_above).axes[0]
+    assert axes.get_xlabel().startswith("To the left in m") and axes.get_ylabel() == "Ahead in m"
+
+
 def test_all_maps_from_above_share_one_scale_and_the_farthest_reach(from_above):
     power = 1e-3 * from_above.power
     power[10, 100] = 1e-12  # 15 m

@@ -159,7 +159,7 @@ def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "range_azimuth.png").exists()
     info = call("info", scene_path).stdout
-    assert "2 elements, 2 across x 1 up, 0.517 wavelengths across" in info and "overlaps, gaps" in info
+    assert "2 elements, 2 across x 1 up, in steps of 0.517 wavelengths across" in info and "overlaps, gaps" in info
 
 
 @pytest.mark.parametrize("seed", [2**53 + 1, 2**64 - 1])

@@ -35,6 +35,34 @@ def test_arrays_are_counted_and_not_listed(paths):
     assert repr(sheet) == "SheetCoefficients(3 angles from 0 to 60 degrees)"
 
 
+def test_labels_are_a_line_each_in_lists(paths):
+    """`labels.objects` at a prompt: what `print(labels)` says of each."""
+    _, record = paths
+    labels = ep.annotate(record, {"plate": "T 'plate' R"}, noise=False)
+    shown = repr(labels.objects[0])
+    assert shown.startswith("ObjectLabel(plate: seen, ") and " peak 4.95 m" in shown and " dBm" in shown and len(shown) <= LONGEST
+    ghost = ep.GhostLabel(object="plate", ghost_type=2, order=3, via=("wall",), class_code=124, cells=0, power=1e-12, peak=None,
+                          box=None, received=None)
+    assert repr([ghost]) == "[GhostLabel(plate: type 2, order 3, via wall)]"
+
+
+def test_doubtful_echoes_are_a_line_each_in_lists():
+    interval = ep.Interval(1e-12, 1e-13, 1e-11)
+    echo = ep.Unresolved(name="plate", via=("wall",), ghost_type=2, order=3, interval=interval, advice="more rays")
+    assert repr([echo]) == "[Unresolved(plate via wall, type 2/3: -90.0 dBm, -100.0 to -80.0 dBm; more rays)]"
+
+
+def test_scene_files_show_what_is_in_them(tmp_path):
+    wave = ("num_samples = 64\nsampling_rate = 1e7\nnum_chirps = 4\nchirp_interval = 1e-4\nstart_frequency = 77e9\n"
+            "bandwidth = 1e9\n")
+    antennas = "[[radar.transmitters]]\nposition = [0, 0, 0]\n[[radar.receivers]]\nposition = [0, 0, 0]\n"
+    (tmp_path / "ball.toml").write_text(f"[radar.waveform]\n{wave}{antennas}[trace]\nnum_rays = 10\n[labels]\n[parts]\n"
+                                        "ball = \"T 'ball' R\"\n[[objects]]\nname = \"ball\"\nactor = \"sphere\"\n"
+                                        "parameters = {radius = 0.1}\nmaterial = \"metal\"\n")
+    loaded = ep.load_scene(tmp_path / "ball.toml")
+    assert repr(loaded) == f"SceneFile('ball.toml', {loaded.scene!r}, parts, labels)"
+
+
 def test_receivers_show_what_is_not_ideal():
     assert repr(ep.Receiver()) == "Receiver()"
     faulty = ep.Receiver(iq_gain_db=0.2, phase_noise={"offsets": [1e4], "levels": [-70.0]})

@@ -1,6 +1,7 @@
 """Labels of maps: cells by part, object and ghost."""
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -178,33 +179,50 @@ def _grey_limits(labels, shown) -> dict:
 
 
 def _name_objects(axes, labels) -> None:
-    """A ring at the peak of each object with its name below or above it, further where another name stands in the way."""
-    seen = sorted((label for label in labels.objects if label.peak is not None), key=lambda label: label.peak[0])
-    width = axes.get_window_extent().width * 72.0 / axes.figure.dpi  # points
-    taken = []  # (left, right, top) of the names so far, points
-    left, right = axes.get_xlim()
-    for label in seen:
-        share = (label.peak[0] - left) / (right - left)
-        is_far = share > 0.7  # its name then stands on the near side, within the map
-        length = NAME_LETTER * len(label.name)
-        begin = share * width + (-NAME_ASIDE - length if is_far else NAME_ASIDE)
-        row = _in_plot_units(labels, label.peak[1])
-        bottom, top = axes.get_ylim()
-        level = (row - bottom) / (top - bottom) * axes.get_window_extent().height * 72.0 / axes.figure.dpi
-        down = 1.0 if level > NAME_DEPTH + NAME_LINE else -1.0  # near the lower edge names stand above
-        depth = down * NAME_DEPTH
-        while any(begin < end and start < begin + length and abs(height - (level - depth)) < NAME_LINE
-                  for start, end, height in taken):
-            depth += down * NAME_LINE
+    """A ring at the peak of each object, and its name aside of it where no other name stands."""
+    extent, per_dot = axes.get_window_extent(), 72.0 / axes.figure.dpi
+    width, height = extent.width * per_dot, extent.height * per_dot  # points
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    places = [(label.name, label.peak[0], _in_plot_units(labels, label.peak[1])) for label in labels.objects
+              if label.peak is not None]
+    places = [(name, distance, row, (distance - left) / (right - left) * width, (row - bottom) / (top - bottom) * height)
+              for name, distance, row in places]
+    taken = []  # (left, right, height) of the names so far, points
+    for name, distance, row, across, level in sorted(places, key=lambda place: _outward(place[3], width)):
+        length = NAME_LETTER * len(name)
+        for side, depth in _asides(across, level, length, width):
+            begin = across + (NAME_ASIDE if side > 0.0 else -NAME_ASIDE - length)
+            if all(end <= begin or begin + length <= start or abs(other - (level - depth)) >= NAME_LINE
+                   for start, end, other in taken):
+                break
         taken.append((begin, begin + length, level - depth))
-        _name_object(axes, label.name, label.peak[0], row, is_far, depth)
+        _name_object(axes, name, distance, row, side, depth)
 
 
-def _name_object(axes, name: str, distance: float, row: float, is_far: bool, depth: float) -> None:
+def _is_far(across: float, width: float) -> bool:
+    """Whether a name stands on the near side of its peak, to be within the map."""
+    return across > 0.7 * width
+
+
+def _outward(across: float, width: float) -> tuple[bool, float]:
+    """The order of names: of neighbours, the one toward whose side names go comes first, so that no line crosses a name."""
+    is_far = _is_far(across, width)
+    return is_far, across if is_far else -across
+
+
+def _asides(across: float, level: float, length: float, width: float):
+    """(side, depth in points below the peak) that a name may take, the best first: on the other side before a line farther."""
+    down = 1.0 if level > NAME_DEPTH + NAME_LINE else -1.0  # near the lower edge names stand above
+    best = -1.0 if _is_far(across, width) else 1.0
+    sides = [side for side in (best, -best) if side == best or 0.0 <= across + side * (NAME_ASIDE + length) <= width]
+    return ((side, down * (NAME_DEPTH + line * NAME_LINE)) for line in itertools.count() for side in sides)
+
+
+def _name_object(axes, name: str, distance: float, row: float, side: float, depth: float) -> None:
     axes.plot(distance, row, **PEAK_LOOK)
-    axes.annotate(name, (distance, row), xytext=(-NAME_ASIDE if is_far else NAME_ASIDE, -depth), textcoords="offset points",
+    axes.annotate(name, (distance, row), xytext=(side * NAME_ASIDE, -depth), textcoords="offset points",
                   color="white",
-                  fontsize=8, horizontalalignment="right" if is_far else "left",
+                  fontsize=8, horizontalalignment="left" if side > 0.0 else "right",
                   arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.7},
                   bbox={"boxstyle": "round,pad=0.15", "facecolor": "black", "alpha": 0.6, "edgecolor": "none"})
 

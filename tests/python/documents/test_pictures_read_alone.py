@@ -160,3 +160,25 @@ def test_names_of_objects_stand_within_the_map(velocity):
         frame, boxes = axes.get_window_extent(), [Text.get_window_extent(text) for text in axes.texts]  # without the lines
         assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in boxes)
         assert not boxes[0].overlaps(boxes[1])
+
+
+@pytest.mark.parametrize("ranges", [(9.6, 10.0), (19.0, 19.4), (0.2, 0.6)])
+def test_lines_to_names_of_neighbours_cross_no_name(ranges):
+    """Whichever of two neighbours comes first in the scene."""
+    from echopath.plots.labels import _name_objects
+    from echopath.plots.style import new_figure
+
+    for names in (("sphere", "dihedral"), ("dihedral", "sphere")):
+        with new_figure(6.0, 3.0) as figure:
+            axes = figure.subplots()
+            axes.set(xlim=(0.0, 20.0), ylim=(-4.0, 4.0))
+            where = dict(zip(("sphere", "dihedral"), ranges))
+            objects = [SimpleNamespace(name=name, peak=(where[name], 0.0)) for name in names]
+            _name_objects(axes, SimpleNamespace(objects=objects, azimuth=None))
+            figure.canvas.draw()
+            for text, other in (axes.texts, axes.texts[::-1]):
+                box = Text.get_window_extent(other)
+                ring, name = axes.transData.transform(text.xy), Text.get_window_extent(text)
+                end = (name.x0 if name.x0 > ring[0] else name.x1, 0.5 * (name.y0 + name.y1))
+                line = np.linspace(ring, end, 200)
+                assert not any(box.contains(*point) for point in line), (names, text.get_text())

@@ -71,6 +71,15 @@ class KeptSignal:
 
     def update(self, scene: _core.Scene, radar: _core.Radar, progress=None) -> Update:
         """Brings record and cube to this scene and radar. progress: callable (stage, fraction), True for bars, or None"""
+        try:
+            return self._updated(scene, radar, progress)
+        except Exception:
+            raise
+        except BaseException:  # Ctrl-C, which may come between any two steps: what the cube lacks may not have been noted
+            self._cube = None
+            raise
+
+    def _updated(self, scene, radar, progress) -> Update:
         begin, self._made = time.perf_counter(), None
         if self._selections is not None:
             check_partitions({ONLY_PARTITION: self._selections}, scene)

@@ -9,6 +9,7 @@ import echopath as ep
 from echopath.bench.live.edits import crowded_street
 from echopath.bench.live.random_edits import KINDS, RandomEdits
 from echopath.live import kept_signal
+from echopath.live.kept_signal import KeptSignal
 from echopath.transmit.signals import synthesize_slots
 from support.live import RAYS, difference, fresh_view, make_live
 
@@ -269,6 +270,25 @@ def test_an_ended_update_is_made_up_for(live, stage):
     live.scene["sign_30"].position += (0.1, 0.0, 0.0)
     with pytest.raises(Stop):
         live.update(progress=end)
+    live.scene["pole_20"].position += (0.1, 0.0, 0.0)
+    assert difference(live.update(), fresh_view(live)) < ROUNDING
+
+
+@pytest.mark.parametrize("step", ["_note", "_set_cubes"])
+def test_an_update_that_ctrl_c_ends_between_two_steps_is_made_up_for(live, monkeypatch, step):
+    """Ctrl-C is heard where a call returns: once the record is new and the cube does not know it, or has it already."""
+    make = getattr(KeptSignal, step)
+
+    def end(kept, *args):
+        if step == "_set_cubes":
+            make(kept, *args)
+        raise KeyboardInterrupt
+
+    live.scene["sign_30"].position += (0.1, 0.0, 0.0)
+    with monkeypatch.context() as heard:
+        heard.setattr(KeptSignal, step, end)
+        with pytest.raises(KeyboardInterrupt):
+            live.update()
     live.scene["pole_20"].position += (0.1, 0.0, 0.0)
     assert difference(live.update(), fresh_view(live)) < ROUNDING
 

@@ -1,7 +1,7 @@
 """Closed bodies of few triangles: turned profiles, tubes and bodies of six sides. Plain arrays, as in surfaces.py."""
 import numpy as np
 
-from .surfaces import joined, signed_volume
+from .surfaces import cross, joined, signed_volume
 
 
 def revolved(profile, segments, *, arc=1.0):
@@ -36,9 +36,9 @@ def axes_along(direction):
     """A rotation [3, 3] that takes +y to a direction [3]."""
     y = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
     helper = np.array([0.0, 0.0, 1.0]) if abs(y[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
-    x = np.cross(y, helper)
+    x = cross(y, helper)
     x /= np.linalg.norm(x)
-    return np.stack([x, y, np.cross(x, y)], axis=-1)
+    return np.stack([x, y, cross(x, y)], axis=-1)
 
 
 def hexahedron(corners):

@@ -5,6 +5,7 @@ Frame: x forward, y left, z up from the road; the bottom bracket is above the or
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -74,10 +75,7 @@ def bicycle(*, speed: float = 0.0, saddle_height: float = 0.95, drives: bool = T
 def bicycle_parts(ride, saddle_height, driving, *, pedals=True):
     """Parts of a bicycle on a Ride that drives (driving.Driving); pedals: whether they, at rest relative to the frame, are
     among them."""
-    still = [Part("frame", _mesh(*_frame(saddle_height)), "metal", smooth=True),
-             Part("fork", _mesh(*_fork()), "metal", smooth=True),
-             Part("handlebar", _mesh(*_handlebar()), "metal", smooth=True),
-             replace(_saddle(saddle_height), smooth=True)]
+    still = list(_at_rest(float(saddle_height)))
     if pedals:
         still += [Part(f"pedal_{side}", _mesh(block(*pedal_corners())), "plastic", None, tuple(ride.pedal([0.0], sign)[0]))
                   for side, sign in (("left", 1.0), ("right", -1.0))]
@@ -88,6 +86,15 @@ def bicycle_parts(ride, saddle_height, driving, *, pedals=True):
     return parts
 
 
+@lru_cache(maxsize=32)
+def _at_rest(saddle_height):
+    """Frame, fork, handlebar and saddle, which bicycles of one size share: a tuple of parts."""
+    return (Part("frame", _mesh(*_frame(saddle_height)), "metal", smooth=True),
+            Part("fork", _mesh(*_fork()), "metal", smooth=True),
+            Part("handlebar", _mesh(*_handlebar()), "metal", smooth=True),
+            replace(_saddle(saddle_height), smooth=True))
+
+
 def pedal_corners():
     """Lower and upper corner of a pedal about its middle."""
     half = 0.5 * np.array(PEDAL)
@@ -95,11 +102,14 @@ def pedal_corners():
 
 
 def seat_point(distance):
-    """[3] at a distance in m from the bottom bracket up the seat tube."""
-    return np.array([-np.cos(SEAT_ANGLE) * distance, 0.0, BRACKET_HEIGHT + np.sin(SEAT_ANGLE) * distance])
+    """[..., 3] at distances [...] in m from the bottom bracket up the seat tube."""
+    distance = np.asarray(distance)
+    return np.stack([-np.cos(SEAT_ANGLE) * distance, 0.0 * distance, BRACKET_HEIGHT + np.sin(SEAT_ANGLE) * distance], axis=-1)
 
 
+@lru_cache(maxsize=1)
 def _wheel():
+    """Tyre, rim and spokes about the axle, which all wheels share."""
     tyre = ring(WHEEL_RADIUS - TYRE_RADIUS, TYRE_RADIUS, 40, 6)
     rim = ring(RIM_RADIUS, RIM_HALF_HEIGHT, 40, 6, width=RIM_HALF_WIDTH)
     hub = tube((0, -HUB_HALF_WIDTH, 0), (0, HUB_HALF_WIDTH, 0), HUB_RADIUS, segments=10)
@@ -109,8 +119,8 @@ def _wheel():
         direction = np.array([np.cos(angle), 0.0, np.sin(angle)])
         foot = HUB_RADIUS * direction + np.array([0.0, HUB_HALF_WIDTH * (0.9 if n % 2 else -0.9), 0.0])
         spokes.append(tube(foot, (RIM_RADIUS - RIM_HALF_HEIGHT) * direction, SPOKE_RADIUS, segments=4))
-    return [Part("tyre", _mesh(tyre), "rubber", smooth=True), Part("rim", _mesh(rim), "metal", smooth=True),
-            Part("spokes", _mesh(hub, *spokes), "metal", smooth=True)]
+    return (Part("tyre", _mesh(tyre), "rubber", smooth=True), Part("rim", _mesh(rim), "metal", smooth=True),
+            Part("spokes", _mesh(hub, *spokes), "metal", smooth=True))
 
 
 def _frame(saddle_height):

@@ -105,7 +105,7 @@ def saddle_hip(body):
     ankle, _ = pedalling_ankle(body, ride, np.linspace(0.0, 2.0 * np.pi, 181), 1.0)
     reach = STRAIGHTEST * (body.thigh + body.shank)
     distances = np.linspace(0.4, 1.1, 701)
-    hips = np.array([seat_point(distance) for distance in distances]) + [0.0, body.hip_offset, 0.0]
+    hips = seat_point(distances) + [0.0, body.hip_offset, 0.0]
     farthest = np.max(np.linalg.norm(hips[:, None] - ankle[None], axis=-1), axis=1)
     return seat_point(float(np.interp(reach, farthest, distances)))
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -50,12 +51,18 @@ def motorcycle(*, speed: float = 0.0, rider: bool = True, height: float = 1.78, 
     the wheels roll its way.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    still = _body() + _tubes() + (_rider(Proportions(height)) if rider else [])
+    still = [*_at_rest(), *(_rider(Proportions(height)) if rider else [])]
     driving = Driving(speed, drives, trajectory)
     parts = driving.carried(still)
     for end, x, wheel in (("front", FRONT_AXLE, FRONT_WHEEL), ("rear", REAR_AXLE, REAR_WHEEL)):
         parts += wheel_parts(wheel, f"wheel/{end}", (x, 0.0, wheel.radius), driving)
     return Actor(parts, trajectory)
+
+
+@lru_cache(maxsize=1)
+def _at_rest():
+    """All but wheels and rider, which motorcycles share: a tuple of parts."""
+    return (*_body(), *_tubes())
 
 
 def _body():

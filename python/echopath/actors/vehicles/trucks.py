@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -56,14 +57,16 @@ def truck(*, speed: float = 0.0, drives: bool = True, trajectory: Trajectory | N
         towing = Towing(trajectory, Coupling(DRIVE_AXLE, HITCH, float(np.mean(TRAILER_AXLES))))
         towing.warn_of_folding()
         tractor, trailer = towing.tractor, towing.trailer
-    ahead, behind = _sorted(_cab() + _fittings() + _trailer() + _frames())
-    return Actor(tractor.carried(ahead) + trailer.carried(behind) + _wheels(tractor, trailer), trajectory)
+    ahead, behind = _at_rest()
+    return Actor(tractor.carried(list(ahead)) + trailer.carried(list(behind)) + _wheels(tractor, trailer), trajectory)
 
 
-def _sorted(parts):
-    """(parts of the tractor, parts of the trailer)."""
-    behind = [part for part in parts if part.name.startswith(("trailer/", "plate/"))]
-    return [part for part in parts if part not in behind], behind
+@lru_cache(maxsize=1)
+def _at_rest():
+    """(parts of the tractor, parts of the trailer), all but the wheels, which trucks share."""
+    parts = _cab() + _fittings() + _trailer() + _frames()
+    is_behind = [part.name.startswith(("trailer/", "plate/")) for part in parts]
+    return tuple(tuple(part for part, behind in zip(parts, is_behind) if behind == asked) for asked in (False, True))
 
 
 def _cab():

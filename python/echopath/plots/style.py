@@ -161,7 +161,10 @@ def _settled(figure: Figure):
         return
     figure.dpi = DPI
     try:
+        figure.set_layout_engine("none")
         figure.draw_without_rendering()  # what has never been drawn does not know all of its sides
+        figure.set_layout_engine(engine)
+        engine.execute(figure)
         before = _places(figure)
         for _ in range(_MOST_LAYOUTS - 1):
             engine.execute(figure)

@@ -1,13 +1,12 @@
 """The page about a dataset."""
 import base64
 import shutil
-import subprocess
-import sys
 from html.parser import HTMLParser
 
 import numpy as np
 
 from echopath import dataset
+from echopath.cli import main
 
 
 class _Page(HTMLParser):
@@ -66,8 +65,8 @@ def test_the_report_counts_what_is_there(small_dataset, tmp_path):
     assert text.count("Validity: ") == 4  # of each frame that is shown
 
 
-def test_the_command_writes_the_report_beside_the_frames(small_dataset, tmp_path):
+def test_the_command_writes_the_report_beside_the_frames(small_dataset, tmp_path, capsys):
     copied = tmp_path / "copy"
     shutil.copytree(small_dataset[1], copied)
-    done = subprocess.run([sys.executable, "-m", "echopath", "dataset-report", copied], capture_output=True, text=True)
-    assert done.returncode == 0 and "wrote" in done.stdout and (copied / "report.html").stat().st_size > 10_000
+    assert main(["dataset-report", str(copied)]) == 0
+    assert "wrote" in capsys.readouterr().out and (copied / "report.html").stat().st_size > 10_000

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,7 +24,9 @@ WALL = 3.0           # m, distance of the side walls from the middle
 def demo(tmp_path_factory):
     out = tmp_path_factory.mktemp("demo")
     lines = []
-    frame = run_demo(out, num_rays=NUM_RAYS, say=lines.append)
+    with pytest.MonkeyPatch.context() as patch:  # pictures are made but not drawn
+        patch.setattr(ep.plots, "save_png", lambda figure, path, **_: Path(path).write_bytes(b""))
+        frame = run_demo(out, num_rays=NUM_RAYS, say=lines.append)
     return out, frame, lines
 
 

@@ -13,6 +13,7 @@ FEWEST_WRONG = 7000
 OTHERS = {("add", "mesh_or_actor"): "material: must be given with a mesh", ("pedestrian", "height"): "speed: must be",
           ("runner", "height"): "speed: must be", ("of_object", "name"): "name: must be"}
 FREE = {("plot", "title"), ("plot", "ax"), ("plot_labels", "title"), ("plot_detections", "title")}  # Matplotlib's own
+COARSE = 0.05  # m, of the triangles of bodies
 BY_NAME = {"height": 1.7, "width": 1.0, "length": 2.0, "size": 1.0, "radius": 1.0, "semi_axes": 1.0}
 
 
@@ -54,8 +55,9 @@ def _actors() -> dict:
     for name in ep.actors.__all__:
         make = getattr(ep.actors, name)
         if not inspect.isclass(make) and name != "captured_pedestrian":
-            needed = [one.name for one in inspect.signature(make).parameters.values() if one.default is one.empty]
-            made[name] = (make, {argument: BY_NAME[argument] for argument in needed})
+            taken = inspect.signature(make).parameters.values()
+            right = {one.name: BY_NAME[one.name] for one in taken if one.default is one.empty}
+            made[name] = (make, right | ({"edge": COARSE} if any(one.name == "edge" and one.default for one in taken) else {}))
     return made
 
 

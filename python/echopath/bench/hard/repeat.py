@@ -38,7 +38,7 @@ def outcome(num_rays: int = 8000):
     cube = ep.synthesize(paths, radar)
     parts = ep.decompose(paths, radar, {"ball": "T .* 'ball' .* R"})
     shown = ep.range_doppler(ep.add_noise(cube, radar, seed=3), radar)
-    report = ep.validity(paths, radar, times=[0.4 * paths.frame.trace_time, 1.6 * paths.frame.trace_time])
+    report = ep.validity(paths, radar, times=[1.6 * paths.frame.trace_time])
     power = ep.received_power(paths)
     angles = ep.range_azimuth(shown, radar)
     return paths, [cube.tobytes(), *(part.tobytes() for part in parts.values()), shown.values.tobytes(),

@@ -7,7 +7,7 @@ An antenna launches and receives along the unit part of its polarisation that li
 import numpy as np
 
 from .reference import Reference, taper
-from .reference_cells import unit
+from .reference_cells import cross, lengths_of, unit
 
 
 class PolarizedReference(Reference):
@@ -79,18 +79,18 @@ class PolarizedReference(Reference):
             at = meshes == mesh
             te[at], tm[at] = (mode * self.shares(mesh, cosine[at])[0] for mode in self.modes(mesh, cosine[at]))
         reflected, behind = reflect(incident, direction, normals, (te, tm))
-        electric = np.cross(normals, incident + reflected)
-        magnetic = np.cross(normals, np.cross(direction, incident) + np.cross(behind, reflected))
-        return -0.5 * np.cross(out, electric - np.cross(out, magnetic))
+        electric = cross(normals, incident + reflected)
+        magnetic = cross(normals, cross(direction, incident) + cross(behind, reflected))
+        return -0.5 * cross(out, electric - cross(out, magnetic))
 
 
 def reflect(field, direction, normals, modes):
     """Reflected field and direction [M, 3] at planes of normals [M, 3]; modes: (TE, TM) [M]."""
-    across = np.cross(direction, normals)
-    sine = np.linalg.norm(across, axis=1)
-    anywhere = np.cross(direction, [0.3, 0.5, 0.8])  # at normal incidence any plane will do
+    across = cross(direction, normals)
+    sine = lengths_of(across)
+    anywhere = cross(direction, [0.3, 0.5, 0.8])  # at normal incidence any plane will do
     te = unit(np.where((sine > 1e-9)[:, None], across, anywhere))
     behind = direction - 2 * np.einsum("ij,ij->i", direction, normals)[:, None] * normals
     along_te = modes[0] * np.einsum("ij,ij->i", te, field)
-    along_tm = modes[1] * np.einsum("ij,ij->i", np.cross(te, direction), field)
-    return along_te[:, None] * te + along_tm[:, None] * np.cross(te, behind), behind
+    along_tm = modes[1] * np.einsum("ij,ij->i", cross(te, direction), field)
+    return along_te[:, None] * te + along_tm[:, None] * cross(te, behind), behind

@@ -17,7 +17,7 @@ One rough point has one random phase for all its pairs of legs: mean powers are 
 """
 import numpy as np
 
-from .reference_cells import Cells
+from .reference_cells import Cells, lengths_of
 from .reference_legs import LEG_MIRRORS, C, ReferenceLegs
 
 
@@ -138,7 +138,7 @@ class Reference(ReferenceLegs):
     def _length(self, cells, antenna, meshes, time):
         for mesh in meshes:
             antenna = self.plane(mesh, time).image(antenna)
-        return np.linalg.norm(antenna - cells.points, axis=1)
+        return lengths_of(antenna - cells.points)
 
     def _sample(self, length, field, t):
         waveform, tau = self.radar.waveform, length / C

@@ -30,8 +30,8 @@ def cells_of(corners, normals, pieces, mesh, triangle):
         points, (along_u, along_v) = facets, np.broadcast_to(edges[:, None], (2, len(facets), 3))
     else:
         points, (along_u, along_v) = _lifted(facets, edges, corners, normals, weights)
-    across = np.cross(along_u, along_v)
-    areas = 0.5 * np.linalg.norm(across, axis=1) / len(weights)
+    across = cross(along_u, along_v)
+    areas = 0.5 * lengths_of(across) / len(weights)
     return Cells(points, unit(across if normals is None else weights @ normals), areas, np.full(len(points), mesh),
                  np.full(len(points), triangle), facets, np.full(len(points), normals is not None))
 
@@ -67,29 +67,41 @@ def _grid(pieces):
 
 def unit(vectors):
     """Vectors [..., 3] of length 1; zero stays zero."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    length = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))[..., None]
     return vectors / np.where(length > 0, length, 1.0)
+
+
+def lengths_of(vectors):
+    """Lengths of vectors [M, 3]; np.linalg.norm takes several times as long."""
+    return np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
+
+
+def cross(a, b):
+    """Cross products of vectors [..., 3]; np.cross takes several times as long."""
+    a, b = np.asarray(a), np.asarray(b)
+    return np.stack([a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1], a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2],
+                     a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]], axis=-1)
 
 
 def inside(points, triangle, margin=1e-12):
     """Whether points [M, 3] of a triangle's plane lie in it."""
     a, b, c = triangle
-    normal = np.cross(b - a, c - a)
+    normal = cross(b - a, c - a)
     scale = normal @ normal
-    u = np.cross(points - a, c - a) @ normal / scale
-    v = np.cross(b - a, points - a) @ normal / scale
+    u = cross(points - a, c - a) @ normal / scale
+    v = cross(b - a, points - a) @ normal / scale
     return (u >= -margin) & (v >= -margin) & (u + v <= 1 + margin)
 
 
 def blocked(starts, ends, corners, own, leave_out=()):
     """Whether a triangle [F, 3, 3] meets the open segments between points [M, 3]; own: triangle [M] that does not count."""
     line = ends - starts
-    length = np.linalg.norm(line, axis=1)
+    length = lengths_of(line)
     found = np.zeros(len(starts), bool)
     for index, (a, b, c) in enumerate(corners):
         if index in leave_out:
             continue
-        normal = np.cross(b - a, c - a)
+        normal = cross(b - a, c - a)
         slope = line @ normal
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.where(slope != 0, ((a - starts) @ normal) / slope, -1.0)

@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 
-from .reference_cells import blocked, cells_of, inside, joined, unit
+from .reference_cells import blocked, cells_of, cross, inside, joined, lengths_of, unit
 from .slow_lengths import surface
 
 C = 299792458.0
@@ -72,7 +72,7 @@ class ReferenceLegs:
         rate = np.linalg.norm(motion.angular_velocity)
         axis = motion.angular_velocity / rate if rate > 0 else np.array([0.0, 0.0, 1.0])
         cos, sin = np.cos(rate * time), np.sin(rate * time)  # Rodrigues
-        return cos * point + sin * np.cross(axis, point) + (1 - cos) * (axis @ point) * axis + motion.velocity * time
+        return cos * point + sin * cross(axis, point) + (1 - cos) * (axis @ point) * axis + motion.velocity * time
 
     def triangles(self, time):
         """[F, 3, 3] of all meshes, the mesh of each [F], and of each the normals [3, 3] of its vertices, None where flat."""
@@ -106,7 +106,7 @@ class ReferenceLegs:
         corners, owner, _ = self.triangles(time)
         mine = np.flatnonzero(owner == mesh)
         a, b, c = corners[mine[0]]
-        return Plane(mesh, a, unit(np.cross(b - a, c - a)), mine)
+        return Plane(mesh, a, unit(cross(b - a, c - a)), mine)
 
     def legs(self, cells, antenna, time, *, to_receiver):
         """All legs between an antenna and the cells: direct, over flagged planes, and, on the transmitter's side, over walls
@@ -122,7 +122,7 @@ class ReferenceLegs:
         for plane in planes:
             images.append(plane.image(images[-1]))
         toward = unit(images[-1] - cells.points)
-        length = np.linalg.norm(images[-1] - cells.points, axis=1)
+        length = lengths_of(images[-1] - cells.points)
         ok = cells.mesh != (meshes[-1] if meshes else -2)
         here, start, own = cells.points, cells.facets, cells.triangle
         gain, is_tm, behind = np.ones(len(length), complex), np.zeros(len(length), bool), ()
@@ -161,8 +161,8 @@ class ReferenceLegs:
     def _tm_sign(self, direction, normal):
         """Sign [M] of the field's components along p_i and p_r of a plane."""
         polarization = np.asarray(self.radar.transmitters[0].polarization, float)
-        axis, behind = np.cross(direction, normal), direction - 2 * (direction @ normal)[:, None] * normal
-        return np.where((np.cross(axis, direction) @ polarization) * (np.cross(axis, behind) @ polarization) < 0, -1.0, 1.0)
+        axis, behind = cross(direction, normal), direction - 2 * (direction @ normal)[:, None] * normal
+        return np.where((cross(axis, direction) @ polarization) * (cross(axis, behind) @ polarization) < 0, -1.0, 1.0)
 
     def blocked(self, starts, ends, *arguments, **keywords):
         """`blocked`, which nothing is where shadows are not looked at."""
@@ -183,10 +183,10 @@ class ReferenceLegs:
         root = np.sqrt(epsilon - (1 - cosine ** 2) + 0j)
         root = np.where(root.imag > 0, -root, root)
         te, tm = (cosine - root) / (cosine + root), (epsilon * cosine - root) / (epsilon * cosine + root)
-        axis = np.cross(direction, normal)
+        axis = cross(direction, normal)
         polarization = np.asarray(self.radar.transmitters[0].polarization, float)
         across = polarization - (direction @ polarization)[:, None] * direction
-        size = np.linalg.norm(across, axis=1) * np.linalg.norm(axis, axis=1)
+        size = lengths_of(across) * lengths_of(axis)
         is_te = np.abs(np.einsum("ij,ij->i", across, axis)) >= np.sqrt(0.5) * size - 1e-15
         return np.where(is_te, te, tm), ~is_te
 

@@ -118,7 +118,22 @@ def test_boxes_have_edges_and_round_bodies_none():
         scene.add(ep.Mesh(np.asarray(shape.points, float), np.asarray(shape.regular_faces)), name=name, material="metal")
     plotter = pv.Plotter(off_screen=True)
     layer = MeshLayer(plotter, scene, mesh_palette(scene), 0.0)
-    assert list(layer._outlines) == [0] and layer._outlines[0].mapper.dataset.n_cells == 12
+    assert list(layer._outlines) == [0] and layer._outlines[0].GetMapper().GetInput().GetNumberOfCells() == 12
+    plotter.close()
+
+
+def test_towns_are_drawn_without_going_through_all_actors_for_each_mesh(monkeypatch):
+    """Thousands of meshes had taken minutes to be shown or selected."""
+    looks, property_of = [], pv.Renderer.actors
+    monkeypatch.setattr(pv.Renderer, "actors", property(lambda renderer: looks.append(1) or property_of.fget(renderer)))
+    scene, plotter = ep.Scene(), pv.Plotter(off_screen=True)
+    for number in range(60):
+        scene.add(ep.actors.box(size=(1.0, 1.0, 1.0)), name=f"box {number}", material="metal", position=(2.0 * number, 0.0, 0.0))
+    for _ in range(2):  # the second takes the place of the first
+        layer = MeshLayer(plotter, scene, mesh_palette(scene), 0.0)
+        layer.show(set(), range(60))
+    assert len(looks) < 20
+    assert len(plotter.actors) == 3 * 60  # bodies, outlines, creases
     plotter.close()
 
 

@@ -111,7 +111,7 @@ def test_moving_scenes_keep_their_triangles(session, plotter):
     session.set_chirp(0)
     builder.update({"time"})
     for mesh in session.scene.meshes:
-        poly = builder.meshes.actors[mesh.id].mapper.dataset
+        poly = builder.meshes.actors[mesh.id].GetMapper().GetInput()
         assert poly.points == pytest.approx(session.scene.world_vertices(mesh.id, session.time), abs=1e-5)
         assert np.array_equal(poly.regular_faces, mesh.triangles)
 

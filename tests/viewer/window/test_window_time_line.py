@@ -56,8 +56,8 @@ def test_colours_objects_and_cells_stay_selected(qtbot, line_window):
     assert after is not session and after.palette[0].tolist() == [10, 200, 30]
     assert after.node == "plate" and after.box == session.box
     actor = window.view3d.builder.meshes.actors[0]
-    assert actor is before and actor.prop.color.int_rgb == (10, 200, 30)
-    assert actor.mapper.dataset.center[0] == pytest.approx(6.0 - 4.0 * after.time, rel=0, abs=1e-4)
+    assert actor is before and actor.GetProperty().GetColor() == pytest.approx((10 / 255, 200 / 255, 30 / 255))
+    assert actor.GetCenter()[0] == pytest.approx(6.0 - 4.0 * after.time, rel=0, abs=1e-4)
 
 
 def test_undo_goes_back_over_frames(qtbot, line_window):

@@ -4,8 +4,9 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 import numpy as np
+import pyvista as pv
 
-from .polydata import lines_of, triangles_of
+from .polydata import add_actors, lines_of, move_points, plain_actor, triangles_of
 from .quick_meshes import QuickMeshes
 
 BODY_OPACITY, MIRROR_OPACITY, CHOSEN_OPACITY = 0.65, 0.15, 0.9
@@ -36,11 +37,13 @@ class MeshLayer:
             self._polys.append(triangles_of(vertices, mesh.triangles))
             self._placed.append(vertices.astype(np.float32))
             self._box(mesh.id)
-            self.actors.append(self._add(plotter, f"mesh {mesh.id}", self._polys[-1], mesh.material.mirror))
+            self.actors.append(self._body(self._polys[-1], mesh.material.mirror))
             edges = self._edges_of(mesh, vertices)
             if len(edges):
                 self._edges[mesh.id] = edges
-                self._outlines[mesh.id] = self._add_outline(plotter, mesh, vertices, edges)
+                self._outlines[mesh.id] = plain_actor(lines_of(vertices, edges), width=OUTLINE_WIDTH, is_lit=False)
+        add_actors(plotter, {f"mesh {mesh}": actor for mesh, actor in enumerate(self.actors)}, is_picked=True)
+        add_actors(plotter, {f"outline {mesh}": actor for mesh, actor in self._outlines.items()})
         self.colour(palette)
 
     def _set_scene(self, scene) -> None:
@@ -50,10 +53,8 @@ class MeshLayer:
         self._is_mirror, self._names = [mesh.material.mirror for mesh in meshes], [mesh.name for mesh in meshes]
 
     @staticmethod
-    def _add(plotter, name: str, poly, is_mirror: bool):
-        return plotter.add_mesh(poly, name=name, opacity=MIRROR_OPACITY if is_mirror else BODY_OPACITY,
-                                lighting=not is_mirror, ambient=AMBIENT, diffuse=1.0 - AMBIENT, show_scalar_bar=False,
-                                reset_camera=False, render=False)
+    def _body(poly, is_mirror: bool):
+        return plain_actor(poly, opacity=MIRROR_OPACITY if is_mirror else BODY_OPACITY, ambient=AMBIENT, is_lit=not is_mirror)
 
     def _edges_of(self, mesh, vertices):
         """Those that are drawn, [E, 2]: rims of planes, which are hard to see otherwise, and creases of simple bodies: a box
@@ -63,11 +64,6 @@ class MeshLayer:
             return boundary_edges(triangles)
         is_simple = len(triangles) <= MOST_TRIANGLES and len(self._is_moving) <= MOST_EDGED
         return creases(vertices, triangles) if is_simple else np.zeros((0, 2), np.int64)
-
-    @staticmethod
-    def _add_outline(plotter, mesh, vertices, edges):
-        return plotter.add_mesh(lines_of(vertices, edges), name=f"outline {mesh.id}", line_width=OUTLINE_WIDTH, lighting=False,
-                                pickable=False, show_scalar_bar=False, reset_camera=False, render=False)
 
     def move(self, time: float) -> None:
         """Puts all meshes where they are at a time in s."""
@@ -94,7 +90,7 @@ class MeshLayer:
         self._polys[mesh].points = self._placed[mesh]
         for edges in (self._outlines, self._creases):
             if mesh in edges:
-                edges[mesh].mapper.dataset.points = self._placed[mesh]
+                move_points(edges[mesh], self._placed[mesh])
 
     def fits(self, scene) -> bool:
         """Whether another scene has the same meshes, maybe elsewhere."""
@@ -190,18 +186,19 @@ class MeshLayer:
 
     def _choose(self, chosen: set) -> None:
         """Draws rims and creases of chosen meshes: all edges of a dense one would cover it."""
-        for mesh in chosen - set(self._creases):
-            vertices = np.asarray(self._polys[mesh].points)
-            triangles = np.asarray(self._scene.meshes[mesh].triangles)
-            edges = lines_of(vertices, creases(vertices, triangles))
-            self._creases[mesh] = self._plotter.add_mesh(
-                edges, name=f"creases {mesh}", color=CHOSEN_COLOUR, line_width=CHOSEN_EDGE_WIDTH, lighting=False,
-                pickable=False, show_scalar_bar=False, reset_camera=False, render=False)
+        new = {mesh: self._crease_lines(mesh) for mesh in sorted(chosen - set(self._creases))}
+        add_actors(self._plotter, {f"creases {mesh}": actor for mesh, actor in new.items()})
+        self._creases |= new
         for mesh, actor in self._creases.items():
-            actor.mapper.dataset.points = np.asarray(self._polys[mesh].points)
             actor.SetVisibility(mesh in chosen)
         for mesh, actor in enumerate(self.actors):
             actor.GetProperty().SetOpacity(self._opacity_of(mesh) if mesh not in chosen else CHOSEN_OPACITY)
+
+    def _crease_lines(self, mesh: int):
+        vertices = np.asarray(self._polys[mesh].points)
+        actor = plain_actor(lines_of(vertices, creases(vertices, self._triangles[mesh])), width=CHOSEN_EDGE_WIDTH, is_lit=False)
+        actor.GetProperty().SetColor(*pv.Color(CHOSEN_COLOUR).float_rgb)
+        return actor
 
     def _opacity_of(self, mesh: int) -> float:
         return MIRROR_OPACITY if self._is_mirror[mesh] else BODY_OPACITY

@@ -78,3 +78,41 @@ def coloured_actor(*, in_front: bool = False, is_opaque: bool = False) -> vtkAct
     if is_opaque:
         actor.GetShaderProperty().SetFragmentShaderCode(OPAQUE_SHADER)
     return actor
+
+
+def plain_actor(poly: pv.PolyData, *, opacity: float = 1.0, ambient: float = 0.0, width: float = 1.0,
+                is_lit: bool = True) -> vtkActor:
+    """An actor of one colour, white at first; `Plotter.add_mesh` takes 30 times as long, seconds for a town.
+
+    ambient: share of the light from everywhere; width: of lines in pixels
+    """
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputDataObject(poly)
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetInterpolationToFlat()
+    look.SetOpacity(opacity)
+    look.SetAmbient(ambient)
+    look.SetDiffuse(1.0 - ambient)
+    look.SetLighting(is_lit)
+    look.SetLineWidth(width)
+    return actor
+
+
+def add_actors(plotter, actors: dict, *, is_picked: bool = False) -> None:
+    """Adds actors {name: actor} in place of those of these names. One by one, pyvista would go through all actors for each.
+
+    is_picked: whether a pick meets them
+    """
+    there = plotter.actors if actors else {}
+    for name, actor in actors.items():
+        if name in there:
+            plotter.remove_actor(there[name], render=False)
+        plotter.add_actor(actor, name=name, remove_existing_actor=False, reset_camera=False, pickable=is_picked, render=False)
+
+
+def move_points(actor: vtkActor, points) -> None:
+    """Puts the points of what an actor shows elsewhere: [V, 3] m."""
+    actor.GetMapper().GetInput().SetPoints(pv.vtk_points(np.asarray(points, np.float32)))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import MESH_GROUP, WHOLE, CellBox, Filters, from_frame
+from echopath_viewer.model import MESH_GROUP, WHOLE, CellBox, Filters, from_frame, from_paths
 from echopath_viewer.scene_builder.web_page import ScenePage
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support import shapes
@@ -140,6 +140,24 @@ def test_the_check_boxes_of_the_tree_hide_meshes(qtbot, window):
     assert counts == [f"{count:,}" for count in window.session.node_counts()[1:3]]
     either = np.asarray(ep.hits("walker/*").matches(window.session.paths)) & window.session.visible
     assert walker.text(1) == f"{np.count_nonzero(either):,}"
+
+
+def test_the_check_box_of_a_mesh_with_meshes_below_it_tells_of_both(qtbot, window):
+    """A house whose windows were cut from its front is the mesh "house" and the mesh "house/small_planes"."""
+    scene = ep.Scene()
+    scene.add(shapes.plate((9.0, 0.0, 0.0), (-1.0, 0.0, 0.0), 4.0), name="house", material=shapes.lambert(0.8))
+    scene.add(shapes.plate((8.9, 0.0, 0.0), (-1.0, 0.0, 0.0), 1.0), name="windows", parent="house", material=shapes.lambert(0.8))
+    paths = ep.trace(scene, window.session.radar, num_rays=300, max_bounces=1, seed=1)
+    window.show_input(from_paths(scene, paths))
+    settle(qtbot)
+    house, states = window.tree.topLevelItem(0), Qt.CheckState
+    for item, state, hidden, shown in ((house.child(0), states.Unchecked, {1}, (states.PartiallyChecked, states.Unchecked)),
+                                       (house, states.Unchecked, {0, 1}, (states.Unchecked, states.Unchecked)),
+                                       (house.child(0), states.Checked, {0}, (states.PartiallyChecked, states.Checked))):
+        item.setCheckState(0, state)
+        settle(qtbot)
+        assert window.session.hidden_meshes == hidden
+        assert (house.checkState(0), house.child(0).checkState(0)) == shown
 
 
 def test_the_map_of_a_mesh_is_made_anew_when_the_filters_have_come_to_rest(qtbot, window):

@@ -70,9 +70,10 @@ class SceneTree(QtWidgets.QTreeWidget):
             item.setIcon(NAME, _swatch(session.palette[mesh]))
             hidden = mesh in session.hidden_meshes
             item.setCheckState(NAME, Qt.CheckState.Unchecked if hidden else Qt.CheckState.Checked)
-        for item in reversed(self._items.values()):
+        with_mesh = set(session.mesh_names)
+        for name, item in reversed(self._items.items()):
             if item.childCount():
-                item.setCheckState(NAME, _state_of_children(item))
+                item.setCheckState(NAME, _state_of_all(item, name in with_mesh))
         self.session = session
 
     def _checked(self, item, column: int) -> None:
@@ -123,8 +124,10 @@ class SceneTree(QtWidgets.QTreeWidget):
             self.session.set_mesh_colour(mesh, (colour.red(), colour.green(), colour.blue()))
 
 
-def _state_of_children(item) -> Qt.CheckState:
+def _state_of_all(item, has_mesh: bool) -> Qt.CheckState:
+    """Of what is below a row and, where it has one, of its own mesh, as a house has beside its windows."""
     states = {item.child(row).checkState(NAME) for row in range(item.childCount())}
+    states |= {item.checkState(NAME)} if has_mesh else set()
     return states.pop() if len(states) == 1 else Qt.CheckState.PartiallyChecked
 
 

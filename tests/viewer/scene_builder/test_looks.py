@@ -16,7 +16,6 @@ from echopath_viewer.model import Legend, Session, colour_rays, from_file, from_
 from echopath_viewer.scene_builder.legend import LegendLayer
 from echopath_viewer.scene_builder.mesh_layer import MeshLayer, creases
 from echopath_viewer.scene_builder.name_layer import NameLayer
-from echopath_viewer.scene_builder.scene_names import SceneNames
 from echopath_viewer.window.maps.ticks import nice_below, scientific_text, tick_text
 
 HUE_STEP = 0.02  # of the circle of hues: what 8 bits of a colour turn it by at most
@@ -168,17 +167,3 @@ def test_scales_are_round_and_never_longer_than_their_room():
 
 def test_small_numbers_stand_as_print_has_them():
     assert scientific_text(-3.42e-06) == "−3.4·10⁻⁶" and tick_text(-85.0) == "−85"
-
-
-def test_a_name_of_two_layers_stands_in_the_scene_once():
-    plotter = pv.Plotter(off_screen=True)
-    names = SceneNames(plotter)
-    names.show("objects", [(0, 0, 0), (1, 0, 0)], ["car", "person"])
-    names.show("boxes", [(0, 0, 1)], ["car"])
-    shown = [plotter.actors[name].mapper.GetInputAlgorithm() for name in plotter.actors if name.startswith("scene names")]
-    plotter.render()
-    assert len(shown) == 1 and shown[0].GetInputDataObject(0, 0).GetNumberOfPoints() == 2
-    names.show("objects", [], [])
-    names.show("boxes", [], [])
-    assert not [name for name in plotter.actors if name.startswith("scene names")]
-    plotter.close()

@@ -144,7 +144,7 @@ def test_meshes_that_are_looked_for_have_their_own_places_meanwhile(layer):
     layer.move(0.5)
     with layer.each() as actors:
         assert [bool(actor.GetVisibility()) for actor in actors] == [True] * 3
-        assert actors[0].center == pytest.approx((0.0, -0.2, 0.5), abs=1e-3)
+        assert actors[0].GetCenter() == pytest.approx((0.0, -0.2, 0.5), abs=1e-3)
     assert not any(actor.GetVisibility() for actor in actors)
 
 

@@ -10,6 +10,7 @@ import echopath as ep
 from echopath_viewer.model import CellBox, Filters, Legend
 from echopath_viewer.window.scene.filter_box import ErrorLabel
 from echopath_viewer.window.scene.legend_box import LegendBox
+from echopath_viewer.window.scene.name_box import NameBox
 from echopath_viewer.window.scene.pace import Smoothing
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import PATIENCE_MS, panel_of, settle
@@ -331,6 +332,53 @@ def test_the_legend_over_the_rays_is_dark_in_a_dark_theme(qtbot):
         levels = {grey.pixelColor(x, y).red() for x in range(grey.width()) for y in range(grey.height())}
         assert abs(grey.pixelColor(1, 1).red() - QtGui.QColor(paper).red()) < 8
         assert min(abs(level - QtGui.QColor(ink).red()) for level in levels) < 8
+
+
+CLIP_FROM_WORLD = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, -1, 2]])  # an eye at z = 2, which looks down
+
+
+@pytest.fixture
+def name_box(qtbot):
+    parent = QtWidgets.QWidget()
+    qtbot.addWidget(parent)
+    parent.resize(600, 400)
+    parent.show()
+    yield NameBox(parent)
+
+
+def lay_out(box, **names) -> list:
+    """What stands there of layers {name: place}."""
+    for layer, places in names.items():
+        box.set_names(layer, list(places.values()), list(places))
+    box.follow(CLIP_FROM_WORLD)
+    return [text for _, text in box.boxes]
+
+
+def test_names_in_the_scene_stay_inside_of_it_and_keep_both_ends(name_box):
+    """Long ones had run out of its right border."""
+    shown = lay_out(name_box, objects={"Haus Süd 3 – Kastanienallee 17 (Gebäudemodell LoD3, Stand 2024)": (0.97, 0.0, 1.0),
+                                       "car": (-1.0, 1.0, 1.0), "behind the eye": (0.0, 0.0, 3.0), "beside": (1.5, 0.0, 1.0)})
+    assert all(name_box.parent().rect().contains(place) for place, _ in name_box.boxes)
+    short, long = sorted(shown, key=len)
+    assert short == "car" and long.startswith("Haus Süd") and long.endswith("2024)") and "…" in long
+
+
+def test_names_in_any_letters_stand_in_the_scene(name_box):
+    """Those of VTK are Latin, Greek and Cyrillic: others had been left out of names without a word."""
+    assert lay_out(name_box, objects={"北側の家": (0.0, 0.0, 1.0)}) == ["北側の家"]
+    grey = name_box.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_Grayscale8)
+    place = name_box.boxes[0][0]
+    levels = [grey.pixelColor(x, y).red() for x in range(place.left(), place.right()) for y in range(place.top(), place.bottom())]
+    assert max(levels) - min(levels) > 100  # letters, or the signs of a machine without such a font
+
+
+def test_a_name_of_two_layers_stands_in_the_scene_once_and_on_no_other(name_box):
+    objects = {"car": (0.0, 0.0, 1.0), "van": (0.0, 0.01, 1.2), "person": (0.5, 0.5, 1.0)}
+    shown = lay_out(name_box, objects=objects, boxes={"car": (-0.5, -0.5, 1.0)})
+    assert set(shown) == {"van", "person"}  # the van is nearer to the eye than the car
+    assert set(lay_out(name_box, chosen={"1 wall": (0.0, 0.0, 0.0)})) == {"1 wall", "person"}
+    name_box.forget()
+    assert lay_out(name_box) == [] and name_box.isHidden()
 
 
 def test_long_names_leave_room_beside_the_legend(qtbot):

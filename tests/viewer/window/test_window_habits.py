@@ -165,10 +165,13 @@ def test_a_file_that_was_half_written_is_told_of_until_it_is_whole(qtbot, window
 
 
 def test_names_and_axes_follow_the_scene(qtbot, window):
+    names = window.view3d.name_box
     window.layer_actions["names"].setChecked(True)
-    assert any(name.startswith("scene names") for name in window.view3d.actors)
+    window.settle()
+    assert names.isVisible() and {text for _, text in names.boxes} <= {"walker", "wall_left", "wall_right"}
     window.layer_actions["names"].setChecked(False)
-    assert not any(name.startswith("scene names") for name in window.view3d.actors)
+    window.settle()
+    assert names.isHidden()
     window.look_top()
     window.settle()
     compass = window.view3d.compass

@@ -12,7 +12,6 @@ from .legend import LegendLayer
 from .mesh_layer import MeshLayer
 from .name_layer import NameLayer
 from .ray_layer import RayLayer
-from .scene_names import SceneNames
 from .track_layer import TrackLayer
 from .twin_layer import TwinLayer
 
@@ -31,12 +30,13 @@ ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
 class SceneBuilder:
     """Draws meshes, antennas, rays, lit rays and the chosen ray of a session, and follows its changes."""
 
-    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, legend=None, background=BACKGROUND,
-                 cmap=None, clim=None, is_quick: bool = False):
+    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, legend=None, names=None,
+                 background=BACKGROUND, cmap=None, clim=None, is_quick: bool = False):
         """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown.
 
         background: colour behind everything; legend: what shows legends in place of a layer in the picture, an object with
-            show(model.Legend) and place()
+            show(model.Legend) and place(); names: what shows names in the scene, with set_names(layer, points [N, 3] m, texts);
+            None: nothing does
         is_quick: rays are drawn opaque, in colours mixed with the background: blending takes software half of a picture's time
         """
         self.plotter, self.session = plotter, session
@@ -48,9 +48,10 @@ class SceneBuilder:
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=1.0 if is_quick else RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
-        self._texts = texts = SceneNames(plotter)
-        self.names = NameLayer(texts, lambda: self.meshes)
-        self.known, self.tracks, self.twins = KnownLayer(plotter, texts), TrackLayer(plotter), TwinLayer(plotter, texts)
+        self._set_names = names.set_names if names is not None else lambda *_: None
+        self.names = NameLayer(self._set_names, lambda: self.meshes)
+        self.known, self.twins = KnownLayer(plotter, self._set_names), TwinLayer(plotter, self._set_names)
+        self.tracks = TrackLayer(plotter)
         self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
@@ -187,7 +188,7 @@ class SceneBuilder:
         rgb = np.broadcast_to(np.uint8(CHOSEN_COLOURS[self._is_dark]), (segments.num_segments, 3))
         self.chosen.show(segments, rgb, hit_rgb=np.uint8(CHOSEN_HIT_COLOUR))
         names = [f"{number + 1} {session.mesh_names[mesh]}" for number, mesh in enumerate(segments.hit_mesh)]
-        self._texts.show("chosen", segments.points[segments.hits], names)
+        self._set_names("chosen", segments.points[segments.hits], names)
 
     def resized(self) -> None:
         """The picture has got another size."""

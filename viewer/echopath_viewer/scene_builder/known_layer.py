@@ -13,9 +13,9 @@ BOX_RGB = (0, 158, 115)
 class KnownLayer:
     """Points where detections are, by object, and the oriented boxes of objects with their names."""
 
-    def __init__(self, plotter, names):
-        """names: SceneNames"""
-        self._names = names
+    def __init__(self, plotter, set_names):
+        """set_names: callable (layer, points [N, 3] m, texts)"""
+        self._set_names = set_names
         self._points, self._boxes = (coloured_actor(in_front=True) for _ in range(2))
         self._points.GetProperty().SetPointSize(POINT_SIZE)
         self._points.GetProperty().RenderPointsAsSpheresOn()
@@ -48,10 +48,10 @@ class KnownLayer:
     def _show_boxes(self, truth) -> None:
         self._boxes.VisibilityOff()
         if truth is None or not len(truth.name):
-            self._names.show("boxes", [], [])
+            self._set_names("boxes", [], [])
             return
         corners = box_corners(truth)
-        self._names.show("boxes", corners.max(axis=1), [str(name) for name in truth.name])
+        self._set_names("boxes", corners.max(axis=1), [str(name) for name in truth.name])
         edges = (BOX_EDGES[None] + 8 * np.arange(len(corners))[:, None, None]).reshape(-1, 2)
         poly = lines_of(corners.reshape(-1, 3), edges)
         set_point_colours(poly, np.broadcast_to(np.uint8(BOX_RGB), (poly.n_points, 3)))

@@ -11,13 +11,13 @@ class NameLayer:
     """Above each object that is not hidden, where it is at the time on display; planes, which reach out of the picture, where
     rays meet them."""
 
-    def __init__(self, names, meshes_of):
-        """names: SceneNames; meshes_of: callable () -> MeshLayer, which has the boxes."""
-        self._names, self._meshes_of = names, meshes_of
+    def __init__(self, set_names, meshes_of):
+        """set_names: callable (layer, points [N, 3] m, texts); meshes_of: callable () -> MeshLayer, which has the boxes."""
+        self._set_names, self._meshes_of = set_names, meshes_of
 
     def show(self, session) -> None:
         """What the session has switched on."""
-        self._names.show("objects", *(self._tops(session) if NAMES in session.layers else ([], [])))
+        self._set_names("objects", *(self._tops(session) if NAMES in session.layers else ([], [])))
 
     def _tops(self, session) -> tuple:
         """(places [N, 3] m, names) of what is not hidden."""

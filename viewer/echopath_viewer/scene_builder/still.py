@@ -8,7 +8,7 @@ from .builder import SceneBuilder
 
 
 def still_of(session, size, scale: int, *, camera=None, show_hits: bool = False, background="white", tracks=None):
-    """A picture u8 [height, width, 3] of the scene and its rays, without a legend.
+    """A picture u8 [height, width, 3] of the scene and its rays, without a legend and names.
 
     size: (width, height) in pixels at scale 1; scale: 1 or more, of both, with lines and points as much thicker
     camera: pyvista.Camera that looks from the same place, None: at everything; tracks: ep.Tracks in the scene, or None

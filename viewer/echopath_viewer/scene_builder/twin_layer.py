@@ -14,9 +14,9 @@ OPACITY = 0.28
 class TwinLayer:
     """The object once more where its ghost seems to be, in the colour of the ghost's class, with the way as its name."""
 
-    def __init__(self, plotter, names):
-        """names: SceneNames"""
-        self._plotter, self._names, self._actors = plotter, names, []
+    def __init__(self, plotter, set_names):
+        """set_names: callable (layer, points [N, 3] m, texts)"""
+        self._plotter, self._set_names, self._actors = plotter, set_names, []
 
     def show(self, session) -> None:
         """What the session has switched on."""
@@ -30,7 +30,7 @@ class TwinLayer:
             points = points + twin.offset
             tops.append(points[points[:, 2].argmax()])
             self._add(f"twin {number}", triangles_of(points, faces), CLASSES[twin.ghost_type][1])
-        self._names.show("twins", tops, [twin.name for twin in twins])
+        self._set_names("twins", tops, [twin.name for twin in twins])
 
     def _add(self, name: str, poly, colour: str) -> None:
         self._actors.append(name)

@@ -37,7 +37,7 @@ def _paint_scene(window, image, scale: int) -> None:
     corner = view.mapTo(window, QtCore.QPoint(0, 0))
     painter.drawImage(QtCore.QRectF(QtCore.QPointF(corner), QtCore.QSizeF(view.size())), still)
     painter.end()
-    for box in (view.legend_box, view.compass):
+    for box in (view.name_box, view.legend_box, view.compass):
         if box.isVisible():
             box.render(image, box.mapTo(window, QtCore.QPoint(0, 0)), renderFlags=QtWidgets.QWidget.RenderFlag.DrawChildren)
 

@@ -11,6 +11,7 @@ from ...scene_builder import SceneBuilder
 from .coarse_pixels import coarse_pixels
 from .compass import Compass
 from .legend_box import LegendBox
+from .name_box import NameBox
 from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
 from .picks import CLICK_REACH, Picks
 from .pixel_size import pixel_at, pixels_per_radian
@@ -37,7 +38,8 @@ class View3D(Picks, QtInteractor):
         self._is_behind = self._is_fresh = False
         super().__init__(parent, auto_update=False, multi_samples=0)
         self._afterwards = None
-        self._press, self._drag, self.legend_box = None, None, LegendBox(self)
+        self._press, self._drag = None, None
+        self.name_box, self.legend_box = NameBox(self), LegendBox(self)  # which stands over the names
         self.clock, self._turning, self._passing = time.perf_counter, Pace(COARSEST, MANY_RAYS), Pace(1, FEW_RAYS)
         self._pace = None  # of the two, while the camera turns or frames pass
         self._drawn_as = None  # number of rays and cell, while that is so
@@ -55,8 +57,10 @@ class View3D(Picks, QtInteractor):
         """Replaces what is drawn; nothing moves any more. What was drawn is thrown away as it is."""
         self._pace = self._drawn_as = None
         self.clear()
+        self.name_box.forget()
         self.enable_3_lights()
-        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)
+        self.builder = SceneBuilder(self, session, legend=self.legend_box, names=self.name_box,
+                                    background=self.background(), is_quick=True)
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
 
@@ -148,6 +152,7 @@ class View3D(Picks, QtInteractor):
         if self.builder is not None:  # a picture may come after the window was closed
             self._learn(self.clock() - begin)
             self.compass.follow(self.camera, self.height())
+            self.name_box.follow(self.clip_from_world())
 
     def _learn(self, seconds: float) -> None:
         """How much the next pictures may have, from what one took."""

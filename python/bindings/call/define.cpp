@@ -27,6 +27,20 @@ std::string hint_of_keyword(const std::string& word, const std::vector<std::stri
   return meant.empty() ? "; its arguments are " + joined(names) : ", the nearest right one is '" + meant + "'";
 }
 
+// Tells which of the arguments given has what the word names; "" where none has.
+std::string hint_of_argument(const std::string& word, const py::kwargs& keywords) {
+  for (const auto& [key, value] : keywords) {
+    const bool is_list = py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
+    if (is_list && py::len(value) == 0) continue;
+    const py::object one = is_list ? py::object(value[py::int_(0)]) : py::reinterpret_borrow<py::object>(value);
+    const py::type type = py::type::of(one);
+    if (!py::hasattr(type, "replace") || PyUnicode_Check(one.ptr()) || !py::hasattr(type, word.c_str())) continue;
+    return std::string("; it belongs to ") + (is_list ? "each " : "the ") + py::cast<std::string>(type.attr("__name__")) +
+           " in '" + py::cast<std::string>(key) + "'";
+  }
+  return "";
+}
+
 // The parameters that may be given without their names.
 std::vector<Parameter> by_place(const std::vector<Parameter>& parameters) {
   std::vector<Parameter> found;
@@ -41,7 +55,8 @@ std::string complaint(const std::vector<Parameter>& parameters, bool takes_keywo
   for (const auto& [key, value] : keywords) {
     const std::string word = escaped(key);
     if (takes_keywords || std::ranges::find(names, word) != names.end()) continue;
-    return "unknown keyword '" + word + "'" + hint_of_keyword(word, names);
+    const std::string of_argument = hint_of_argument(word, keywords);
+    return "unknown keyword '" + word + "'" + (of_argument.empty() ? hint_of_keyword(word, names) : of_argument);
   }
   const std::vector<Parameter> placed = by_place(parameters);
   if (values.size() > placed.size()) {

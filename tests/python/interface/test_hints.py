@@ -48,6 +48,13 @@ def test_words_unlike_any_get_the_list_instead(call):
         call(qqqq=1)
 
 
+@pytest.mark.parametrize("word, owner", [("bandwidth", "the ChirpSequence in 'waveform'"),
+                                         ("pattern", "each Antenna in 'transmitters'")])
+def test_words_of_an_argument_lead_to_it(word, owner):
+    with pytest.raises(TypeError, match=f"^Radar: unknown keyword '{word}'; it belongs to {owner}$"):
+        RADAR.replace(**{word: 1})
+
+
 @pytest.mark.parametrize("given, meant", [("hanning", "hann"), ("Hamming", "hamming"), ("blackmanharris", "blackman_harris"),
                                           ("boxcar", "rect"), ("chebwin", "chebyshev")])
 def test_windows_of_other_libraries(frame, given, meant):

@@ -33,5 +33,5 @@ axes.set(xlabel="Azimuth in degrees (left is positive)", ylabel="Elevation in de
          title="Six balls as a planar array of 8 rows and 6 columns sees them", aspect="equal")
 axes.legend(loc="lower left")
 axes.grid(alpha=0.3)
-figure.colorbar(marks, label="Range in m")
+figure.colorbar(marks, label="Range in m", shrink=0.75)
 plt.show()

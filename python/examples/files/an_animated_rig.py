@@ -67,5 +67,6 @@ for panel, name in zip(figure.subplots(2, 1, sharex=True), ("upper arm", "forear
     if name == "forearm":
         panel.plot(frames + 0.0192, speed, "w--", linewidth=1)
     panel.set(title=name.capitalize(), xlabel="Time in s", ylabel="Velocity in m/s", ylim=(-2, 2))
-figure.colorbar(image, ax=figure.axes, label="Power in dB below the largest")
+    panel.label_outer()
+figure.colorbar(image, ax=figure.axes, label="Power over the largest of each panel in dB")
 plt.show()

@@ -8,6 +8,7 @@ the time 0: objects by colour and name, grounds and ceilings in grey, and the ra
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
+from matplotlib.patheffects import withStroke
 
 import echopath as ep
 from echopath.base.storage.data_folder import data_folder
@@ -31,7 +32,8 @@ def draw(axes, scene, radar):
         if not lies:
             middle = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
             axes.plot(*middle[:2], ".", color=color, markersize=4, zorder=3)
-            axes.annotate(name, middle[:2], (2, 3), textcoords="offset points", fontsize=6.5, zorder=4)
+            axes.annotate(name, middle[:2], (0, 4), textcoords="offset points", fontsize=6.5, ha="center", zorder=4,
+                          path_effects=[withStroke(linewidth=2, foreground="white")])
     axes.plot(*radar.position[:2], "k^", markersize=6, zorder=4)
 
 
@@ -41,10 +43,11 @@ figure, panels = plt.subplots(3, 3, figsize=(11, 9.5), layout="constrained")
 for axes, file in zip(panels.flat, files):
     loaded = ep.load_scene(file)
     draw(axes, loaded.scene, loaded.radar)
-    axes.margins(0.15)
+    axes.margins(0.2)
     axes.autoscale()
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set(title=file.name.removesuffix(".toml"), xlabel="x in m", ylabel="y in m")
+    axes.set_title(file.name.removesuffix(".toml"), pad=12)
+    axes.set(xlabel="x in m", ylabel="y in m")
     begin, reach = loaded.radar.position[:2], 0.12 * np.ptp(axes.get_xlim())
     ahead = np.array([np.cos(loaded.radar.yaw), np.sin(loaded.radar.yaw)])
     axes.annotate("", begin + reach * ahead, begin, arrowprops={"arrowstyle": "->"}, zorder=4)

@@ -25,7 +25,7 @@ frame = ep.simulate(scene, radar, num_rays=40_000, detections={"false_alarm_rate
 # %%
 # ``points`` are places in the radar's frame; ghosts that took the wall both ways lie behind it, others between.
 found, points = frame.detections, frame.detections.points
-figure, axes = plt.subplots(figsize=(6, 7), layout="constrained")
+figure, axes = plt.subplots(figsize=(9, 6.5), layout="constrained")
 for name, colour in (("walker", "tab:blue"), ("car", "tab:orange")):
     for is_ghost, marker, what in ((False, "o", ""), (True, "x", ", ghost")):
         chosen = np.array([one == name for one in found.object]) & ((found.ghost_type > 0) == is_ghost) & ~found.is_noise
@@ -33,7 +33,7 @@ for name, colour in (("walker", "tab:blue"), ("car", "tab:orange")):
 axes.plot(points[found.is_noise, 1], points[found.is_noise, 0], ".", color="0.6", label=f"noise: {found.is_noise.sum()}")
 axes.axvline(3, color="0.3", linewidth=3, label="the wall")
 axes.plot(0, 0, "k^", markersize=10, label="the radar")
-axes.set(xlabel="To the left in m", ylabel="Ahead in m", xlim=(10, -8), ylim=(-1, 20),
+axes.set(xlabel="To the left in m (right: −)", ylabel="Ahead in m", xlim=(10, 1.1 * points[:, 1].min()), ylim=(-1, 22),
          title="Detections seen from above", aspect="equal")
 axes.legend(loc="lower right")
 axes.grid(alpha=0.3)

@@ -55,12 +55,11 @@ def draw_part_powers(axes, powers: dict, title="Mean received power by part") ->
 
 
 def _draw_power(axes, place: int, power, colour) -> None:
-    """A dot over its interval, the numbers above it, where they hit no edge."""
+    """A dot over its interval, which runs out of the picture where it is wider; the numbers above it, where they hit no edge."""
     low, high = _error_bar(power)
     level = float(in_dbm(power.power))
     if high > low:
-        ends = [max(low, level - ROOM_BESIDE_DB), high]
-        axes.plot(ends, [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
+        axes.plot([low, high], [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
     axes.plot(level, place, "o", markersize=8, color=colour, markerfacecolor=colour if power.resolved else "white",
               markeredgewidth=1.8)
     text = with_error(power) if high > low else f"{level:.1f} dBm"

@@ -40,6 +40,15 @@ def test_the_numbers_of_part_powers_stay_within_the_figure():
     assert not figure.axes[0].patches  # no bars: a level in dB has no zero to begin at
 
 
+def test_intervals_of_part_powers_end_where_they_end():
+    """Or at the edge of the picture, without a mark there: one of 28 dB had a mark 6 dB below its power."""
+    powers = {"wide": power_of(-75.0, 28.0, False), "narrow": power_of(-76.0, 2.0, False)}
+    axes = plots.plot_part_powers(powers).axes[0]
+    ends = [line.get_xdata() for line in axes.get_lines() if line.get_marker() == "|"]
+    expected = [[10.0 * np.log10(1e3 * end) for end in (power.low, power.high)] for power in powers.values()]
+    assert np.allclose(ends, expected) and axes.get_xlim()[0] > expected[0][0]
+
+
 def test_maps_of_parts_with_small_print_name_their_range():
     spectrum = SimpleNamespace(values=np.ones((1, 1, 8, 8), complex), range=np.arange(8.0), velocity=np.arange(-4.0, 4.0),
                            window="hann", zero_pad=1)

@@ -167,7 +167,7 @@ void bind_estimates(py::module_& m) {
   define_no_init(bound, "ep.estimate_angles");
   bound.def("__len__", [](const AngleEstimates& self) { return self.cell.size(); })
       .def("__repr__",
-           [](const AngleEstimates& self) { return "AngleEstimates(" + std::to_string(self.cell.size()) + " peaks)"; });
+           [](const AngleEstimates& self) { return "AngleEstimates(" + counted(self.cell.size(), "peak") + ")"; });
   def_travel_checked(
       bound,
       [](const AngleEstimates& made) {

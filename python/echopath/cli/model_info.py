@@ -27,7 +27,7 @@ def describe_model(path: Path, model: ep.Model, *, with_overlaps: bool = True) -
     low, high = box_of(scene)
     size = high - low
     meshes = [node for node in model.nodes if node.mesh is not None]
-    lines = [f"{path.name}: {model.format}", report.line("meshes, nodes", f"{len(meshes):,}, {len(model.nodes):,}"),
+    lines = [f"{path.resolve().name}: {model.format}", report.line("meshes, nodes", f"{len(meshes):,}, {len(model.nodes):,}"),
              report.line("triangles", f"{model.num_triangles:,}"),
              report.line("size", f"{size[0]:.4g} x {size[1]:.4g} x {size[2]:.4g} m (forward, left, up)"),
              report.line("from, to", f"{report.point(low)}, {report.point(high)} m"),

@@ -168,7 +168,8 @@ def open_template(folder: Path) -> Template:
     """The template of a dataset. Raises ep.FileError naming the folder where there is none."""
     path = folder / TEMPLATE
     if not path.exists():
-        raise _core.FileError(f"{folder}: is no dataset, it has no {TEMPLATE}{folder_hint(folder)}")
+        lacks = f"it has no {TEMPLATE}{folder_hint(folder)}" if folder.exists() else "there is no such folder"
+        raise _core.FileError(f"{folder}: is no dataset, {lacks}")
     return Template(path, _folder_of_files(folder))
 
 

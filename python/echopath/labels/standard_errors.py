@@ -50,7 +50,8 @@ class BatchSums:
 def require_batches(num_batches: int) -> None:
     """Raises ValueError where there is nothing to make errors from."""
     if num_batches < 2:
-        raise ValueError("errors: need independent batches of rays, trace(batches=8) (2 at least), got a trace with one")
+        raise ValueError("errors: need 2 independent batches of rays at least, as batches=8 of the trace and --batches 8 of "
+                         "`echopath run` make them, got a trace with one")
 
 
 def share_errors(labels, work, selections: dict, known: dict):

@@ -279,6 +279,14 @@ def test_a_disk_that_is_too_small_is_told_before_the_first_frame(path, tmp_path,
 def test_a_folder_without_a_dataset_is_told(tmp_path):
     with pytest.raises(ep.FileError, match="is no dataset, it has no dataset.toml"):
         dataset.open(tmp_path)
+    with pytest.raises(ep.FileError, match="nowhere: is no dataset, there is no such folder$"):
+        dataset.open(tmp_path / "nowhere")
+
+
+def test_a_scene_file_is_no_template(tmp_path):
+    (tmp_path / "scene.toml").write_text("title = 'a ball'\n")
+    with pytest.raises(ValueError, match=r"scene.toml: dataset: is missing, which a template has; .*`echopath run`"):
+        list(dataset.make(tmp_path / "scene.toml", tmp_path / "out"))
 
 
 @pytest.mark.parametrize("options, told", [

@@ -202,6 +202,14 @@ def test_info_tells_scenes_frames_and_meshes_apart(finished_run):
     assert "1 m^2, open" in call("info", scene.with_name("plate.obj")).stdout
 
 
+def test_the_folder_that_one_is_in_has_a_name(tmp_path, monkeypatch, capsys):
+    (tmp_path / "town").mkdir()
+    (tmp_path / "town" / "plate.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    monkeypatch.chdir(tmp_path / "town")
+    assert main(["info", "."]) == 0
+    assert capsys.readouterr().out.startswith("town: OBJ")
+
+
 @pytest.mark.usefixtures("blank_pictures")
 def test_surfaces_on_each_other_are_told(scene_path, tmp_path):
     assert "surfaces on each other            none" in call("info", scene_path).stdout

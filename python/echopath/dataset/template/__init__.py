@@ -77,6 +77,8 @@ class Template:
         scene = copy.deepcopy(self.table)
         self._faults = Faults(path, self.table)
         try:
+            if "dataset" not in scene:
+                raise ValueError("dataset: is missing, which a template has; a scene file is simulated by `echopath run`")
             self.settings = validated(DatasetTable, scene.pop("dataset", {}), ("dataset",))
             if self.settings.frames > 1 and self.settings.interval is None:
                 raise ValueError("dataset.interval: is missing, in s from the start of a frame to that of the next")

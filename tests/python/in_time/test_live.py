@@ -98,6 +98,28 @@ def test_the_farthest_object_that_moves_leaves_most_others_their_rays():
     assert difference(view, fresh_view(live)) < ROUNDING
 
 
+def behind_a_screen(screen_at: float) -> ep.Live:
+    """A rough row of houses, seen straight and over a flagged wall, a part of which a screen at that x (m) hides."""
+    scene, rough = ep.Scene(), ep.Material(permittivity=4.0, scattering=0.7)
+    mirror = ep.materials["concrete"].replace(mirror=True, scattering=0.0)
+    scene.add(ep.actors.wall(8.0, 8.0), name="wall", material=mirror, position=(6.0, -6.0, 0.0), yaw=np.pi)
+    scene.add(ep.actors.box((30.0, 1.0, 5.0)), name="row", material=rough, position=(18.0, 9.0, 2.5))
+    scene.add(ep.actors.box((4.0, 0.3, 9.0)), name="screen", material="metal", position=(screen_at, -3.0, 4.01))
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=3e8, num_samples=128, sampling_rate=1e7, num_chirps=4)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))])
+    return ep.Live(scene, radar, num_rays=3000, max_bounces=2)
+
+
+def test_what_a_moved_screen_no_longer_hides_is_lit_over_a_wall_again():
+    """Rays straight at the row stay, but for the ways over the part of the wall that the screen had hidden."""
+    live = behind_a_screen(4.0)
+    live.update()
+    live.scene["screen"].position += (0.5, 0.0, 0.0)
+    view, fresh = live.update(), behind_a_screen(4.5).update()
+    assert view.num_rays_shot < view.num_rays
+    assert difference(view, fresh) < ROUNDING
+
+
 def test_rays_are_about_as_many_as_asked_for_and_find_the_power_of_the_radar_equation():
     """Of a metal ball, by geometrical optics: pi r^2, where waves spread from half a radius behind its front."""
     scene, radar = ep.Scene(), small_street().radar.replace(transmit_power=1.0)

@@ -24,12 +24,12 @@ bool any_radiates(const Scene& scene, double frequency) {
 int most_leg_mirrors(const SbrSettings& settings) { return std::min(kMaxLegMirrors, settings.max_bounces - 1); }
 
 AntennaFrusta find_antenna_frusta(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                                  const SbrSettings& settings, const Job* job) {
+                                  const SbrSettings& settings, ShadowsOf casters, const Job* job) {
   AntennaFrusta found;
   found.serve_legs = !mirrors.empty() && any_radiates(scene, settings.frequency);
   if (mirrors.empty()) return found;
   const int of_legs = found.serve_legs ? most_leg_mirrors(settings) : 0, half = settings.max_bounces / 2;
-  const FrustumFinder finder(mirrors, &geometry);
+  const FrustumFinder finder(mirrors, &geometry, casters);
   FrustumSearch search{.max_mirrors = std::max(half, of_legs), .slack = kAtEdge};
   found.transmitter = finder.find(settings.transmitter, search, job);
   found.receiver = finder.find(settings.receiver, search, job);

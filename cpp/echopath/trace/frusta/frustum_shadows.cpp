@@ -91,8 +91,20 @@ std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {
   return rims;
 }
 
-FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors)
-    : geometry_(geometry), mirrors_(mirrors), mirror_of_(mirrors, geometry) {}
+FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowsOf casters)
+    : geometry_(geometry), mirrors_(mirrors), mirror_of_(mirrors, geometry), casters_(casters) {}
+
+// Returns whether a ray meets a surface that casts shadows within `reach` (m), and sets `met` to the closest hit on one.
+bool FrustumShadows::meets(const Vec3& from, const Vec3& direction, double reach, bool is_on_surface, RayHit& met) const {
+  auto verdict =
+      is_on_surface ? geometry_.intersect_from_surface(from, direction, met) : geometry_.intersect(from, direction, met);
+  while (verdict == EmbreeScene::Verdict::kHit && met.distance <= reach) {
+    if (casters_ == ShadowsOf::kAll || mirror_of_.is_mirror(met.hit.mesh_id)) return true;
+    const double begin = geometry_.behind(met.distance, met.reported);
+    verdict = geometry_.intersect_from_surface(from, direction, met, Sees::kOpaque, begin);
+  }
+  return false;
+}
 
 // Returns whether something stands between the source and a point of the target. Sets `occluder` to a polygon of it, as far
 // as that lies between the two planes, or to none where its shadow cannot be told.
@@ -108,9 +120,7 @@ bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, con
   RayHit met;
   const double length = (point - from).norm();
   const Vec3 direction = (point - from) / length;
-  const EmbreeScene::Verdict verdict =
-      source.lit_normal ? geometry_.intersect_from_surface(from, direction, met) : geometry_.intersect(from, direction, met);
-  if (verdict != EmbreeScene::Verdict::kHit || met.distance > length - kBefore) return false;
+  if (!meets(from, direction, length - kBefore, source.lit_normal != nullptr, met)) return false;
   const uint32_t mesh = met.hit.mesh_id;
   const int mirror = mirror_of_(mesh, met.hit.triangle_id);
   if (mirror >= 0 && mirrors_[mirror].is_solid) {

@@ -23,9 +23,12 @@ struct FrustumSource {
   double offset = 0.0;               // of its plane
 };
 
+// Says what casts shadows: all surfaces, or flagged mirrors alone, wherever the others stand.
+enum class ShadowsOf { kAll, kMirrors };
+
 class FrustumShadows {
  public:
-  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors);
+  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowsOf casters = ShadowsOf::kAll);
   // Shrinks `window`, a convex polygon on the mirror `target`, to a convex polygon that holds all that can be seen from the
   // source; it is empty where all is hidden. Parts of it may still be hidden: rays find that out. Shadows are taken away one
   // after the other, each of a whole mirror without holes or of the one triangle that was met.
@@ -33,10 +36,12 @@ class FrustumShadows {
 
  private:
   bool look(const FrustumSource& source, const Mirror& target, const Vec3& point, std::vector<Vec3>& occluder) const;
+  bool meets(const Vec3& from, const Vec3& direction, double reach, bool is_on_surface, RayHit& met) const;
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
   MirrorIndex mirror_of_;
+  ShadowsOf casters_;
 };
 
 }  // namespace echopath

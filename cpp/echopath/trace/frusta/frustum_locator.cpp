@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <mutex>
 #include <numeric>
+#include <vector>
 
 namespace echopath {
 namespace {
@@ -30,82 +33,111 @@ Reach reach_into(const Eigen::AlignedBox3d& box, std::span<const HalfSpace> regi
 
 }  // namespace
 
-// Holds a cell that is about to be halved, and which frusta reach into it.
-struct FrustumLocator::Growth {
-  Eigen::AlignedBox3d box;
-  std::vector<int> holding, crossing;  // all of the cell, a part of it; both ascending
-  int depth = 0, num_vain = 0;
+class FrustumLocator::Cells {
+ public:
+  Cells(std::span<const MirrorFrustum> frusta, double radius) : all_(frusta.size()) {
+    std::iota(all_.begin(), all_.end(), 0);
+    if (frusta.size() <= kFewFrusta) return;
+    for (const MirrorFrustum& frustum : frusta) {
+      const std::vector<HalfSpace> region = frustum.region(radius);
+      begin_.push_back(halves_.size());
+      halves_.insert(halves_.end(), region.begin(), region.end());
+      for (const Vec3& corner : frustum.window) root_.box.extend(corner);
+    }
+    begin_.push_back(halves_.size());
+    const Vec3 around = Vec3::Constant(kAround * root_.box.sizes().maxCoeff());
+    root_.box = Eigen::AlignedBox3d(Vec3(root_.box.min() - around), Vec3(root_.box.max() + around));
+    root_.crossing = all_;
+    num_entries_ = root_.size();
+  }
 
-  size_t size() const { return holding.size() + crossing.size(); }
+  std::span<const int> near(const Vec3& point) {
+    if (!root_.box.contains(point)) return all_;  // also where there are few: then it is empty
+    Cell* at = &root_;
+    for (;;) {
+      if (!at->is_settled.load(std::memory_order_acquire)) settle(*at);
+      if (!at->parts) return at->holding;
+      at = &(*at->parts)[point[at->axis] < at->split ? 0 : 1];
+    }
+  }
+
+ private:
+  struct Cell {
+    Eigen::AlignedBox3d box;
+    std::vector<int> holding, crossing;  // frusta that reach into all of the cell and into a part of it; both ascending
+    int depth = 0, num_vain = 0;
+    std::atomic<bool> is_settled = false;        // all below is for good
+    int axis = 0;                                // along which it is halved
+    double split = 0.0;                          // m
+    std::unique_ptr<std::array<Cell, 2>> parts;  // below and above; none: it is not halved, and `holding` are all frusta
+
+    size_t size() const { return holding.size() + crossing.size(); }
+  };
+
+  std::span<const HalfSpace> region_of(int frustum) const {
+    return {halves_.data() + begin_[frustum], begin_[frustum + 1] - begin_[frustum]};
+  }
+
+  // A frustum that holds all of a cell holds its halves, too, and is looked at no more.
+  void fill(const Cell& whole, Cell& half) const {
+    half.holding = whole.holding;
+    half.depth = whole.depth + 1;
+    const auto num_before = std::ssize(half.holding);
+    for (const int frustum : whole.crossing) {
+      const Reach reach = reach_into(half.box, region_of(frustum));
+      if (reach == Reach::kWhole) half.holding.push_back(frustum);
+      if (reach == Reach::kPart) half.crossing.push_back(frustum);
+    }
+    std::inplace_merge(half.holding.begin(), half.holding.begin() + num_before, half.holding.end());
+  }
+
+  void settle(Cell& cell) {
+    const std::lock_guard lock(growing_);
+    if (cell.is_settled.load(std::memory_order_relaxed)) return;
+    const bool is_full = num_entries_ + cell.size() > kMaxEntries;
+    if (cell.size() > kFewFrusta && cell.depth < kMaxHalvings && cell.num_vain < kMaxVain && !is_full) halve(cell);
+    else end_with(cell);
+    cell.is_settled.store(true, std::memory_order_release);
+  }
+
+  void halve(Cell& cell) {
+    Eigen::Index axis = 0;
+    cell.box.sizes().maxCoeff(&axis);
+    cell.axis = static_cast<int>(axis);
+    cell.split = cell.box.center()[axis];
+    cell.parts = std::make_unique<std::array<Cell, 2>>();
+    Cell &below = (*cell.parts)[0], &above = (*cell.parts)[1];
+    below.box = above.box = cell.box;
+    below.box.max()[axis] = above.box.min()[axis] = cell.split;
+    fill(cell, below);
+    fill(cell, above);
+    const size_t kept = below.size() + above.size();
+    const bool is_vain = static_cast<double>(kept) > 2.0 * kWorth * static_cast<double>(cell.size());
+    below.num_vain = above.num_vain = is_vain ? cell.num_vain + 1 : 0;
+    num_entries_ += kept - cell.size();
+    cell.holding = cell.crossing = {};
+  }
+
+  static void end_with(Cell& cell) {
+    const auto num_holding = std::ssize(cell.holding);
+    cell.holding.insert(cell.holding.end(), cell.crossing.begin(), cell.crossing.end());
+    std::inplace_merge(cell.holding.begin(), cell.holding.begin() + num_holding, cell.holding.end());
+    cell.crossing = {};
+  }
+
+  std::vector<int> all_;           // frusta that may reach a point outside of the cells
+  std::vector<HalfSpace> halves_;  // of the regions of the frusta, side by side
+  std::vector<size_t> begin_;      // [frusta + 1] into halves_
+  std::mutex growing_;             // held while a cell is settled
+  Cell root_;
+  size_t num_entries_ = 0;  // of all cells that are not halved
 };
 
-FrustumLocator::FrustumLocator(std::span<const MirrorFrustum> frusta, double radius) : all_(frusta.size()) {
-  std::iota(all_.begin(), all_.end(), 0);
-  if (frusta.size() <= kFewFrusta) return;
-  Regions regions;
-  for (const MirrorFrustum& frustum : frusta) {
-    const std::vector<HalfSpace> region = frustum.region(radius);
-    regions.begin.push_back(regions.halves.size());
-    regions.halves.insert(regions.halves.end(), region.begin(), region.end());
-    for (const Vec3& corner : frustum.window) box_.extend(corner);
-  }
-  regions.begin.push_back(regions.halves.size());
-  const Vec3 around = Vec3::Constant(kAround * box_.sizes().maxCoeff());
-  box_ = Eigen::AlignedBox3d(Vec3(box_.min() - around), Vec3(box_.max() + around));
-  grow(regions, {box_, {}, all_, 0, 0});
-}
-
-// A frustum that holds all of a cell holds its halves, too, and is looked at no more.
-FrustumLocator::Growth FrustumLocator::half_of(const Regions& regions, const Growth& whole, const Eigen::AlignedBox3d& box) {
-  Growth half{box, whole.holding, {}, whole.depth + 1, 0};
-  const auto num_before = std::ssize(half.holding);
-  for (const int frustum : whole.crossing) {
-    const Reach reach = reach_into(box, regions.of(frustum));
-    if (reach == Reach::kWhole) half.holding.push_back(frustum);
-    if (reach == Reach::kPart) half.crossing.push_back(frustum);
-  }
-  std::inplace_merge(half.holding.begin(), half.holding.begin() + num_before, half.holding.end());
-  return half;
-}
-
-void FrustumLocator::end_with(const Growth& cell, size_t index) {
-  cells_[index].begin = entries_.size();
-  std::merge(cell.holding.begin(), cell.holding.end(), cell.crossing.begin(), cell.crossing.end(),
-             std::back_inserter(entries_));
-  cells_[index].end = entries_.size();
-}
-
-int FrustumLocator::grow(const Regions& regions, Growth cell) {
-  const auto index = cells_.size();
-  cells_.emplace_back();
-  const bool is_full = entries_.size() + cell.size() > kMaxEntries;
-  if (cell.size() <= kFewFrusta || cell.depth == kMaxHalvings || cell.num_vain == kMaxVain || is_full) {
-    end_with(cell, index);
-    return static_cast<int>(index);
-  }
-  Eigen::Index axis = 0;
-  cell.box.sizes().maxCoeff(&axis);
-  const double split = cell.box.center()[axis];
-  std::array<Eigen::AlignedBox3d, 2> boxes = {cell.box, cell.box};
-  boxes[0].max()[axis] = boxes[1].min()[axis] = split;
-  Growth below = half_of(regions, cell, boxes[0]), above = half_of(regions, cell, boxes[1]);
-  const auto kept = static_cast<double>(below.size() + above.size());
-  below.num_vain = above.num_vain = kept > 2.0 * kWorth * static_cast<double>(cell.size()) ? cell.num_vain + 1 : 0;
-  cell = {};
-  cells_[index].axis = static_cast<int>(axis);
-  cells_[index].split = split;
-  grow(regions, std::move(below));
-  const int second = grow(regions, std::move(above));
-  cells_[index].second = second;
-  return static_cast<int>(index);
-}
+FrustumLocator::FrustumLocator(std::span<const MirrorFrustum> frusta, double radius)
+    : cells_(std::make_shared<Cells>(frusta, radius)) {}
 
 std::span<const int> FrustumLocator::near(const Vec3& point) const {
-  if (cells_.empty() || !box_.contains(point)) return all_;
-  size_t at = 0;
-  while (cells_[at].axis >= 0)
-    at = point[cells_[at].axis] < cells_[at].split ? at + 1 : static_cast<size_t>(cells_[at].second);
-  return {entries_.data() + cells_[at].begin, cells_[at].end - cells_[at].begin};
+  return cells_ ? cells_->near(point) : std::span<const int>();
 }
 
 }  // namespace echopath

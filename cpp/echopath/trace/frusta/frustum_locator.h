@@ -1,8 +1,8 @@
 #pragma once
 // Finds which frusta may light a point: it divides the space about the mirrors into cells, each with the frusta that reach
 // into it.
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "echopath/trace/frusta/mirror_frusta.h"
 
@@ -13,33 +13,13 @@ class FrustumLocator {
   FrustumLocator() = default;
   // `radius` is in m, as in MirrorFrustum::reaches.
   FrustumLocator(std::span<const MirrorFrustum> frusta, double radius);
-  // Returns the indices of all frusta into which a ball about the point reaches, and of some others; ascending.
+  // Returns the indices of all frusta into which a ball about the point reaches, and of some others; ascending. This is
+  // thread-safe: cells are halved where the first points come to lie, as most of the space has none.
   std::span<const int> near(const Vec3& point) const;
 
  private:
-  struct Cell {
-    int axis = -1;              // along which it is halved, -1: not
-    double split = 0.0;         // m
-    int second = 0;             // the half above; the one below follows this cell
-    size_t begin = 0, end = 0;  // in entries_
-  };
-  struct Regions {  // of the frusta, side by side
-    std::vector<HalfSpace> halves;
-    std::vector<size_t> begin;  // [frusta + 1] into halves
-
-    std::span<const HalfSpace> of(int frustum) const {
-      return {halves.data() + begin[frustum], begin[frustum + 1] - begin[frustum]};
-    }
-  };
-  struct Growth;
-  static Growth half_of(const Regions& regions, const Growth& whole, const Eigen::AlignedBox3d& box);
-  void end_with(const Growth& cell, size_t index);
-  int grow(const Regions& regions, Growth cell);
-
-  Eigen::AlignedBox3d box_;  // of all cells
-  std::vector<int> all_;     // frusta that may reach a point outside of the box
-  std::vector<Cell> cells_;
-  std::vector<int> entries_;
+  class Cells;
+  std::shared_ptr<Cells> cells_;
 };
 
 }  // namespace echopath

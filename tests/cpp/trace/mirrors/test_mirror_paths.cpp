@@ -216,6 +216,22 @@ TEST(FrustumLocator, HoldsAllFrustaThatReachAPointInTheirOrder) {
   EXPECT_LT(num_near, 2000 * frusta.size() / 5);  // else it would be no help
 }
 
+// Cells are halved where points come first, whichever thread brings them.
+TEST(FrustumLocator, FindsTheSameForThreadsSideBySide) {
+  const auto mirrors = mirrors_of(random_mirrors(40, 7));
+  const std::vector<MirrorFrustum> frusta = FrustumFinder(mirrors).find({0.1, 0.2, 0.3}, {}).frusta;
+  const FrustumLocator alone(frusta, 1e-3), shared(frusta, 1e-3);
+  std::mt19937 draw(8);
+  std::uniform_real_distribution<double> uniform(-8.0, 8.0);
+  std::vector<std::pair<Vec3, std::span<const int>>> looked_up(4000);
+  for (auto& [point, near] : looked_up) point = {uniform(draw), uniform(draw), uniform(draw)};
+  parallel_for(std::ssize(looked_up), [&](int64_t i) {
+    auto& [point, near] = looked_up[static_cast<size_t>(i)];
+    near = shared.near(point);
+  });
+  for (const auto& [point, near] : looked_up) EXPECT_TRUE(std::ranges::equal(near, alone.near(point)));
+}
+
 TEST(BoxHierarchy, FindsTheBoxesThatALoopFinds) {
   std::mt19937 draw(9);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

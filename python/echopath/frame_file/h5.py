@@ -15,7 +15,10 @@ import numpy as np
 
 from .. import _core
 from ..base.process.interrupts import heed
-from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of, text_types
+from .h5_items import (
+    BLOCK_BYTES, is_chunked, item_of, library, memory_type, name_of, new_dataset, read_blocks, scalar, shape_of, text_types,
+    write_blocks,
+)
 
 CHUNK_BYTES = 1 << 20   # of compression
 SMALL_BYTES = 1 << 12   # up to it a dataset is not compressed
@@ -55,7 +58,7 @@ def _take_space(path) -> None:
 
 def reserve(group, num_bytes: int) -> None:
     """Space on the disk for a dataset of `num_bytes` at the end of the file; raises OSError where there is none."""
-    file = group.file.id
+    file = library().h5i.get_file_id(group.id)
     os.posix_fallocate(file.get_vfd_handle(), file.get_filesize(), num_bytes + num_bytes // 64 + SPARE_BYTES)
 
 
@@ -65,28 +68,33 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
     compress: shuffle and gzip level 1, for data with repetition (noise-like data grow no smaller and take longer).
     """
     values = np.asarray(values)
-    options = {}
-    if compress and values.nbytes > SMALL_BYTES:
-        options = {"chunks": _chunks(values.shape, values.itemsize), "compression": "gzip", "compression_opts": 1,
-                   "shuffle": True}
+    is_compressed = compress and values.nbytes > SMALL_BYTES
     reserve(group, values.nbytes)
-    dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
-    _fill(dataset, ((rows, values[rows]) for rows in row_blocks(values.shape, values.itemsize)), unit)
+    dataset = new_dataset(group, name, values, _chunks(values.shape, values.itemsize) if is_compressed else None)
+    _describe(dataset, write_blocks(dataset, values), unit)
 
 
 def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
-    """Writes arrays of one shape as one array [N, ...], one after the other."""
-    reserve(group, sum(values.nbytes for values in arrays))
+    """Writes arrays of one shape as one array [N, ...], large ones one after the other."""
+    num_bytes = sum(values.nbytes for values in arrays)
+    if num_bytes <= BLOCK_BYTES:
+        write_array(group, name, np.stack(arrays), unit=unit)
+        return
+    reserve(group, num_bytes)
     dataset = group.create_dataset(name, shape=(len(arrays), *arrays[0].shape), dtype=arrays[0].dtype)
-    _fill(dataset, enumerate(arrays), unit)
+    _describe(dataset.id, _written_one_by_one(dataset, arrays), unit)
 
 
-def _fill(dataset, blocks, unit: str) -> None:
-    """Writes (place, values) in turn, and what is known of the whole."""
+def _written_one_by_one(dataset, arrays):
+    for place, values in enumerate(arrays):
+        dataset[place] = values = np.ascontiguousarray(values)
+        yield values
+
+
+def _describe(dataset, blocks, unit: str) -> None:
+    """Writes what is known of a whole dataset, whose values are those of blocks that come in turn."""
     check_sum = 0
-    for place, values in blocks:
-        values = np.ascontiguousarray(values)
-        dataset[place] = values
+    for values in blocks:
         check_sum = zlib.crc32(values, check_sum)
         heed()
     write_attribute(dataset, "unit", unit)
@@ -111,8 +119,9 @@ def write_texts(group, name: str, texts) -> None:
 def write_attribute(item, name: str, value) -> None:
     """Writes an attribute, in the place of one of that name: a number, or a text in UTF-8 of fixed length."""
     h5py = library()
-    if h5py.h5a.exists(item.id, name.encode()):
-        h5py.h5a.delete(item.id, name.encode())
+    place, key = item.id if isinstance(item, h5py.HLObject) else item, name.encode()
+    if h5py.h5a.exists(place, key):
+        h5py.h5a.delete(place, key)
     if isinstance(value, str):
         text = _encoded(name, value)
         dtype, kind = text_types(len(text))
@@ -120,7 +129,7 @@ def write_attribute(item, name: str, value) -> None:
     else:
         value = np.asarray(value)
         kind = memory_type(value.dtype)
-    h5py.h5a.create(item.id, name.encode(), kind, h5py.h5s.create(h5py.h5s.SCALAR)).write(value, kind)
+    h5py.h5a.create(place, key, kind, scalar()).write(value, kind)
 
 
 def _encoded(name: str, text: str) -> bytes:

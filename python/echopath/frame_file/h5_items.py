@@ -84,6 +84,59 @@ def text_types(length: int):
     return dtype, h5py.h5t.py_create(dtype, logical=True)
 
 
+def new_dataset(group, name: str, values, chunks: tuple | None = None):
+    """A new dataset `name` of a group for values of a shape and type, an array or what says both.
+
+    chunks: shape of the blocks that are shuffled and compressed, gzip of level 1; None: it lies in one piece, as it is
+    """
+    h5py = library()
+    kind = h5py.h5t.py_create(values.dtype, logical=True) if values.dtype.kind in "SO" else _number_type(values.dtype)
+    return h5py.h5d.create(group.id, name.encode(), kind, h5py.h5s.create_simple(values.shape), _creation(chunks),
+                           _linking(name.isascii()))
+
+
+@functools.lru_cache
+def _creation(chunks: tuple | None):
+    h5py = library()
+    settings = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    settings.set_obj_track_times(False)
+    if chunks is not None:
+        settings.set_chunk(chunks)
+        settings.set_shuffle()
+        settings.set_deflate(1)
+    return settings
+
+
+@functools.cache
+def _linking(is_ascii: bool):
+    h5py = library()
+    settings = h5py.h5p.create(h5py.h5p.LINK_CREATE)
+    settings.set_create_intermediate_group(True)
+    settings.set_char_encoding(h5py.h5t.CSET_ASCII if is_ascii else h5py.h5t.CSET_UTF8)
+    return settings
+
+
+@functools.cache
+def scalar():
+    """The place of a single value."""
+    h5py = library()
+    return h5py.h5s.create(h5py.h5s.SCALAR)
+
+
+def write_blocks(dataset, values):
+    """Writes an array to a dataset, and yields what is written at a time."""
+    h5py = library()
+    if 0 < values.nbytes <= BLOCK_BYTES:
+        values = np.ascontiguousarray(values)
+        dataset.write(h5py.h5s.ALL, h5py.h5s.ALL, values, memory_type(values.dtype))
+        yield values
+        return
+    target = h5py.Dataset(dataset)
+    for rows in row_blocks(values.shape, values.itemsize):
+        target[rows] = block = np.ascontiguousarray(values[rows])
+        yield block
+
+
 def read_blocks(dataset, values):
     """Fills an array with the values of a dataset, and yields what is read at a time."""
     h5py = library()

@@ -9,6 +9,7 @@ import pytest
 import echopath as ep
 from support.files import small_dataset as small
 from support.labelled import trace_plates_and_wall
+from support.pictures import plain
 
 # Seconds each: whoever comes to one of them last would be waited for by all others.
 LONGEST_FILES = ("documents/test_docs_site.py", "replay/test_reference.py", "bench/test_hard.py", "actors/test_crowds.py",
@@ -43,6 +44,13 @@ def blank_pictures(monkeypatch):
     Their files are there, and empty."""
     monkeypatch.setattr(ep.plots, "save_png", lambda figure, path, **_: Path(path).write_bytes(b""))
     monkeypatch.setattr("echopath.cli.run_sequence.write_film_of", lambda drive, path, interval: Path(path).write_bytes(b""))
+
+
+@pytest.fixture
+def plain_pictures():
+    """The figures of commands are drawn but not laid out."""
+    with plain():
+        yield
 
 
 @pytest.fixture

@@ -204,11 +204,24 @@ def _is_cut(edge, low, high) -> bool:
 def _of_equal_length(polygons) -> np.ndarray:
     """Polygons [N, K, D], which end with their last corner as often as the longest has more: Matplotlib takes an array at
     once, but a list one by one."""
-    most = max(map(len, polygons), default=3)
-    corners = np.empty((len(polygons), most, polygons[0].shape[1] if polygons else 2))
-    for row, polygon in zip(corners, polygons):
-        row[:len(polygon)], row[len(polygon):] = polygon, polygon[-1]
-    return corners
+    if not polygons:
+        return np.empty((0, 3, 3))
+    counts, starts = _counted(polygons)
+    return np.concatenate(polygons)[starts[:, None] + np.minimum(np.arange(counts.max()), counts[:, None] - 1)]
+
+
+def _counted(polygons) -> tuple:
+    """Number of corners of each polygon [N], and the place of its first among those of all [N]."""
+    counts = np.array([len(polygon) for polygon in polygons], int)
+    return counts, np.cumsum(counts) - counts
+
+
+def _middles(polygons, axis: int) -> np.ndarray:
+    """Mean of the corners of each polygon along an axis [N]."""
+    if not polygons:
+        return np.empty(0)
+    counts, starts = _counted(polygons)
+    return np.add.reduceat(np.concatenate(polygons)[:, axis], starts) / counts
 
 
 def _shaded(corners) -> list:
@@ -339,8 +352,8 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
         axes.add_collection(LineCollection(segments[:, :, columns], colors=_colour(count), linewidths=0.5,
                                            alpha=_ray_opacity(segments)))
     toward_viewer = 1.0 if depth == 2 else -1.0
-    order = np.argsort([toward_viewer * polygon[:, depth].mean() for polygon in drawing.bodies], kind="stable")
-    axes.add_collection(PolyCollection(_of_equal_length([drawing.bodies[i][:, columns] for i in order]),
+    order = np.argsort(toward_viewer * _middles(drawing.bodies, depth), kind="stable")
+    axes.add_collection(PolyCollection(_of_equal_length(drawing.bodies)[order][:, :, columns],
                                        facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="none"))
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])

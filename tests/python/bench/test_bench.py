@@ -91,6 +91,7 @@ def test_sampler_is_checked_and_kept(tmp_path):
         assert again.frame.sampler == sampler and np.array_equal(again.amplitude, paths.amplitude)
 
 
+@pytest.mark.usefixtures("plain_pictures")
 def test_command_writes_numbers_and_picture(tmp_path, capsys):
     assert main(["bench", "physics", "--out", str(tmp_path / "b"), "--quick", "--rays-max", "1024"]) == 0
     results = json.loads((tmp_path / "b" / "physics.json").read_text())

@@ -38,6 +38,7 @@ def test_partitions_have_the_number_of_parts_that_is_asked_for(paths):
         assert len(names) == min(count, 13) and names[-1] == "other"
 
 
+@pytest.mark.usefixtures("plain_pictures")
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(labels, "QUICK_RAYS", (200,))
     monkeypatch.setattr(labels, "QUICK_NUM_HITS", 20_000)

@@ -46,6 +46,7 @@ def test_the_table_has_the_broadside_of_its_targets(table):
         assert rows["measured_dbsm"] == pytest.approx(10.0 * np.log10(4.0 * np.pi * area ** 2 / wavelength ** 2), abs=1.0)
 
 
+@pytest.mark.usefixtures("plain_pictures")
 def test_a_run_writes_a_table_and_a_picture(tmp_path, monkeypatch):
     monkeypatch.setattr(measured, "TARGETS", [of_name("plate")])
     found = measured.run_measured(tmp_path, quick=True)

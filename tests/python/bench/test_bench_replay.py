@@ -24,6 +24,7 @@ def test_a_newton_step_serves_arrays_near_walls():
     assert row["paths"] > 10 and row["material_rad"] > IMAGE_RAD > 10 * row["fermat_rad"]
 
 
+@pytest.mark.usefixtures("plain_pictures")
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(replay, "ERROR_RAYS", 200)
     monkeypatch.setattr(replay, "QUICK_RAYS", 1000)

@@ -96,6 +96,7 @@ def test_the_large_frame_has_all_its_chirps_and_channels_and_must_fit_into_memor
     assert len(speed._memory_rows(frames, None)) == 1
 
 
+@pytest.mark.usefixtures("plain_pictures")
 def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(speed_synthesis, "finufft_version", lambda: None)
     monkeypatch.setattr(speed_synthesis, "TOLERANCES", (1e-3, 1e-6))

@@ -65,7 +65,9 @@ def test_the_report_counts_what_is_there(small_dataset, tmp_path):
     assert text.count("Validity: ") == 4  # of each frame that is shown
 
 
-def test_the_command_writes_the_report_beside_the_frames(small_dataset, tmp_path, capsys):
+def test_the_command_writes_the_report_beside_the_frames(small_dataset, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("echopath.dataset.report.EXAMPLES", 1)
+    monkeypatch.setattr("echopath.dataset.report.MOST_DRAWN", 3)
     copied = tmp_path / "copy"
     shutil.copytree(small_dataset[1], copied)
     assert main(["dataset-report", str(copied)]) == 0

@@ -14,7 +14,7 @@ from support.frames_in_time import INTERVAL, KILL_SOON, make_radar, make_scene, 
 KEEPS = ["all", "maps", "labels"]
 TESTS = Path(__file__).parents[2]
 WAIT = 60.0  # s, for a process on a busy machine
-MANY = 8     # frames: more than a process makes before it is killed
+MANY = 5     # frames: more than a process makes before it is killed
 
 
 def contents_of(folder: Path) -> dict[str, bytes]:

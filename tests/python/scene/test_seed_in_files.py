@@ -10,6 +10,7 @@ import echopath as ep
 from echopath.bench.machine import machine
 from echopath.cli.run import write_outputs
 from echopath.plots.style import new_figure, save_png
+from support.pictures import plain
 from support.radars import build_radar
 from support.shapes import lambert
 
@@ -29,7 +30,8 @@ def folder(tmp_path_factory):
     frame = ep.simulate(scene, radar, num_rays=2000, seed=SEED, noise_seed=NOISE_SEED, parts={"one": "T . R"}, labels=True,
                         detections={"false_alarm_rate": 1e-2})
     assert len(frame.detections) > 0
-    write_outputs(frame, folder, partitions=frame.parts)
+    with plain():
+        write_outputs(frame, folder, partitions=frame.parts)
     ep.save_labels(frame.labels, folder / "labels.h5")
     return folder
 

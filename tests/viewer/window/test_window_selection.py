@@ -160,6 +160,17 @@ def test_the_check_box_of_a_mesh_with_meshes_below_it_tells_of_both(qtbot, windo
         assert (house.checkState(0), house.child(0).checkState(0)) == shown
 
 
+def test_menus_of_the_tree_go_without_a_trace_and_without_a_word_of_qt(qtbot, window, qtlog):
+    place = window.tree.visualItemRect(window.tree.topLevelItem(0)).center()
+    for _ in range(3):
+        window.tree.customContextMenuRequested.emit(place)
+        menu = QtWidgets.QApplication.activePopupWidget()
+        assert menu.actions()[2].text() == "Show it alone"
+        qtbot.keyClick(menu, Qt.Key.Key_Escape)
+        settle(qtbot)
+    assert window.tree.findChildren(QtWidgets.QMenu) == [] and [record.message for record in qtlog.records] == []
+
+
 def test_the_map_of_a_mesh_is_made_anew_when_the_filters_have_come_to_rest(qtbot, window):
     window.session.select_node("walker/head")
     key = (MESH_GROUP, "walker/head")

@@ -1,7 +1,7 @@
 """The scene as a window of its own on the screen."""
 from __future__ import annotations
 
-from ..qt import Qt, QtGui
+from ..qt import Qt, QtCore, QtGui
 
 
 def give_own_window(widget) -> None:
@@ -12,5 +12,7 @@ def give_own_window(widget) -> None:
     their places.
     """
     if QtGui.QGuiApplication.platformName() == "xcb":
+        # Panels beside it would get windows, too, and Qt would complain of each menu over them.
+        QtCore.QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_DontCreateNativeWidgetSiblings)
         widget.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
         widget.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)

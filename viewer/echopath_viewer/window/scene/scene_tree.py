@@ -106,6 +106,7 @@ class SceneTree(QtWidgets.QTreeWidget):
             return
         name = item.data(NAME, NODE_ROLE)
         menu = QtWidgets.QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Map of the paths that hit it", lambda: self.node_clicked.emit(name))
         menu.addAction("Only rays that hit it", lambda: self.rays_wanted.emit(name))
         menu.addAction("Show it alone", lambda: self._show_alone(name))

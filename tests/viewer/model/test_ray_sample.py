@@ -49,6 +49,15 @@ def test_every_mesh_that_there_is_room_for_has_a_ray(count):
     assert drawn == there or count < len(there)
 
 
+@pytest.mark.filterwarnings("error")
+def test_rays_far_beyond_the_filter_of_the_receiver_are_drawn_without_a_warning():
+    """Their power is so low that the sum of a cell vanishes."""
+    groups = TouchGroups(np.array([0, 1, 2]), np.ones(3, int), np.array([0, 0, 1]), 2)
+    power = np.array([1e-300, 1e-320, 1e-310])
+    sampler = RaySampler(groups, power, np.zeros(len(groups)), 2)
+    assert sorted(sampler.sample(np.ones(3, bool), 5)) == [0, 1, 2]
+
+
 def test_coherent_power_is_the_peak_of_a_slow_sum():
     rng = np.random.default_rng(3)
     offsets, num_bounces, mesh_id = record(rng, 800, 4)

@@ -48,7 +48,8 @@ class RaySampler:
         """How many paths of each group: by decibels over the weakest that counts, and a few for every mesh."""
         with np.errstate(divide="ignore"):
             level = 10.0 * np.log10(np.where(sizes > 0, self.coherent_power, 0.0))
-        weight = np.clip(level - (level.max(initial=-np.inf) - SPAN_DB), 0.0, SPAN_DB) if (sizes > 0).any() else 0.0 * sizes
+        highest = level.max(initial=-np.inf)
+        weight = np.clip(level - (highest - SPAN_DB), 0.0, SPAN_DB) if np.isfinite(highest) else 0.0 * sizes
         sure = self._sure_of_meshes(sizes, count, strongest)
         return sure + _shared(np.nan_to_num(weight), sizes - sure, count - int(sure.sum()))
 

@@ -156,6 +156,61 @@ def test_new_frames_come_and_damaged_ones_are_told(qtbot, shared_window, stored_
     window.time_line.show(None)
 
 
+@pytest.fixture
+def damaged(stored_run, tmp_path):
+    """Folder of a sequence that makes the frame at a place no frame."""
+    shutil.copytree(stored_run.path, tmp_path / "run")
+
+    def damage(place: int):
+        (tmp_path / "run" / f"frame_{place:04d}.h5").write_bytes(b"no frame")
+        return tmp_path / "run"
+
+    return damage
+
+
+def test_steps_and_films_go_over_a_frame_that_is_damaged(qtbot, shared_window, damaged):
+    """Whoever stepped had come no farther, and a film had ended."""
+    window, control = shared_window, shared_window.time_line
+    assert window.open_file(damaged(1))
+    for step, place in ((window.next_frame, 2), (window.previous_frame, 0)):
+        window.show_message("")
+        step()
+        wait_for(qtbot, window, place)
+        assert "frame_0001.h5" in window.banner.text() and f"frame {place + 1} of 3" in window.frame_bar.label.text()
+    control.go(1)
+    qtbot.waitUntil(lambda: not control.is_busy, timeout=PATIENCE_MS)
+    assert control.place == 0
+    damaged(2)
+    window.next_frame()
+    qtbot.waitUntil(lambda: "frame_0002.h5" in window.banner.text() and not control.is_busy, timeout=PATIENCE_MS)
+    assert control.place == 0
+    control.show(None)
+
+
+def test_a_film_goes_over_damaged_frames_and_ends_where_there_is_no_other(qtbot, shared_window, damaged):
+    window, control, seen = shared_window, shared_window.time_line, []
+    assert window.open_file(damaged(2))
+    control.read.connect(lambda _: seen.append(control.place))
+    window.toggle_play_frames()
+    qtbot.waitUntil(lambda: seen[:3] == [1, 0, 1], timeout=PATIENCE_MS)
+    damaged(0)
+    damaged(1)
+    qtbot.waitUntil(lambda: not control.is_playing and not control.is_busy, timeout=PATIENCE_MS)
+    control.show(None)
+
+
+def test_a_sequence_whose_first_frame_is_damaged_opens_at_the_next_one(qtbot, shared_window, damaged):
+    window, control = shared_window, shared_window.time_line
+    assert window.open_file(damaged(0))
+    assert control.place == 1 and "frame 2 of 3" in window.frame_bar.label.text()
+    control.look()
+    assert "frame_0000.h5" in window.banner.text()
+    damaged(1)
+    damaged(2)
+    assert not window.open_file(damaged(0)) and "frame_0000.h5" in window.banner.text()
+    control.show(None)
+
+
 def test_f5_reads_the_frame_on_display_anew(qtbot, shared_window, stored_run, tmp_path):
     """A folder of frames, of which one is written anew."""
     window = shared_window

@@ -116,4 +116,4 @@ def _read_one(what) -> tuple:
         line = time_line_of(what)
     if line is None:
         return from_file(what), None
-    return line.read(0), line
+    return line.read_first(), line

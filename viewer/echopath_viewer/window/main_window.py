@@ -82,7 +82,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
     def show_input(self, view_input, line=None) -> None:
         """Shows what `model.inputs` has read, and the window: there is no drawing into one that was never shown.
 
-        line: TimeLine whose first frame it is, None: it stands alone
+        line: TimeLine whose first frame that can be read it is, None: it stands alone
         """
         self.loading.stop()
         self.keeping.stop()

@@ -15,15 +15,12 @@ class _Stopped(Exception):
 
 
 class SimulatedFrames(TimeLine):
-    """Grows by a frame as soon as its file is written, so that memory does not grow with the number of frames.
-
-    failure: what went wrong with them, "" if nothing did
-    """
+    """Grows by a frame as soon as its file is written, so that memory does not grow with the number of frames."""
 
     def __init__(self, sequence):
         """sequence: ep.Sequence; its first frame is there when this returns. Raises what simulating it raises."""
         self._folder = tempfile.TemporaryDirectory(prefix="echopath-frames-", ignore_cleanup_errors=True)
-        self._is_wanted, self.failure = True, ""
+        self._is_wanted = True
         self._frames = sequence.save_frames(self._folder.name, progress=self._hear)
         try:
             next(self._frames)

@@ -58,12 +58,14 @@ class TimeLine:
     None is kept but for its meshes: reading them takes most of the time that reading a frame does, and a film has the same
     ones in all of its files.
     title: of what they are; moments: tuple of Moment; expected: how many there will be, None: nobody knows
+    first: place of the frame that `read_first` has read; failure: what went wrong and has not been told yet, "": nothing
     """
 
     def __init__(self, title: str, find: Callable, expected: int | None = None):
         """find: callable () -> list of Moment that are there now"""
         self.title, self._find, self.expected = title, find, expected
         self.moments: tuple = ()
+        self.first, self.failure = 0, ""
         self.meshes = KeptMeshes()
         self.refresh()
 
@@ -79,6 +81,20 @@ class TimeLine:
     def read(self, place: int) -> ViewInput:
         """The frame at a place. Raises ep.FileError."""
         return self.moments[place].read(self.meshes)
+
+    def read_first(self) -> ViewInput:
+        """The first frame that can be read. Raises ep.FileError where none can: what is wrong with the first of all."""
+        failures = []
+        for place in range(len(self)):
+            try:
+                view_input = self.read(place)
+            except ep.FileError as error:
+                failures.append(error)
+                continue
+            self.first = place
+            self.failure = str(failures[0]) if failures else self.failure
+            return view_input
+        raise failures[0]
 
     def close(self) -> None:
         """Ends whatever makes further frames."""

@@ -38,7 +38,7 @@ class Opening:
             with waiting_cursor():
                 line = time_line_of(path)
                 early = preview_of(path) if line is None else None
-                view_input = early or (from_file(path) if line is None else line.read(0))
+                view_input = early or (from_file(path) if line is None else line.read_first())
         except (ep.FileError, ValueError) as error:
             self.show_message(str(error))
             return False

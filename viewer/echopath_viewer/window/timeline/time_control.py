@@ -27,6 +27,7 @@ class TimeControl(QtCore.QObject):
         super().__init__(bar)
         self.bar, self._state_now, self._is_behind = bar, state_now, is_behind
         self.line, self.place, self._wanted, self._glances = None, 0, None, {}
+        self._way, self._num_failed = 0, 0  # 1 or -1: from frame to frame, 0: to a place; frames in a row that could not be read
         self._shown, self._trouble = None, ""  # Moment on display; what the last look has found wrong
         self.work, self._glancing = BackgroundWork(self), BackgroundWork(self)
         self._poll, self._film = QtCore.QTimer(self, interval=POLL_MS), QtCore.QTimer(self, interval=FILM_MS)
@@ -35,7 +36,7 @@ class TimeControl(QtCore.QObject):
         self._rest = QtCore.QTimer(self, singleShot=True, interval=REST_MS)
         self._rest.timeout.connect(self._rest_there)
         self.work.done.connect(self._take)
-        self.work.failed.connect(self._fail)
+        self.work.failed.connect(self._pass_over)
         self._glancing.done.connect(self._take_glances)
         self._glancing.failed.connect(self.failed)
         bar.wanted.connect(self.go)
@@ -57,14 +58,14 @@ class TimeControl(QtCore.QObject):
         """Whether frames are read of which the strip shows nothing yet."""
         return self._glancing.is_running
 
-    def show(self, line, place: int = 0) -> None:
-        """Takes over a time line of which the frame at a place is on display already; None: there is none."""
+    def show(self, line) -> None:
+        """Takes over a time line whose first frame is on display already; None: there is none."""
         self.stop()
-        self.line, self.place, self._glances = line, place, {}
+        self.line, self.place, self._glances = line, 0 if line is None else line.first, {}
         self.bar.setVisible(line is not None)
         self.bar.strip.show_glances([])
         if line is not None:
-            self._shown, self._trouble = line.moments[place], ""
+            self._shown, self._trouble, self._num_failed = line.moments[self.place], "", 0
             self._show_place()
             self._poll.start()
             self._read_glances()
@@ -86,12 +87,16 @@ class TimeControl(QtCore.QObject):
         self.bar.play_button.setChecked(False)
 
     def step(self, by: int) -> None:
-        """To a frame before or after."""
+        """To a frame before or after; over those that cannot be read."""
         if self.line is not None:
-            self.go(self.place + by if self._wanted is None else self._wanted + by)
+            self._num_failed = 0
+            self.go(self.place + by if self._wanted is None else self._wanted + by, 1 if by > 0 else -1)
 
-    def go(self, place: int) -> None:
-        """Shows the frame at a place, kept within those that are there, as soon as it is read."""
+    def go(self, place: int, way: int = 0) -> None:
+        """Shows the frame at a place, kept within those that are there, as soon as it is read.
+
+        way: 1 or -1 to the next or last one where it cannot be read, 0: to no other
+        """
         if self.line is None:
             return
         if not len(self.line):
@@ -100,7 +105,7 @@ class TimeControl(QtCore.QObject):
         place = min(max(place, 0), len(self.line) - 1)
         if place == self.place and self._wanted is None:
             return
-        self._wanted = place
+        self._wanted, self._way = place, way
         if not self.work.is_running:
             self._start(place)
 
@@ -110,12 +115,12 @@ class TimeControl(QtCore.QObject):
             return
         self.look()
         if len(self.line) and not self.work.is_running:
-            self._wanted = self.place
+            self._wanted, self._way = self.place, 0
             self._start(self.place)
 
     def look(self) -> None:
         """Finds frames that were written since."""
-        if getattr(self.line, "failure", ""):
+        if self.line.failure:
             self.failed.emit(self.line.failure)
             self.line.failure = ""
         if not self._has_found_others():
@@ -153,14 +158,28 @@ class TimeControl(QtCore.QObject):
         self.work.start(lambda progress: make_ready(session_like(state, moment.read(meshes)), is_passing))
 
     def _take(self, session) -> None:
-        self._shown, wanted, self._wanted = self._reading, self._wanted, None
+        self._shown, wanted, self._wanted, self._num_failed = self._reading, self._wanted, None, 0
         self.place = self._place_of(self._shown)
         self.read.emit(session)
         if self.is_playing:
             self._rest.start()
         self._show_place()
         if wanted is not None:
-            self.go(wanted)
+            self.go(wanted, self._way)
+
+    def _pass_over(self, text: str) -> None:
+        """Tells of a frame that cannot be read; whoever goes from frame to frame comes to the one behind it."""
+        place, wanted, self._num_failed = self._place_of(self._reading), self._wanted, self._num_failed + 1
+        if wanted == place:
+            wanted = place + self._way
+        if self.is_playing and wanted == len(self.line):
+            wanted = 0
+        if wanted != place and 0 <= wanted < len(self.line) and self._num_failed < len(self.line):
+            self._wanted = None
+            self.failed.emit(text)
+            self.go(wanted, self._way)
+        else:
+            self._fail(text)
 
     def _fail(self, text: str) -> None:
         self._wanted = None
@@ -174,6 +193,7 @@ class TimeControl(QtCore.QObject):
 
     def _play(self, is_on: bool) -> None:
         if is_on and self.line is not None:
+            self._num_failed = 0
             self._film.start()
         elif self._film.isActive():
             self._film.stop()
@@ -188,7 +208,7 @@ class TimeControl(QtCore.QObject):
             return  # further ones are being written
         if self._rest.isActive():
             self._rest.start()  # a frame may take long to be drawn: what counts is how long the next one is read
-        self.go(0 if is_last else self.place + 1)
+        self.go(0 if is_last else self.place + 1, 1)
 
     def _rest_there(self) -> None:
         """The film waits for its next frame."""

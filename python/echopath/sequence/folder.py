@@ -45,7 +45,7 @@ class FolderStore:
 
     def are_whole(self, places: Iterable[int]) -> list[bool]:
         """Whether there is a frame at each of some places whose file is as long as it was written."""
-        return [path.exists() and not is_cut_off(path) for path in map(self.frame_path, places)]
+        return [path.is_file() and not is_cut_off(path) for path in map(self.frame_path, places)]
 
     def contents(self) -> Contents:
         """Of which sequence it is. Raises ep.FileError."""

@@ -76,6 +76,13 @@ def test_files_that_are_not_whole_are_made_again(tmp_path, unbroken):
     assert contents_of(tmp_path) == contents_of(unbroken["all"])
 
 
+def test_a_folder_in_the_place_of_a_frame_is_no_frame(tmp_path):
+    make_sequence(frames=2).save(tmp_path, keep="maps")
+    (tmp_path / "frame_0001.h5").unlink()
+    (tmp_path / "frame_0001.h5").mkdir()
+    assert ep.load_sequence(tmp_path).is_done.tolist() == [True, False]
+
+
 def test_frames_are_saved_one_by_one_behind_bars(tmp_path, capsys):
     assert len(list(make_sequence(frames=2).save_frames(tmp_path, progress=True))) == 2
 

@@ -23,7 +23,7 @@ _LEFT = "text-align:left"
 def scene_html(scene) -> str:
     """The meshes of a scene with their size and material."""
     meshes = list(scene.meshes)
-    rows = [(mesh.name, len(mesh.triangles), _number(mesh.mesh.area), mesh.material_name or repr(mesh.material),
+    rows = [(mesh.name, len(mesh.triangles), _number(mesh.mesh.area), _material(mesh),
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
     weather = weather_of(scene)
     air = "" if weather is None else f", {weather_text(weather)}"
@@ -31,6 +31,13 @@ def scene_html(scene) -> str:
     return _table(f"Scene: {counted(len(scene.nodes), 'node')}, {counted(len(meshes), 'mesh')}, "
                   f"{counted(scene.num_triangles, 'triangle')}{air}{others}",
                   ("mesh", "triangles", "area in m²", "material", "motion"), rows, len(meshes))
+
+
+def _material(mesh) -> str:
+    """Of a name whether it is a mirror here, which the material of that name is not."""
+    if not mesh.material_name:
+        return repr(mesh.material)
+    return mesh.material_name + (", mirror" if mesh.material.mirror else "")
 
 
 def radar_html(radar) -> str:

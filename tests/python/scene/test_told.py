@@ -1,4 +1,5 @@
 """What radars, scenes, templates and frames tell of themselves: their repr, in notebooks, and to `echopath info`."""
+import re
 from math import pi
 from pathlib import Path
 
@@ -48,6 +49,15 @@ def test_a_scene_and_a_frame_tell_their_weather():
     for told in (scene._repr_html_(), frame._repr_html_(), repr(scene)):
         assert "rain_mm_per_hour 20" in told
     assert "weather" not in repr(ep.Scene())
+
+
+def test_a_scene_tells_its_mirrors():
+    scene = ep.Scene()
+    for name, height in (("left", 6.0), ("right", 0.1)):
+        scene.add(ep.actors.wall(8.0, height), name=name, material="brick", position=(0, 5, 0))
+    assert ep.mark_mirrors(scene, coded_radar()) == ("left",)
+    told = re.sub("<[^>]*>", " ", scene._repr_html_())
+    assert re.search(r"(?s)left .* brick, mirror .* right .* brick +at rest", told), told
 
 
 def test_info_tells_code_receiver_and_weather_of_a_frame(tmp_path):

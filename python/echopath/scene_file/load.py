@@ -11,6 +11,7 @@ from .. import _core
 from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from ..base.storage.data_folder import data_folder
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
@@ -150,12 +151,18 @@ def text_of(path: Path) -> str:
     try:
         return path.read_bytes().decode("utf-8-sig")  # with a byte-order mark, too
     except OSError as error:
-        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
+        raise _core.FileError(f"{path}: cannot be read ({error.strerror}){_one_that_comes_along(path)}") from None
     except UnicodeDecodeError as error:
         if path.suffix.lower() in FRAME_SUFFIXES:
             raise ValueError(f"{path}: a frame file, where a scene file (.toml) is asked for; `echopath info "
                              f"{quote(str(path))}` says what it holds") from None
         raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+
+
+def _one_that_comes_along(path: Path) -> str:
+    """Of a file that is not there: where the scene or template of its name is that comes with echopath, "" if none does."""
+    there = (data_folder(folder) / f"{path.stem}.toml" for folder in ("scenes", "datasets"))
+    return next((f"; the one that comes with echopath is {file}" for file in there if not path.exists() and file.is_file()), "")
 
 
 def parsed(text: str, path: Path) -> dict:

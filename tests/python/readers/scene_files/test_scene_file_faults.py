@@ -5,6 +5,7 @@ import math
 import os
 import re
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -252,3 +253,15 @@ def test_a_mirror_of_layers_without_a_whole_material_of_its_name_gets_no_name_in
     ("position = [0, 0, 0]\n" + RADAR, "position: unknown key; known keys: title, ")])
 def test_a_key_that_belongs_to_another_table_is_told_with_that(write, text, told):
     assert f": {told}" in fault_of(write("", radar=text))
+
+
+@pytest.mark.parametrize("typed", ["data/scenes/corners.toml", "corners.toml", "data/datasets/crossing.toml"])
+def test_a_scene_that_comes_along_is_told_where_nothing_stands(typed, tmp_path, monkeypatch):
+    """Who has the package alone types the path of the documentation."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ep.FileError, match="No such file.*; the one that comes with echopath is ") as told:
+        ep.load_scene(typed)
+    named = Path(str(told.value).split(" is ")[-1])
+    assert named.is_file() and named.name == Path(typed).name
+    with pytest.raises(ep.FileError, match=r"nothing\.toml: cannot be read \(No such file or directory\)$"):
+        ep.load_scene("nothing.toml")

@@ -1,4 +1,6 @@
 """Canonical targets, scenes and radars that tests of levels share."""
+import functools
+
 import numpy as np
 
 import echopath as ep
@@ -32,34 +34,35 @@ def plate(centre, normal, side, up=(0.0, 0.0, 1.0)):
 
 def sphere(centre, radius, subdivisions):
     """An icosphere of 20 * 4^subdivisions triangles."""
+    points, faces = _unit_sphere(subdivisions)
+    return ep.Mesh(np.asarray(centre) + radius * points, faces)
+
+
+@functools.cache
+def _unit_sphere(subdivisions):
+    """Points [V, 3] and triangles [F, 3], which nobody changes."""
     golden = 0.5 * (1 + np.sqrt(5))
-    points = [np.array(p) / np.hypot(1, golden) for p in (
+    points = np.array((
         (-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0), (0, -1, golden), (0, 1, golden),
-        (0, -1, -golden), (0, 1, -golden), (golden, 0, -1), (golden, 0, 1), (-golden, 0, -1), (-golden, 0, 1))]
+        (0, -1, -golden), (0, 1, -golden), (golden, 0, -1), (golden, 0, 1), (-golden, 0, -1), (-golden, 0, 1))) / np.hypot(1, golden)
     faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6),
              (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10),
              (8, 6, 7), (9, 8, 1)]
     for _ in range(subdivisions):
-        faces = _subdivided(points, faces)
-    return ep.Mesh(np.asarray(centre) + radius * np.array(points), faces)
+        points, faces = _subdivided(points, np.array(faces))
+    return points, faces
 
 
 def _subdivided(points, faces):
-    middles = {}
-
-    def middle(a, b):
-        key = (min(a, b), max(a, b))
-        if key not in middles:
-            middles[key] = len(points)
-            between = points[a] + points[b]
-            points.append(between / np.linalg.norm(between))
-        return middles[key]
-
-    fine = []
-    for a, b, c in faces:
-        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-        fine += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-    return fine
+    """Each triangle in four, whose new corners come in the order of the edges a b, b c and c a of all."""
+    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    _, first, index = np.unique(edges @ [len(points), 1], return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    between = points[edges[first[order]]].sum(axis=1)
+    middles = between / np.linalg.norm(between, axis=1)[:, None]
+    (a, b, c), (ab, bc, ca) = faces.T, (len(points) + np.argsort(order)[index]).reshape(-1, 3).T
+    fine = np.stack([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]])
+    return np.concatenate([points, middles]), fine.transpose(2, 0, 1).reshape(-1, 3)
 
 
 def scene_of(**objects):

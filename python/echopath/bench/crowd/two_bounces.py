@@ -3,11 +3,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...actors.surfaces import cross
 from ..physics.closed_forms import WAVELENGTH
 
 _TURNS = np.linspace(-0.3, 0.3, 3001)  # rad, from the middle of the first body: where the search begins
 _STEP = 1e-7                           # rad, of launch directions
 _STEPS = 30
+_UPWARD = np.array([0.0, 0.0, 1.0])
 _HITS = 1e-9                           # m, from the origin
 
 
@@ -47,11 +49,12 @@ class _Chain:
     def __init__(self, bodies):
         self._bodies = [(np.asarray(centre, float), np.asarray(semi_axes, float)) for centre, semi_axes in bodies]
         self._ahead = self._bodies[0][0] / np.linalg.norm(self._bodies[0][0])
-        self._aside = np.cross(self._ahead, [0.0, 0.0, 1.0])
+        self._aside = cross(self._ahead, _UPWARD)
+        self._up = cross(self._aside, self._ahead)
 
     def reflected(self, turn):
         """(last point, direction behind it), or None for a ray that misses a body."""
-        direction = self._ahead + turn[0] * self._aside + turn[1] * np.cross(self._aside, self._ahead)
+        direction = self._ahead + turn[0] * self._aside + turn[1] * self._up
         direction, start = direction / np.linalg.norm(direction), np.zeros(3)
         for centre, semi_axes in self._bodies:
             found = _met(start, direction, centre, semi_axes)
@@ -68,7 +71,7 @@ class _Chain:
             return np.array([10.0, 10.0])
         point, direction = found
         nearest = point - (point @ direction) * direction
-        return np.array([nearest @ np.cross(direction, [0.0, 0.0, 1.0]), nearest[2]])
+        return np.array([nearest @ cross(direction, _UPWARD), nearest[2]])
 
 
 def _met(start, direction, centre, semi_axes):

@@ -211,6 +211,28 @@ def test_a_sequence_whose_first_frame_is_damaged_opens_at_the_next_one(qtbot, sh
     control.show(None)
 
 
+def test_the_newest_frame_is_shown_once_it_is_copied_to_the_end(qtbot, shared_window, stored_run, damaged):
+    """It had been tried once, in the middle."""
+    window, control = shared_window, shared_window.time_line
+    folder = damaged(2)
+    newest = folder / "frame_0002.h5"
+    newest.unlink()
+    assert window.open_file(folder)
+    window.frame_bar.follow_check.setChecked(True)
+    whole = stored_run.paths_of_files[2].read_bytes()
+    newest.write_bytes(whole[:len(whole) // 2])
+    control.look()
+    qtbot.waitUntil(lambda: "frame_0002.h5" in window.banner.text() and not control.is_busy, timeout=PATIENCE_MS)
+    control.look()
+    assert not control.is_busy  # nothing new in it
+    newest.write_bytes(whole)
+    control.look()
+    wait_for(qtbot, window, 2)
+    assert window.banner.isHidden()
+    window.frame_bar.follow_check.setChecked(False)
+    control.show(None)
+
+
 def test_f5_reads_the_frame_on_display_anew(qtbot, shared_window, stored_run, tmp_path):
     """A folder of frames, of which one is written anew."""
     window = shared_window

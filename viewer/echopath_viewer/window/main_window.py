@@ -175,6 +175,11 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.banner.setText(text)
         self.banner.setVisible(bool(text))
 
+    def take_back(self, text: str) -> None:
+        """Takes a message away that no longer is so, unless another one has come."""
+        if self.banner.text() == text:
+            self.show_message("")
+
     # --- following the session ---
 
     def _changed(self, topics: set) -> None:
@@ -254,6 +259,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.view3d.mesh_dragged.connect(self._drag_mesh)
         self.time_line.glanced.connect(self._show_tracks)
         self.time_line.failed.connect(self.show_message)
+        self.time_line.mended.connect(self.take_back)
         self.empty_page.open_wanted.connect(self.open_dialog)
         self.empty_page.demo_wanted.connect(self._simulate_demo)
 

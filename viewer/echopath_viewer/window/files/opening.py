@@ -82,8 +82,7 @@ class Opening:
             self.show_message(text)
 
     def _take_rest(self, session) -> None:
-        if self._why_unread and self.banner.text() == self._why_unread:  # no more, as of a file that was being written
-            self.show_message("")
+        self.take_back(self._why_unread)  # as of a file that was being written
         self._end_loading()
         self.file_watch.accept(self._path_read, session.file_state)
         self._go_on_with_choices(session)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import echopath as ep
+from echopath.base.storage.files import file_state
 
 from ...model.frames.carried import make_ready, session_like
 from ...model.frames.overview import glance_at, no_glance
@@ -18,8 +19,8 @@ GONE = "{}: its files are gone; what is shown is the last frame that was read"
 class TimeControl(QtCore.QObject):
     """Goes through a TimeLine; at most two frames are held: that on display and the one that is read."""
 
-    # read: Session; stopped: the film, or its next frame is long in coming.
-    read, failed, glanced, stopped = Signal(object), Signal(str), Signal(), Signal()
+    # read: Session; mended: what `failed` has told and no longer is; stopped: the film, or its next frame is long in coming.
+    read, failed, mended, glanced, stopped = Signal(object), Signal(str), Signal(str), Signal(), Signal()
 
     def __init__(self, bar, state_now, is_behind):
         """bar: FrameBar; state_now: callable () -> state of the view to be taken over; is_behind: callable () -> whether the
@@ -29,6 +30,7 @@ class TimeControl(QtCore.QObject):
         self.line, self.place, self._wanted, self._glances = None, 0, None, {}
         self._way, self._num_failed = 0, 0  # 1 or -1: from frame to frame, 0: to a place; frames in a row that could not be read
         self._shown, self._trouble = None, ""  # Moment on display; what the last look has found wrong
+        self._reading, self._unread = None, None  # (Moment, state of its file) that is read; that and what was wrong with it
         self.work, self._glancing = BackgroundWork(self), BackgroundWork(self)
         self._poll, self._film = QtCore.QTimer(self, interval=POLL_MS), QtCore.QTimer(self, interval=FILM_MS)
         self._poll.timeout.connect(self.look)
@@ -65,7 +67,7 @@ class TimeControl(QtCore.QObject):
         self.bar.setVisible(line is not None)
         self.bar.strip.show_glances([])
         if line is not None:
-            self._shown, self._trouble, self._num_failed = line.moments[self.place], "", 0
+            self._shown, self._trouble, self._num_failed, self._unread = line.moments[self.place], "", 0, None
             self._show_place()
             self._poll.start()
             self._read_glances()
@@ -124,6 +126,7 @@ class TimeControl(QtCore.QObject):
             self.failed.emit(self.line.failure)
             self.line.failure = ""
         if not self._has_found_others():
+            self._try_newest_again()
             return
         if not len(self.line):
             self._fail(GONE.format(self.line.title))
@@ -145,6 +148,13 @@ class TimeControl(QtCore.QObject):
         self._trouble = trouble
         return is_other
 
+    def _try_newest_again(self) -> None:
+        """Where it could not be read, as while it is copied here, and its file is another one now."""
+        if self._unread is not None and len(self.line) and self.bar.follow_check.isChecked() and not self.is_busy:
+            newest = self.line.moments[-1]
+            if newest == self._unread[0] and file_state(newest.path) != self._unread[1]:
+                self.go(len(self.line) - 1)
+
     def _place_of(self, moment) -> int:
         """Where it is now, or was before it was gone."""
         moments = self.line.moments
@@ -154,11 +164,14 @@ class TimeControl(QtCore.QObject):
 
     def _start(self, place: int) -> None:
         moment, state, is_passing = self.line.moments[place], self._state_now(), self.is_playing
-        meshes, self._reading = self.line.meshes, moment
+        meshes, self._reading = self.line.meshes, (moment, file_state(moment.path))
         self.work.start(lambda progress: make_ready(session_like(state, moment.read(meshes)), is_passing))
 
     def _take(self, session) -> None:
-        self._shown, wanted, self._wanted, self._num_failed = self._reading, self._wanted, None, 0
+        self._shown, wanted, self._wanted, self._num_failed = self._reading[0], self._wanted, None, 0
+        unread, self._unread = self._unread, None
+        if unread is not None and unread[0] == self._shown:
+            self.mended.emit(unread[2])
         self.place = self._place_of(self._shown)
         self.read.emit(session)
         if self.is_playing:
@@ -169,7 +182,8 @@ class TimeControl(QtCore.QObject):
 
     def _pass_over(self, text: str) -> None:
         """Tells of a frame that cannot be read; whoever goes from frame to frame comes to the one behind it."""
-        place, wanted, self._num_failed = self._place_of(self._reading), self._wanted, self._num_failed + 1
+        place, wanted, self._num_failed = self._place_of(self._reading[0]), self._wanted, self._num_failed + 1
+        self._unread = *self._reading, text
         if wanted == place:
             wanted = place + self._way
         if self.is_playing and wanted == len(self.line):

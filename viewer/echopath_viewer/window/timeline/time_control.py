@@ -28,6 +28,7 @@ class TimeControl(QtCore.QObject):
         super().__init__(bar)
         self.bar, self._state_now, self._is_behind = bar, state_now, is_behind
         self.line, self.place, self._wanted, self._glances = None, 0, None, {}
+        self._gaps = {}  # {Moment: (state of its file, what was wrong with it)} of frames that the strip has a gap for
         self._way, self._num_failed = 0, 0  # 1 or -1: from frame to frame, 0: to a place; frames in a row that could not be read
         self._shown, self._trouble = None, ""  # Moment on display; what the last look has found wrong
         self._reading, self._unread = None, None  # (Moment, state of its file) that is read; that and what was wrong with it
@@ -64,6 +65,7 @@ class TimeControl(QtCore.QObject):
         """Takes over a time line whose first frame is on display already; None: there is none."""
         self.stop()
         self.line, self.place, self._glances = line, 0 if line is None else line.first, {}
+        self._gaps = {}
         self.bar.setVisible(line is not None)
         self.bar.strip.show_glances([])
         if line is not None:
@@ -125,7 +127,9 @@ class TimeControl(QtCore.QObject):
         if self.line.failure:
             self.failed.emit(self.line.failure)
             self.line.failure = ""
-        if not self._has_found_others():
+        is_other = self._has_found_others()
+        self._try_gaps_again()
+        if not is_other:
             self._try_newest_again()
             return
         if not len(self.line):
@@ -233,6 +237,14 @@ class TimeControl(QtCore.QObject):
 
     # --- all at a glance ---
 
+    def _try_gaps_again(self) -> None:
+        """Frames that could not be read, whose files are others now."""
+        mended = [moment for moment, (state, _) in self._gaps.items() if file_state(moment.path) != state]
+        for moment in mended:
+            self._glances.pop(moment, None)
+        if mended:
+            self._read_glances()
+
     def _read_glances(self) -> None:
         missing = [moment for moment in self.line.moments if moment not in self._glances][:MOST_GLANCES]
         if missing and not self.is_glancing:
@@ -241,8 +253,13 @@ class TimeControl(QtCore.QObject):
     def _take_glances(self, taken: tuple) -> None:
         found, trouble = taken
         self._glances |= found
+        for moment in found:
+            _, told = self._gaps.pop(moment, (None, ""))
+            if moment not in trouble:
+                self.mended.emit(told)
+        self._gaps |= trouble
         if trouble:
-            self.failed.emit(trouble)
+            self.failed.emit(next(iter(trouble.values()))[1])
         there = []
         for moment in self.line.moments:
             if moment not in self._glances:
@@ -254,11 +271,12 @@ class TimeControl(QtCore.QObject):
 
 
 def _glances_at(moments) -> tuple:
-    """({Moment: Glance}, what was wrong with the first that could not be read, "": nothing); the others are shown without it."""
-    found, trouble = {}, ""
+    """({Moment: Glance}, {Moment: (state of its file, what was wrong with it)} of those that could not be read)."""
+    found, trouble = {}, {}
     for moment in moments:
+        state = file_state(moment.path)
         try:
             found[moment] = glance_at(moment)
         except (ep.FileError, OSError) as error:
-            found[moment], trouble = no_glance(moment), trouble or str(error)
+            found[moment], trouble[moment] = no_glance(moment), (state, str(error))
     return found, trouble

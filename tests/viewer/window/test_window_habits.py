@@ -121,7 +121,7 @@ def test_every_control_says_what_it_does(window):
 
 def test_the_window_fits_a_small_screen(window):
     smallest = window.minimumSizeHint()
-    assert smallest.width() <= 1280 and smallest.height() <= 800
+    assert smallest.width() <= 1024 and smallest.height() <= 700
 
 
 def test_commands_are_found_by_their_letters(qtbot, window):

@@ -26,6 +26,8 @@ class EmptyPage(QtWidgets.QWidget):
         self.open_button.clicked.connect(self.open_wanted)
         self.demo_button.clicked.connect(self.demo_wanted)
         column = QtWidgets.QVBoxLayout(self)
+        # Behind the views of a frame it does not keep a window from becoming as narrow as a small screen.
+        self.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
         column.addStretch()
         for widget in (text, self.open_button, self.demo_button):
             column.addWidget(widget, 0, Qt.AlignmentFlag.AlignHCenter)

@@ -61,6 +61,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         header = self.table.horizontalHeader()
         header.setSectionResizeMode(QtWidgets.QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QtWidgets.QHeaderView.ResizeMode.Stretch)
+        header.setTextElideMode(Qt.TextElideMode.ElideRight)  # else its begin is cut off, too, in a narrow window
         both = QtWidgets.QHBoxLayout()
         both.addWidget(self.table, 4)
         both.addWidget(self.phasors, 1)

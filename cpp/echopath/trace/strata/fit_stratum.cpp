@@ -110,13 +110,15 @@ PlanePoints points_outside_of_circle(const PlanePoints& points) {
 // directions.
 PlanePoints outer_points(const PlanePoints& all) {
   const PlanePoints points = points_outside_of_circle(all);
-  std::array<Eigen::Vector2d, kOutwardDirections> outermost;
-  for (int k = 0; k < kOutwardDirections; ++k) outermost[k] = outermost_point(points, k);
+  PlanePoints outermost;
+  for (int k = 0; k < kOutwardDirections; ++k) outermost.push_back(outermost_point(points, k));
+  outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
+  if (outermost.size() > 1 && outermost.front() == outermost.back()) outermost.pop_back();
+  PlanePoints edges;
+  for (size_t k = 0; k < outermost.size(); ++k) edges.emplace_back(outermost[(k + 1) % outermost.size()] - outermost[k]);
   const auto is_inside = [&](const Eigen::Vector2d& point) {
-    for (size_t k = 0; k < kOutwardDirections; ++k) {
-      const Eigen::Vector2d edge = outermost[(k + 1) % kOutwardDirections] - outermost[k];
-      if (edge.squaredNorm() > 0 && cross(edge, point - outermost[k]) <= 0) return false;
-    }
+    for (size_t k = 0; k < edges.size(); ++k)
+      if (cross(edges[k], point - outermost[k]) <= 0) return false;
     return true;
   };
   PlanePoints outer;
@@ -173,6 +175,21 @@ double set_extents(Range azimuths, Range heights, Stratum& strip) {
   return azimuths.middle();
 }
 
+// Returns the azimuths of directions around `up`, from `ahead` to `across`, in rad. Where all lie ahead, their tangents tell
+// which are outermost.
+Range azimuths_of(const std::vector<Vec3>& directions, const Vec3& ahead, const Vec3& across) {
+  Range tangents{1e300, -1e300}, azimuths{1e9, -1e9};
+  bool are_ahead = true;
+  for (const Vec3& direction : directions) {
+    const double forward = direction.dot(ahead);
+    are_ahead = are_ahead && forward > 0.0;
+    tangents.extend(direction.dot(across) / forward);
+  }
+  if (are_ahead) return {std::atan(tangents.low), std::atan(tangents.high)};
+  for (const Vec3& direction : directions) azimuths.extend(std::atan2(direction.dot(across), direction.dot(ahead)));
+  return azimuths;
+}
+
 // Returns the strip along the direction `along` of the plane that holds the hull between the corners, or nothing where it
 // is no smaller than `largest` sr: the corners alone may tell so, without the arcs between them.
 std::optional<Stratum> strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull,
@@ -183,11 +200,9 @@ std::optional<Stratum> strip_along(const Eigen::Vector2d& along, const GnomonicP
   const double middle = std::tan(0.5 * (std::atan(offsets.low) + std::atan(offsets.high)));
   const Vec3 up = (aside[0] * plane.first + aside[1] * plane.second - middle * plane.axis).normalized();
   const Vec3 ahead = (plane.axis - plane.axis.dot(up) * up).normalized(), across = up.cross(ahead);
-  Range azimuths{1e9, -1e9}, heights{1e9, -1e9};
-  for (size_t i = 0; i < corners.size(); ++i) {
-    azimuths.extend(std::atan2(corners[i].dot(across), corners[i].dot(ahead)));
-    heights.extend(corners[i].dot(up));
-  }
+  const Range azimuths = azimuths_of(corners, ahead, across);
+  Range heights{1e9, -1e9};
+  for (const Vec3& corner : corners) heights.extend(corner.dot(up));
   Stratum strip;
   set_extents(azimuths, heights, strip);
   if (!(strip.solid_angle() < largest)) return std::nullopt;

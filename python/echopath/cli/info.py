@@ -191,9 +191,11 @@ def _bodies(scene) -> dict[str, list]:
 def _body(scene, meshes) -> str:
     """Parts, triangles, material where all have one, and whether some move."""
     materials = {_material(mesh) for mesh in meshes}
+    mirrors = sum(mesh.material.mirror for mesh in meshes)
+    unlike = f", {mirrors} of them {'mirrors' if mirrors > 1 else 'a mirror'}" if mirrors else ""
     return ((f"{len(meshes)} meshes, " if len(meshes) > 1 else "")
             + counted(sum(len(mesh.mesh.triangles) for mesh in meshes), "triangle")
-            + (materials.pop() if len(materials) == 1 else "")
+            + (materials.pop() if len(materials) == 1 else unlike)
             + (", moving" if any(scene.is_moving(mesh.id) for mesh in meshes) else ""))
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
-from echopath.cli.info import describe_file
+from echopath.cli.info import _body, describe_file
 from echopath.cli.report import folded_velocities
 from echopath.scene import closing_speeds as closing_speeds_module
 from echopath.scene.closing_speeds import bodies_faster_than, closing_speeds
@@ -64,6 +64,16 @@ def test_info_tells_code_receiver_and_weather_of_a_frame(tmp_path):
     ep.save_frame(ep.simulate(wet_scene(), coded_radar(), num_rays=200), tmp_path / "frame.h5")
     told = "\n".join(describe_file(tmp_path / "frame.h5"))
     assert "ddm" in told and "iq_gain_db" in told and "rain_mm_per_hour 20" in told
+
+
+def test_info_counts_the_mirrors_of_a_group():
+    scene = ep.Scene()
+    scene.add(None, name="houses")
+    for name, mirror in (("a", True), ("b", False), ("c", True)):
+        scene.add(ep.actors.wall(8.0, 3.0), name=name, parent="houses", material=ep.materials["brick"].replace(mirror=mirror))
+    assert _body(scene, list(scene.meshes)) == "3 meshes, 6 triangles, 2 of them mirrors"
+    assert _body(scene, list(scene.meshes)[:2]) == "2 meshes, 4 triangles, 1 of them a mirror"
+    assert _body(scene, list(scene.meshes)[:1]) == "2 triangles, mirror"
 
 
 FAST = -19.0  # m/s

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from .keywords import refuse_misplaced, refuse_unknown
-from .number_rules import LARGEST_COUNT, Rule, count, positive, real, seed
+from .number_rules import LARGEST_COUNT, Rule, carrier, count, positive, real, seed
 from .shown import refused, shown
 from .word_rules import (
     MapWindow, Window, choice, file, flag, flag_or_auto, is_writable, map_window, number_or_auto, one_of, path, text,
@@ -198,6 +198,6 @@ def _spread(argument: str, kind: type, given: dict, known: tuple) -> dict:
 
 
 __all__ = ["ArrayLike", "COMMON", "LARGEST_COUNT", "MOST_NEIGHBOURS", "MapWindow", "Progress", "Rule", "Window", "an",
-           "anything", "array", "checked", "choice", "count", "file", "flag", "flag_or_auto", "is_writable", "keywords",
-           "map_window", "number_or_auto", "one_of", "optional", "path", "positive", "progress", "real", "refused",
+           "anything", "array", "carrier", "checked", "choice", "count", "file", "flag", "flag_or_auto", "is_writable",
+           "keywords", "map_window", "number_or_auto", "one_of", "optional", "path", "positive", "progress", "real", "refused",
            "row_of_channel", "seed", "shown", "text", "vector", "window"]

@@ -15,6 +15,7 @@ Rule = Callable[[str, Any], Any]  # (argument, value) -> value as the work takes
 LARGEST_SEED = 2**64 - 1
 LARGEST_COUNT = 2**31 - 1  # of what the core keeps in an int
 LONGEST_TIME = 1e9         # s, from time 0: microseconds are still told apart
+LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 1e6, 1e15  # Hz, of radars that look over the horizon, and of visible light
 
 
 def _scalar(value):
@@ -76,6 +77,9 @@ def real(low: float = -math.inf, high: float = math.inf, unit: str = "", *, abov
 def positive(unit: str = "") -> Rule:
     """A finite number above 0."""
     return real(above=0.0, unit=unit)
+
+
+carrier = real(LOWEST_FREQUENCY, HIGHEST_FREQUENCY, unit="Hz (77 GHz are 77e9)")
 
 
 def seed(argument: str, value) -> int:

@@ -1,6 +1,7 @@
 """Scenes: a tree of named nodes with meshes, materials and motions."""
 from __future__ import annotations
 
+import inspect
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 
@@ -287,7 +288,8 @@ def _parts_of(content, material) -> list:
             raise refused(TypeError, "mesh_or_actor", f"a list of pairs (name, Mesh){hint}", content)
         return [(name, mesh, material, None, None, False) for name, mesh in content]
     hint = "; ep.mesh_from makes one of it" if hasattr(content, "faces") or hasattr(content, "cells") else ""
-    raise refused(TypeError, "mesh_or_actor", f"a Mesh, an Actor, a list of (name, Mesh) or None{hint}", content)
+    hint = f"; {content.__name__}() makes one" if inspect.isfunction(content) else hint
+    raise refused(TypeError, "mesh_or_actor", f"a Mesh, an Actor, a Model, a list of (name, Mesh) or None{hint}", content)
 
 
 def _are_arrays(content) -> bool:

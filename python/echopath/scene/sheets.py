@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
+from ..arguments.checks import ArrayLike, an, anything, array, carrier, checked, flag, real
 from ..base.radar.antennas import polarization_across
 from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
@@ -54,7 +54,7 @@ class SheetCoefficients:
     __hash__ = None
 
 
-@checked(material=an(_core.Material), frequency=positive("Hz"), incidence=array("[]", "[N]", finite=True), from_behind=flag)
+@checked(material=an(_core.Material), frequency=carrier, incidence=array("[]", "[N]", finite=True), from_behind=flag)
 def sheet_coefficients(material: _core.Material, *, frequency: float, incidence: ArrayLike,
                        from_behind: bool = False) -> SheetCoefficients:
     """What a sheet reflects and lets pass: Airy's sums over all bounces within its layers.

@@ -7,9 +7,10 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
+from ..arguments.checks import ArrayLike, Progress, array, carrier, checked, flag, one_of, optional, positive, real, shown
 from ..arguments.effects import Choices
 from ..arguments.motions import require_frame
+from ..arguments.number_rules import HIGHEST_FREQUENCY
 from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sampler, Scatterers, TraceSettings, settings_among
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
@@ -25,8 +26,6 @@ from .tessellation import warn_of_coarse_meshes
 
 Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received
 CrossSections = Any  # float of one direction, array of several; dicts of them by polarisation or component; pairs with errors
-
-HIGHEST_FREQUENCY = 1e15  # Hz, of visible light
 
 
 @checked({"settings": TraceSettings}, **TraceSettings.RULES)
@@ -157,11 +156,10 @@ def _cavities(argument: str, value) -> tuple[Cavity, ...]:
 
 
 _DIRECTIONS = array("[3]", "[N, 3]", finite=True)
-_FREQUENCY = real(above=0.0, high=HIGHEST_FREQUENCY, unit="Hz")
 
 
 @checked(**TraceSettings.RULES | {
-    "frequency": _FREQUENCY, "incidence": _DIRECTIONS, "observation": optional(_DIRECTIONS), "polarization": _polarization,
+    "frequency": carrier, "incidence": _DIRECTIONS, "observation": optional(_DIRECTIONS), "polarization": _polarization,
     "model": one_of(Polarization), "edges": flag, "cavities": _cavities, "components": flag, "return_error": flag})
 def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observation: ArrayLike | None = None,
         polarization: ArrayLike | Channel | Sequence[Channel | ArrayLike] = (0.0, 0.0, 1.0), model: Polarization = "auto",
@@ -175,7 +173,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
     the mean over realisations of the roughness.
     scene: the target
-    frequency: Hz, at most 1e15
+    frequency: Hz, 1e6 to 1e15
     incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
     observation: toward the receiver, likewise; None: monostatic
     polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
@@ -227,8 +225,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
                      return_error=return_error, progress=progress)
 
 
-@checked(radius=positive("m"), frequency=_FREQUENCY, bistatic_angle=real(0.0, np.pi, "rad"),
-         plane=one_of(Literal["E", "H"]))
+@checked(radius=positive("m"), frequency=real(above=0.0, high=HIGHEST_FREQUENCY, unit="Hz"),
+         bistatic_angle=real(0.0, np.pi, "rad"), plane=one_of(Literal["E", "H"]))
 def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane: Literal["E", "H"] = "H") -> float:
     """Exact radar cross section of a perfectly conducting sphere in m^2, co-polarised, far field.
 

@@ -20,8 +20,14 @@ def _scene(scale=1.0, name="car"):
     return scene
 
 
+CARRIER = r"must be a finite number from 1000000 to 1e\+15 Hz \(77 GHz are 77e9\)"
+
+
 @pytest.mark.parametrize("make, says", [
     (lambda: ep.ChirpSequence(start_frequency=77), r"^start_frequency: must be at least 1e6 Hz \(77 GHz are 77e9\), got 77"),
+    (lambda: ep.rcs(_scene(), frequency=77, incidence=(1, 0, 0)), rf"^frequency: {CARRIER}, got 77$"),
+    (lambda: ep.sheet_coefficients(ep.materials["glass_pane"], frequency=77, incidence=0.1), rf"^frequency: {CARRIER}, got 77$"),
+    (lambda: ep.load_model("town.obj", frequency=77), rf"^frequency: {CARRIER}, got 77$"),
     (lambda: _radar(transmit_power=1e300), "^transmit_power: must be at most 1e30 W"),
     (lambda: _radar(noise_figure_db=1e300), "^noise_figure_db: must be at most 1000 dB"),
     (lambda: _radar(speed=3e8), "^speed: must be below the speed of light"),
@@ -116,3 +122,8 @@ def test_chirps_may_sweep_more_than_their_start():
     scene.add(ep.actors.plate(2, 2), name="plate", material="metal", position=(6, 0, 0))
     spectrum = ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=5000), radar), radar)
     assert spectrum.range[np.abs(spectrum.values[0, 0, 0]).argmax()] == pytest.approx(6.0, abs=waveform.range_resolution)
+
+
+def test_a_function_of_actors_is_told_to_be_called():
+    with pytest.raises(TypeError, match=r"a Model, a list of \(name, Mesh\) or None; car\(\) makes one, got <function car"):
+        ep.Scene().add(ep.actors.car, name="car")

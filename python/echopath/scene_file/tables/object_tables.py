@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
-from ...arguments.checks import positive
+from ...arguments.checks import carrier, positive
 from ...trajectories.arguments import Outside
 from .actor_keywords import has_parameter
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
@@ -73,7 +73,7 @@ class ModelKeys(Table):
     animation: str | None = Field(None, description="of the model, by its name; none: the first, \"\": at rest")
     loop: bool | None = Field(None, description="whether the animation begins anew at its end; none: it does not")
     offset: Number | None = Field(None, description="s, time of the animation at time 0 of the scene; none: 0")
-    frequency: Positive | None = Field(None, description="Hz, of the materials of a model by name; none: 77 GHz")
+    frequency: Annotated[Any, by_check(carrier)] | None = Field(None, description="Hz, of the materials of a model; none: 77 GHz")
     way: Annotated[Any, by_check(_way)] | None = Field(
         None, description="m of the trajectory in which a looped animation is played once, \"auto\": as its feet or itself say")
     smooth: bool | None = Field(None, description="the mesh stands for a curved surface; none: it does not, a model as it says")

@@ -111,6 +111,7 @@ def _describe_template(template) -> list[str]:
              f"drawn for scene 0: {counted(len(drawn), 'value')}"]
     lines += [report.line(f"  {place}", f"{value:.6g}" if isinstance(value, float) else str(value))
               for place, value in list(drawn.items())[:report.MAX_LISTED]]
+    lines += more_line(len(drawn), report.MAX_LISTED)
     return [*lines, "scene 0", *_describe_scene_file(first)]
 
 

@@ -26,7 +26,7 @@ def scene_html(scene) -> str:
     rows = [(mesh.name, len(mesh.triangles), _number(mesh.mesh.area), _material(mesh),
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
     weather = weather_of(scene)
-    air = "" if weather is None else f", {weather_text(weather)}"
+    air = "" if weather is None else f", weather: {weather_text(weather)}"
     others = f", {interferers_text(interferers_of(scene))}" if interferers_of(scene) else ""
     return _table(f"Scene: {counted(len(scene.nodes), 'node')}, {counted(len(meshes), 'mesh')}, "
                   f"{counted(scene.num_triangles, 'triangle')}{air}{others}",

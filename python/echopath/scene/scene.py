@@ -74,7 +74,7 @@ class Scene(_core.Scene):
 
     def __repr__(self) -> str:
         told = [super().__repr__().removesuffix(")")]
-        told += [] if self.weather is None else [weather_text(self.weather)]
+        told += [] if self.weather is None else [f"weather: {weather_text(self.weather)}"]
         told += [interferers_text(self.interferers)] if self.interferers else []
         return ", ".join(told) + ")"
 

@@ -96,7 +96,7 @@ def weather_text(weather: Weather | None) -> str:
     usual = Weather()
     found = [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
              for name, value in weather.keywords().items() if value != getattr(usual, name)]
-    return "weather: " + (", ".join(found) or "clear")
+    return ", ".join(found) or "clear"
 
 
 def attenuation_of(scene, radar: _core.Radar, effects: Choices = ()) -> float:

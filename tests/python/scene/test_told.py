@@ -63,7 +63,7 @@ def test_a_scene_tells_its_mirrors():
 def test_info_tells_code_receiver_and_weather_of_a_frame(tmp_path):
     ep.save_frame(ep.simulate(wet_scene(), coded_radar(), num_rays=200), tmp_path / "frame.h5")
     told = "\n".join(describe_file(tmp_path / "frame.h5"))
-    assert "ddm" in told and "iq_gain_db" in told and "rain_mm_per_hour 20" in told
+    assert "ddm" in told and "iq_gain_db" in told and re.search(r"\n  weather +rain_mm_per_hour 20\n", told)
 
 
 def test_info_counts_the_mirrors_of_a_group():
@@ -187,6 +187,13 @@ def test_a_template_tells_what_it_makes():
         assert str(made.scenes) in told and made.keep in told
     place, _ = next(iter(template.draw(0).values.items()))
     assert place in template._repr_html_() and place in "\n".join(describe_file(TEMPLATE))
+
+
+def test_a_template_tells_how_many_values_it_does_not_list():
+    busy = TEMPLATE.with_name("busy_street.toml")
+    drawn, told = dataset.Template(busy).draw(0).values, describe_file(busy)
+    listed = sum(line.split()[0] in drawn for line in told if line.strip())
+    assert listed < len(drawn) and f"    and {len(drawn) - listed} more" in told
 
 
 @pytest.mark.parametrize("written, told", [

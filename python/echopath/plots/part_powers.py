@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ..base.classes.foreign_types import Figure
 
 ROOM_BESIDE_DB = 6.0  # of the weakest and the strongest power
+SMALL_PRINT = 0.45    # inches, below the axis
 
 
 def plot_part_powers(powers: Mapping[str, _core.ReceivedPower], *, title: str = "Received power by part") -> Figure:
@@ -28,7 +29,7 @@ def plot_part_powers(powers: Mapping[str, _core.ReceivedPower], *, title: str = 
     require_drawable("powers", rule, powers, "items")
     for power in powers.values():
         require_drawable("powers", rule, power, "interval_db")
-    with new_figure(6.0, 0.9 + 0.38 * len(powers)) as figure:
+    with new_figure(6.0, 1.0 + 0.45 * len(powers) + (SMALL_PRINT if _is_hollow(powers) else 0.0)) as figure:
         draw_part_powers(figure.subplots(), powers, title)
     return figure
 
@@ -44,14 +45,18 @@ def draw_part_powers(axes, powers: dict, title="Mean received power by part") ->
         else:
             axes.text(0.02, place, "no paths", transform=axes.get_yaxis_transform(), va="center", fontsize=8, color="0.4")
     axes.set_yticks(range(len(names)), names)
-    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.set_ylim(len(names) - 0.5, -0.8)  # with room for the numbers above the first
     lowest = min(levels.values(), default=0.0) - ROOM_BESIDE_DB
     axes.set_xlim(5.0 * np.floor(lowest / 5.0), 5.0 * np.ceil((max(levels.values(), default=lowest) + ROOM_BESIDE_DB) / 5.0))
     axes.grid(alpha=0.25)
-    is_hollow = not all(power.resolved for power in shown.values())
     words = f"\nhollow, not resolved: interval\nwider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g} dB"
-    axes.set_xlabel("Power in dBm" + (words if is_hollow else ""))
+    axes.set_xlabel("Power in dBm" + (words if _is_hollow(powers) else ""))
     axes.set_title(title)
+
+
+def _is_hollow(powers: Mapping[str, _core.ReceivedPower]) -> bool:
+    """Whether a dot is hollow, which the small print explains."""
+    return any(power.power > 0.0 and not power.resolved for power in powers.values())
 
 
 def _draw_power(axes, place: int, power, colour) -> None:

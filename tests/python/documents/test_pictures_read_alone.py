@@ -37,6 +37,10 @@ def test_the_numbers_of_part_powers_stay_within_the_figure():
     for text in texts:
         box = text.get_window_extent(renderer)
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1, text.get_text()
+    boxes = [text.get_window_extent(renderer) for text in (figure.axes[0].title, *texts)]
+    assert not any(one.overlaps(other) for number, one in enumerate(boxes) for other in boxes[:number])
+    axes = figure.axes[0].get_window_extent(renderer)
+    assert all(box.y1 <= axes.y1 for box in boxes[1:])
     assert not figure.axes[0].patches  # no bars: a level in dB has no zero to begin at
 
 

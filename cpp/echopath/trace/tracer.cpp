@@ -57,8 +57,15 @@ EmbreeScene::Upkeep upkeep_of(const Radar& radar, const TraceSettings& settings)
   return EmbreeScene::upkeep_near(radar.is_moving());
 }
 
-// What is edited must not change over which mirrors others are lit: rays that are kept have asked about these alone.
-ShadowsOf casters_of(const TraceSettings& settings) { return settings.for_edits ? ShadowsOf::kMirrors : ShadowsOf::kAll; }
+// What may be elsewhere in the next record must not change over which mirrors others are lit: rays that are kept have asked
+// about these alone, and what stands still is aimed at over these in all frames.
+ShadowCasters casters_of(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
+  if (!settings.for_edits)
+    return has_steady_rays(scene, radar, settings.scatterers) ? scene.still_meshes() : ShadowCasters{};
+  ShadowCasters mirrors;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) mirrors.push_back(scene.node_of(id).material->mirror);
+  return mirrors;
+}
 
 }  // namespace
 
@@ -69,7 +76,8 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
       loan_(kept, *empty_.scene, pose_, empty_.frame.transmitter, upkeep_of(radar, settings), job), geometry_(*loan_),
       origin_(geometry_.origin()), edge_estimate_(empty_.radar, world_from_radar_, origin_),
       mirrors_(find_mirrors(*empty_.scene, geometry_)), sbr_(settings_of_rays(settings)),
-      frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, casters_of(settings), job)),
+      frusta_(
+          find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, casters_of(*empty_.scene, radar, settings), job)),
       plan_(plan_rays(settings, fitted)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
   if (!plan_.first_number.empty()) pieces_ = plan_.pieces(kRaysPerBlock);

@@ -135,6 +135,20 @@ def test_they_are_in_a_town_of_which_a_truck_hides_some_things_for_a_time():
     assert max(differences(scene, frames=3, num_rays=3_000, max_bounces=1, moving="*ahead*")) < 1e-9
 
 
+def test_their_images_have_rays_while_a_truck_hides_a_part_of_a_wall():
+    """Images of the radar in the wall show all houses from 7 m on; those that the truck hid gave their rays to the others."""
+    scene, rough = ep.Scene(), ep.Material(permittivity=4.0, scattering=0.7)
+    mirror = ep.materials["concrete"].replace(mirror=True, scattering=0.0)
+    scene.add(ep.actors.wall(8.0, 8.0), name="wall", material=mirror, position=(6.0, -6.0, 0.0), yaw=np.pi)
+    for house in range(8):
+        scene.add(ep.actors.box(1.0), name=f"house_{house}", material=rough, position=(4.0 + 3.0 * house, 9.0, 0.5))
+    scene.add(ep.actors.box((4.0, 0.3, 9.0)), name="truck", material="metal", position=(4.0, -3.0, 4.01), speed=-10.0)
+    rays = [{stratum.name: stratum.num_rays for stratum in frame.paths.frame.strata if "truck" not in stratum.name}
+            for frame in ep.Sequence(scene, RADAR, frames=3, interval=INTERVAL, num_rays=2_000, max_bounces=2, guard=False)]
+    assert sum(" over wall" in name for name in rays[0]) == 7
+    assert rays[0] == rays[1] == rays[2]
+
+
 @pytest.mark.parametrize("rays", [{"num_rays": 20_000}, {"target_error_db": 1.0, "max_rays": 40_000}])
 def test_a_frame_in_which_nothing_moves_has_their_rays_alone(rays):
     scene = ep.Scene()

@@ -24,7 +24,7 @@ bool any_radiates(const Scene& scene, double frequency) {
 int most_leg_mirrors(const SbrSettings& settings) { return std::min(kMaxLegMirrors, settings.max_bounces - 1); }
 
 AntennaFrusta find_antenna_frusta(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                                  const SbrSettings& settings, ShadowsOf casters, const Job* job) {
+                                  const SbrSettings& settings, const ShadowCasters& casters, const Job* job) {
   AntennaFrusta found;
   found.serve_legs = !mirrors.empty() && any_radiates(scene, settings.frequency);
   if (mirrors.empty()) return found;

@@ -24,10 +24,10 @@ int most_leg_mirrors(const SbrSettings& settings);
 // Returns the frusta over as many mirrors as paths over mirrors alone need, whose search begins at both ends
 // (mirror_paths.h), and where any surface radiates also as many as legs need. Where all surfaces are flagged mirrors that
 // scatter nothing, there are no legs. Where one end needs a mirror more than the other, and legs do not, it is the end with
-// fewer frusta. Those whose last mirror lies behind surfaces that cast shadows are left out. Raises Cancelled when the job is
-// cancelled.
+// fewer frusta. Those whose last mirror lies behind surfaces that cast shadows are left out. Raises Cancelled when the job
+// is cancelled.
 AntennaFrusta find_antenna_frusta(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                                  const SbrSettings& settings, ShadowsOf casters, const Job* job = nullptr);
+                                  const SbrSettings& settings, const ShadowCasters& casters, const Job* job = nullptr);
 
 // Returns those over at most `max_mirrors` mirrors.
 std::span<const MirrorFrustum> with_at_most(const MirrorFrusta& found, int max_mirrors);

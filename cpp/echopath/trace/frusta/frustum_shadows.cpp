@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace echopath {
 namespace {
@@ -91,15 +92,15 @@ std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {
   return rims;
 }
 
-FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowsOf casters)
-    : geometry_(geometry), mirrors_(mirrors), mirror_of_(mirrors, geometry), casters_(casters) {}
+FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowCasters casters)
+    : geometry_(geometry), mirrors_(mirrors), mirror_of_(mirrors, geometry), casters_(std::move(casters)) {}
 
 // Returns whether a ray meets a surface that casts shadows within `reach` (m), and sets `met` to the closest hit on one.
 bool FrustumShadows::meets(const Vec3& from, const Vec3& direction, double reach, bool is_on_surface, RayHit& met) const {
   auto verdict =
       is_on_surface ? geometry_.intersect_from_surface(from, direction, met) : geometry_.intersect(from, direction, met);
   while (verdict == EmbreeScene::Verdict::kHit && met.distance <= reach) {
-    if (casters_ == ShadowsOf::kAll || mirror_of_.is_mirror(met.hit.mesh_id)) return true;
+    if (casters_.empty() || casters_[met.hit.mesh_id]) return true;
     const double begin = geometry_.behind(met.distance, met.reported);
     verdict = geometry_.intersect_from_surface(from, direction, met, Sees::kOpaque, begin);
   }

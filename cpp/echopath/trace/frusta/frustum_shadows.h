@@ -23,12 +23,12 @@ struct FrustumSource {
   double offset = 0.0;               // of its plane
 };
 
-// Says what casts shadows: all surfaces, or flagged mirrors alone, wherever the others stand.
-enum class ShadowsOf { kAll, kMirrors };
+// Marks the meshes that cast shadows, by mesh ID; none: all do. Nothing hangs on where the others are.
+using ShadowCasters = std::vector<bool>;
 
 class FrustumShadows {
  public:
-  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowsOf casters = ShadowsOf::kAll);
+  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowCasters casters = {});
   // Shrinks `window`, a convex polygon on the mirror `target`, to a convex polygon that holds all that can be seen from the
   // source; it is empty where all is hidden. Parts of it may still be hidden: rays find that out. Shadows are taken away one
   // after the other, each of a whole mirror without holes or of the one triangle that was met.
@@ -41,7 +41,7 @@ class FrustumShadows {
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
   MirrorIndex mirror_of_;
-  ShadowsOf casters_;
+  ShadowCasters casters_;
 };
 
 }  // namespace echopath

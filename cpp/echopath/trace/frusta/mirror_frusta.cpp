@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "echopath/base/threads/parallel.h"
 
@@ -41,9 +42,9 @@ std::vector<HalfSpace> MirrorFrustum::region(double radius) const {
   return region;
 }
 
-FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry, ShadowsOf casters)
+FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry, ShadowCasters casters)
     : mirrors_(mirrors), boxes_(boxes_of(mirrors)),
-      shadows_(geometry ? std::make_unique<const FrustumShadows>(*geometry, mirrors, casters) : nullptr) {}
+      shadows_(geometry ? std::make_unique<const FrustumShadows>(*geometry, mirrors, std::move(casters)) : nullptr) {}
 
 // Cuts out of a mirror what the frustum (null: the antenna itself), whose source appears at `source`, lights of it; returns
 // false where that is nothing.

@@ -60,7 +60,7 @@ class FrustumFinder {
   // With `geometry`, sequences whose last mirror lies wholly behind other surfaces that cast shadows are left out. Both must
   // outlive this.
   explicit FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeScene* geometry = nullptr,
-                         ShadowsOf casters = ShadowsOf::kAll);
+                         ShadowCasters casters = {});
   // Returns the frusta of an antenna over sequences of at most `search.max_mirrors` mirrors; sequences that light nothing
   // are left out. Raises Cancelled when the job is cancelled.
   MirrorFrusta find(const Vec3& antenna, const FrustumSearch& search, const Job* job = nullptr) const;

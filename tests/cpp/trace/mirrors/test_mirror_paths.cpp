@@ -296,26 +296,26 @@ TEST(FrustumShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
   EXPECT_GT(num_hidden, mirrors.size() / 2);
 }
 
-// A board that is no mirror stands before a wall, half of which another mirror hides: with and without the board, mirrors
-// alone leave the other half; all surfaces leave nothing behind the board.
-TEST(FrustumShadows, OfMirrorsAloneDoNotHangOnWhatElseThereIs) {
+// A board stands before a wall, half of which another mirror hides: with and without the board, the mirrors alone leave the
+// other half; all surfaces leave nothing behind the board.
+TEST(FrustumShadows, DoNotHangOnWhatCastsNone) {
   Scene scene;
   testing::add_rectangle(scene, "wall", {10, -1, -1}, {0, 2, 0}, {0, 0, 2}, metal_mirror());
   testing::add_rectangle(scene, "half", {9, -0.2, -1}, {0, 1.2, 0}, {0, 0, 2}, metal_mirror());
   Scene with_board = scene;
   testing::add_rectangle(with_board, "board", {5, -1, -1}, {0, 2, 0}, {0, 0, 2}, testing::lambert(0.5));
-  const auto left = [](const Scene& of, ShadowsOf casters) {
+  const auto left = [](const Scene& of, ShadowCasters casters) {
     const EmbreeScene geometry(of, PosedScene(of, 0.0), Vec3::Zero());
     const std::vector<Mirror> mirrors = find_mirrors(of, geometry);
     std::vector<Vec3> window = mirrors.front().outline;
-    FrustumShadows(geometry, mirrors, casters).shrink({Vec3::Zero()}, mirrors.front(), window);
+    FrustumShadows(geometry, mirrors, std::move(casters)).shrink({Vec3::Zero()}, mirrors.front(), window);
     return window;
   };
-  EXPECT_TRUE(left(with_board, ShadowsOf::kAll).empty());
-  const std::vector<Vec3> free = left(scene, ShadowsOf::kMirrors);
+  EXPECT_TRUE(left(with_board, {}).empty());
+  const std::vector<Vec3> free = left(scene, {true, true});
   ASSERT_FALSE(free.empty());
   for (const Vec3& corner : free) EXPECT_LT(corner.y(), -0.2);
-  EXPECT_EQ(left(with_board, ShadowsOf::kMirrors), free);
+  EXPECT_EQ(left(with_board, {true, true, false}), free);
 }
 
 }  // namespace

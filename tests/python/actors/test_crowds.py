@@ -96,9 +96,9 @@ def test_people_whose_echo_is_nearly_all_diffuse_are_resolved(seed):
 
 
 def test_intervals_of_people_hold_what_many_rays_say():
-    few, many = ([power_of_a_person(seed, num_rays) for seed in range(1, 15)] for num_rays in (2**14, MANY_RAYS))
+    few, many = ([power_of_a_person(seed, num_rays) for seed in range(1, 9)] for num_rays in (2**14, MANY_RAYS))
     held = [one.low <= truth.power <= one.high for one, truth in zip(few, many)]
-    assert sum(held) >= len(held) - 2  # of 14 that are held with .95, three are left out once in 30
+    assert sum(held) >= len(held) - 1  # of 8 that are held with .95, two are left out once in 17
     assert np.median([one.interval_db for one in few]) < PEOPLE_DB
 
 
@@ -152,5 +152,5 @@ def test_direct_power_of_a_person_hardly_depends_on_the_seed_of_the_rays():
     radar = ep.Radar(ep.ChirpSequence(num_chirps=2), transmitters=[ep.Antenna((0, 0, 0.7))],
                      receivers=[ep.Antenna((0, 0.01, 0.7))])
     powers = [ep.received_power(ep.trace(scene, radar, num_rays=100_000, max_bounces=2, seed=seed)).power
-              for seed in range(1, 11)]
+              for seed in range(1, 8)]
     assert np.std(powers, ddof=1) < 0.018 * np.mean(powers)

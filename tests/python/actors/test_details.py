@@ -1,4 +1,5 @@
 """Details of trajectories: what follows one moves in itself for a while alone, and takes less time to be made."""
+import functools
 import math
 import pickle
 
@@ -51,13 +52,18 @@ def test_details_are_kept_by_copies_and_shifted_along():
     assert DRIVE.detailed(-5.0, 1.0).details == (0.0, 1.0) and DRIVE.detailed(90.0, 99.0).details == (DRIVE.end, DRIVE.end)
 
 
+@functools.cache
+def whole_drive(actor):
+    return actor(trajectory=DRIVE)
+
+
 @pytest.mark.parametrize("details", [(-9.0, -8.0), (90.0, 99.0), (DRIVE.end, DRIVE.end + 1.0), (3.0, 3.0)])
 @pytest.mark.parametrize("actor", [ep.actors.car, ep.actors.truck, ep.actors.cyclist])
 def test_details_beside_the_way_are_none(actor, details):
     """Held as at the nearer end: a vehicle that has come to its place before or behind."""
     made = actor(trajectory=DRIVE.detailed(*details))
     at = min(max(details[0], DRIVE.begin), DRIVE.end)
-    expected = vertices(actor(trajectory=DRIVE), DRIVE, [at])
+    expected = vertices(whole_drive(actor), DRIVE, [at])
     assert np.abs(vertices(made, DRIVE, [0.5, at, 5.0]) - expected).max() < 0.01
 
 

@@ -62,7 +62,7 @@ def test_a_plate_behind_both_foci_of_a_dish(model):
     facing, side = departure - arrival, 0.02
     mesh = plate(target, facing, side)
     scene = scene_of(dish=(dish(), METAL, True), plate=(mesh, METAL))
-    paths = ep.trace(scene, make_radar(transmitter, receiver), num_rays=1 << 18, max_bounces=2, polarization=model)
+    paths = ep.trace(scene, make_radar(transmitter, receiver), num_rays=1 << 17, max_bounces=2, polarization=model)
     found = fields(paths.select("T 'dish' 'plate' R")).sum()
 
     grid = (np.arange(12) + 0.5) / 12
@@ -110,7 +110,7 @@ def echo_over_integral(shape, distance, side=.03):
     facing = (source - target) / np.linalg.norm(source - target) - arrival
     mesh = plate(target, facing, side)
     scene = scene_of(mirror=(bent_mesh(shape), METAL, True), plate=(mesh, METAL))
-    paths = ep.trace(scene, make_radar(source), num_rays=1 << 18, max_bounces=2).select("T 'mirror' 'plate' R")
+    paths = ep.trace(scene, make_radar(source), num_rays=1 << 17, max_bounces=2).select("T 'mirror' 'plate' R")
     found = fields(paths)[paths.flags & 1 == 0].sum()  # the others are reversals
 
     steps = (np.arange(240) + .5) / 240 * 2 - 1

@@ -98,7 +98,7 @@ def test_a_rough_patch_over_ground(model):
 @both_models_of_metal_ground
 def test_a_metal_plate_over_ground(model, polarization):
     mesh = plate((20, 0, .5), (-1, 0, 0), .1)
-    found = four_over_direct(mesh, ground(MIRROR), .5, 1 << 14, False, model, polarization)
+    found = four_over_direct(mesh, ground(MIRROR), .5, 1 << 13, False, model, polarization)
     assert found == pytest.approx(PLATE_OVER_METAL, abs=IMAGE_TOLERANCE_DB)
 
 
@@ -112,14 +112,14 @@ def test_a_metal_sphere_over_ground(model, polarization):
 @pytest.mark.hard
 @both_models_of_metal_ground
 def test_a_metal_sphere_in_a_null_of_the_ground(model, polarization):
-    found = four_over_direct(sphere((100, 0, .8), .1, 5), ground(MIRROR), .5, 1 << 15, True, model, polarization)
+    found = four_over_direct(sphere((100, 0, .8), .1, 5), ground(MIRROR), .5, 1 << 14, True, model, polarization)
     assert found == pytest.approx(SPHERE_NULL, abs=FOUR_PATH_TOLERANCE_DB)
 
 
 @both_models
 @pytest.mark.parametrize("distance, aside", METAL_SPHERE_AT_WALL)
 def test_a_metal_sphere_at_a_wall(distance, aside, model):
-    found = four_over_direct(sphere((distance, 0, 0), .1, 5), wall(aside, MIRROR), 0.0, 1 << 14, True, model)
+    found = four_over_direct(sphere((distance, 0, 0), .1, 5), wall(aside, MIRROR), 0.0, 1 << 13, True, model)
     assert found == pytest.approx(METAL_SPHERE_AT_WALL[distance, aside], abs=FOUR_PATH_TOLERANCE_DB)
 
 
@@ -127,7 +127,7 @@ def rough_sphere_levels(wall_material, model, baseline=0.0):
     """Mirror -> target, target -> mirror, both as one, two-way ghost: re direct in dB."""
     scene = scene_of(target=(sphere((10, 0, 1), .3, 5), lambert(.5)), wall=wall(3, wall_material))
     radar = make_radar((0, 0, 1), (0, baseline, 1))
-    paths = ep.trace(scene, radar, num_rays=1 << 14, max_bounces=3, polarization=model)
+    paths = ep.trace(scene, radar, num_rays=1 << 13, max_bounces=3, polarization=model)
     routes = ("'wall' 'target'", "'target' 'wall'", "('wall' 'target' | 'target' 'wall')", "'wall' 'target' 'wall'")
     direct = power_by_hit(paths.select("T 'target' R"), 0)
     return [decibel(power_by_hit(paths.select(f"T {route} R"), 0) / direct) for route in routes]
@@ -143,7 +143,7 @@ def test_ghosts_of_a_rough_sphere_at_a_wall(gamma, model):
 
 def test_a_limit_of_bounces_keeps_the_orders_that_fit():
     scene = scene_of(target=(sphere((10, 0, 1), .3, 4), lambert(.5)), wall=wall(3, MIRROR))
-    paths = ep.trace(scene, make_radar((0, 0, 1)), num_rays=1 << 14, max_bounces=2)
+    paths = ep.trace(scene, make_radar((0, 0, 1)), num_rays=1 << 13, max_bounces=2)
     there, back = (power_by_hit(paths.select(f"T {route} R"), 0) for route in ("'wall' 'target'", "'target' 'wall'"))
     assert back / there == pytest.approx(1.0, abs=1e-4)  # one hit in 1e4 sees only one of both by rounding
 
@@ -182,7 +182,7 @@ def test_two_rough_plates_in_a_corner(azimuth_deg, gap):
     radar = make_radar(transmitter, transmitter + (-.2, .3, .1))
     sums = []
     for seed in range(3):
-        paths = ep.trace(scene, radar, num_rays=160000, max_bounces=2, seed=seed)
+        paths = ep.trace(scene, radar, num_rays=80000, max_bounces=2, seed=seed)
         sums.append([np.sum(np.abs(paths.select(f"T {order} R").amplitude) ** 2) for order in ("'a' 'b'", "'b' 'a'")])
     assert np.mean(sums, axis=0) * 1e12 == pytest.approx(ROUGH_CORNER[azimuth_deg, gap], rel=CORNER_TOLERANCE, abs=0)
 
@@ -193,7 +193,7 @@ def test_a_dielectric_dihedral_reflects_by_its_polarisation(polarization, expect
     material = ep.Material(permittivity=4 - .2j)
     scene = scene_of(left=(rectangle((0, 0, -side / 2), (half, half, 0), (0, 0, side)), material),
                      right=(rectangle((0, 0, -side / 2), (half, -half, 0), (0, 0, side)), material))
-    paths = ep.trace(scene, make_radar((distance, 0, 0), polarization=polarization), num_rays=1 << 14, max_bounces=2)
+    paths = ep.trace(scene, make_radar((distance, 0, 0), polarization=polarization), num_rays=1 << 13, max_bounces=2)
     power = abs(fields(paths.select("T . . R")).sum()) ** 2
     found = decibel(power * (4 * math.pi) ** 3 * distance**4 / WAVELENGTH**2)
     assert found == pytest.approx(expected, abs=COEFFICIENT_TOLERANCE_DB)

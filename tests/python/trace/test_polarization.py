@@ -160,7 +160,7 @@ def test_a_turned_metal_plate_beside_a_leaning_wall(route, permittivity):
     second = 0.02 * np.cross(facing, unit(first))
     corner = TARGET - 0.5 * (first + second)
     scene = scene_of(target=(rectangle(corner, first, second), METAL), wall=leaning_wall(material))
-    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 15, max_bounces=3)
+    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 14, max_bounces=3)
     expected = plate_echo(corner, first, second, ROUTES[route], reflect)
     assert abs(fields(paths.select(route)).sum() / expected - 1) < PLATE_TOLERANCE
 
@@ -195,7 +195,7 @@ def test_a_turned_metal_plate_between_floor_and_wall(there, back):
     floor = rectangle((-50, -50, -2), (100, 0, 0), (0, 100, 0)), ep.Material(permittivity=EARTH, mirror=True)
     scene = scene_of(target=(rectangle(corner, first, second), METAL), floor=floor,
                      wall=leaning_wall(ep.Material(permittivity=BRICK, mirror=True)))
-    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 18, max_bounces=5)
+    paths = traced(scene, radar_between(TRANSMITTER, RECEIVER, SENT, RECEIVED), num_rays=1 << 17, max_bounces=5)
     route = " ".join(f"'{name}'" for name in (*there, "target", *reversed(back)))
     expected = plate_sum(corner, first, second, ends, arrivals, lit)
     assert abs(fields(paths.select(f"T {route} R")).sum() / expected - 1) < PLATE_TOLERANCE

@@ -60,7 +60,7 @@ def test_a_small_plate_is_no_mirror():
     scene.add(ep.actors.plate(0.05, 0.05), name="plate", material="metal", position=(5, 0, 0), yaw=-0.4189)
     scene.add(ep.actors.sphere(0.3), name="ball", material=ep.Material(reflectivity=0.5, scattering=1.0),
               position=(3, 2.2, 0))
-    paths = ep.trace(scene, make_radar((0, 0, 0), (0, 0, 0)), num_rays=50000, max_bounces=2)
+    paths = ep.trace(scene, make_radar((0, 0, 0), (0, 0, 0)), num_rays=25000, max_bounces=2)
     assert paths.frame.statistics.num_small_mirrors > 0
     assert ("plate", "ball") not in sequences(paths)
 
@@ -112,7 +112,7 @@ def diffuse_scene(wall, rough=FLAT):
 
 def test_exchanged_antennas_receive_the_same_over_diffuse_hits_and_mirrors():
     scene = diffuse_scene(ep.Material.metal(mirror=True))
-    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=100_000, max_bounces=5)
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=50_000, max_bounces=5)
     for events in ("D", "S D", "S D S", "D D", "S D D", "S D D S", "D D D", "D S D", "D S D S"):
         error, count = exchange_error(paths.select(f"T ({events} | {events[::-1]}) R"))
         assert count >= 20 and error < RECIPROCITY, events
@@ -123,7 +123,7 @@ def test_exchanged_antennas_and_polarisations_receive_the_same():
     turning = FLAT.replace(cross_polarization=.3)
     scene = diffuse_scene(ep.Material(permittivity=5 - .3j, mirror=True), turning)
     slanted = [np.array(vector) / np.linalg.norm(vector) for vector in ((0, .3, 1), (0, 1, .2))]
-    paths = ep.trace(scene, make_radar(HERE, HERE, *slanted), num_rays=100_000, max_bounces=4, polarization="jones")
+    paths = ep.trace(scene, make_radar(HERE, HERE, *slanted), num_rays=50_000, max_bounces=4, polarization="jones")
     for events in ("D", "S D", "D D", "S D D", "D S D"):
         error, count = exchange_error(paths.select(f"T ({events} | {events[::-1]}) R"))
         assert count >= 20 and error < POLARIZED_RECIPROCITY, events
@@ -167,7 +167,7 @@ def test_what_a_transmit_leg_finds_comes_back_behind_several_diffuse_hits():
     """A plate that is not flagged is a mirror for the transmit leg alone: the opposite order is the reversal."""
     scene = corner_scene()
     scene.add(ep.actors.sphere(0.8), name="other", material=FLAT, position=(6, -1.2, 0))
-    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=200000, max_bounces=3, polarization="scalar")
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=100000, max_bounces=3, polarization="scalar")
     chain, opposite = paths.select("T S'plate' D D R"), paths.select("T D D S'plate' R")
     assert chain.num_paths > 20 and not np.any(chain.flags & 1) and np.all(opposite.flags & 1)
     error, count = exchange_error(paths.select("T (S'plate' D D | D D S'plate') R"))

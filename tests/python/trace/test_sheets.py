@@ -165,7 +165,7 @@ def test_a_pane_aside_makes_ghosts_by_its_reflection():
         scene = make_scene(None)
         corners = np.array([[-2, 2, -3], [12, 2, -3], [12, 2, 4], [-2, 2, 4.0]])
         scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name="pane", material=material)
-        paths = ep.trace(scene, make_radar(), num_rays=60000, max_bounces=2)
+        paths = ep.trace(scene, make_radar(), num_rays=30000, max_bounces=2)
         levels.append(power_db(paths.select("T ('ball' 'pane' | 'pane' 'ball') R")))
     expected = 20.0 * np.log10(abs(airy(np.arctan2(8, 4))[0][0]))
     assert levels[1] - levels[0] == pytest.approx(expected, abs=LEVEL)
@@ -189,7 +189,7 @@ def test_legs_over_mirrors_pass_as_images_do():
         scene = make_scene(pane)
         corners = np.array([[-2, 2, -3], [12, 2, -3], [12, 2, 4], [-2, 2, 4.0]])
         scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name="wall", material=ep.Material.metal(mirror=True))
-        paths = ep.trace(scene, make_radar(), num_rays=60000, max_bounces=3, polarization="scalar")
+        paths = ep.trace(scene, make_radar(), num_rays=30000, max_bounces=3, polarization="scalar")
         return [power_db(paths.select(text)) for text in
                 ("T ('ball' 'wall' | 'wall' 'ball') R", "T 'wall' 'ball' 'wall' R")]
     straight, slanted = (20.0 * np.log10(abs(over_free(angle)[0])) for angle in (0.0, np.arctan2(4, 8)))

@@ -128,7 +128,7 @@ def test_a_plate_near_by_has_the_lobes_of_its_near_field(size, distance):
     +5.1 dB beside it."""
     scene = ep.Scene()
     scene.add(ep.actors.plate(size, size), name="plate", material="metal", position=(distance, 0, 0))
-    paths = ep.trace(scene, radar((0, 0, 0), (0, 0, 0)), num_rays=50_000)
+    paths = ep.trace(scene, radar((0, 0, 0), (0, 0, 0)), num_rays=20_000)
     assert 10.0 * np.log10(ep.received_power(paths).power / head_on(size, distance)) == pytest.approx(0.0, abs=0.15)
 
 
@@ -218,7 +218,7 @@ def over_endless(planes):
         outside_up = corners if np.cross(corners[1] - corners[0], corners[3] - corners[0])[2] > 0.0 else corners[::-1]
         scene.add(ep.Mesh(outside_up, [[0, 1, 2], [0, 2, 3]]), name=f"plane {index}", material="metal")
     at = radar(*RAISED)
-    paths = ep.trace(scene, at, num_rays=100_000, max_bounces=1, polarization="scalar")
+    paths = ep.trace(scene, at, num_rays=50_000, max_bounces=1, polarization="scalar")
     endless = ep.speed_of_light / 77e9 / (4.0 * np.pi * 2.0 * RAISED[0][2]) * np.sqrt(at.transmit_power)
     return abs(np.asarray(ep.synthesize(paths, at))[0, 0, 0, 0]) / endless
 
@@ -296,7 +296,7 @@ def echo_of_corner(num_bounces, transmitter, receiver, *, one_mesh):
     else:
         for name, corners in faces.items():
             scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name=name, material="metal")
-    paths = ep.trace(scene, radar(transmitter, receiver), num_rays=50_000, max_bounces=num_bounces, polarization="scalar")
+    paths = ep.trace(scene, radar(transmitter, receiver), num_rays=25_000, max_bounces=num_bounces, polarization="scalar")
     image = np.array(receiver) * [-1, -1 if num_bounces == 3 else 1, -1] + [30.0, 14.0 if num_bounces == 3 else 0.0, 0.0]
     unfolded = np.linalg.norm(image - transmitter)
     lengths = np.asarray(paths.lengths([paths.frame.trace_time], 0, 0))[0]
@@ -334,7 +334,7 @@ def echo_of_road_and_wall(ends, begins):
     scene.add(ep.Mesh([(15, -30, begins), (15, 30, begins), (15, 30, 9), (15, -30, 9)], [[0, 1, 2], [0, 2, 3]]), name="wall",
               material="metal")
     antennas = np.array([[3.0, 1.0, 1.2], [3.0, 1.1, 1.27]])
-    paths = ep.trace(scene, radar(*antennas), num_rays=100_000, max_bounces=2, polarization="scalar").select("T . . R")
+    paths = ep.trace(scene, radar(*antennas), num_rays=50_000, max_bounces=2, polarization="scalar").select("T . . R")
     lengths = np.asarray(paths.lengths([paths.frame.trace_time], 0, 0))[0]
     wavelength = ep.speed_of_light / 77e9
     wavenumbers = 2.0 * np.pi * (77e9 + np.linspace(0.0, 1e9, 41)) / ep.speed_of_light

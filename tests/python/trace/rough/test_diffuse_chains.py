@@ -151,7 +151,7 @@ def test_chains_over_a_wall_have_the_levels_of_their_legs(is_flagged):
     metal = ep.Material(reflectivity=1.0, scattering=math.sqrt(1 - WALL_SHARE), mirror=is_flagged)
     scene = scene_of(wall=(rectangle((1.5, 2, -1.5), (5.2, 0, 0), (0, 0, 3)), metal),
                      **{name: (rectangle(*plate), MATERIALS[name]) for name, plate in PLATES.items()})
-    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=800000, max_bounces=5, batches=BATCHES,
+    paths = ep.trace(scene, make_radar(HERE, THERE), num_rays=400000, max_bounces=5, batches=BATCHES,
                      polarization="scalar")
     wall = lambda there: "S'wall'" if there else ""
     expressions = [f"T {wall(walls[0])} D'{order[0]}' {wall(walls[1])} D'{order[1]}' {wall(walls[2])} R"

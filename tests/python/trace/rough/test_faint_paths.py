@@ -5,7 +5,7 @@ from scipy import stats
 
 import echopath as ep
 
-NUM_SEEDS, RAYS = 16, 4000
+NUM_SEEDS, RAYS = 10, 4000
 FIVE_SIGMA = 5.0
 COVERAGE, CHANCE = 0.90, 1e-3  # of an interval to hold the truth; of the test to fail although it does so often
 LAMBERT = ep.Material(reflectivity=0.3, scattering=1.0)

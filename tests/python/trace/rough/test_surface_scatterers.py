@@ -7,9 +7,9 @@ import echopath as ep
 CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=128, sampling_rate=20e6, num_chirps=128,
                           chirp_interval=1e-4)
 FRAME = 127 * 1e-4  # s: the first chirp of the next frame is the last one of this
-RAYS = 20_000
+RAYS = 10_000
 FEW_RAYS = 8_000  # all launched alike, whatever they find
-NUM_SEEDS = 12
+NUM_SEEDS = 8
 FAINT_POWER = 5.6e-18  # W; the walker's direct paths carry a sixteenth of it (median)
 
 

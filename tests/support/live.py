@@ -4,7 +4,7 @@ import numpy as np
 import echopath as ep
 from echopath.bench.live.edits import crowded_street
 
-RAYS = 2000
+RAYS = 1000
 
 
 def make_live(**keywords) -> ep.Live:

@@ -35,7 +35,7 @@ def test_poles_and_people_of_a_street_are_those_alone(mirrors, request):
     paths = (ep.trace(crowd_scenes.street(mirrors=True), radar, num_rays=300_000) if mirrors
              else request.getfixturevalue("street_without_mirrors"))
     assert sum(stratum.num_rays for stratum in paths.frame.strata) == 300_000
-    for name in names:
+    for name in names[::2] if mirrors else names:
         many = 2**15 if name.startswith("pole") else 2**17  # of a pole alone they know the power to 0.06 dB
         alone = ep.trace(crowd_scenes.alone(name, mirrors=mirrors), radar, num_rays=many)
         here, truth = (ep.received_power(crowd.direct(one, name)) for one in (paths, alone))

@@ -19,9 +19,9 @@ def of_name(name):
 
 
 def test_waves_bring_a_bent_duct_to_its_level(table):
-    """At 7 GHz, every sixth degree; rays inside miss the bound by 1.6 dB."""
+    """At 7 GHz, every twelfth degree; rays inside miss the bound by 1.6 dB."""
     duct = of_name("cobra duct")
-    rows = measured.rows_of(duct, 7.0, "hh", table, quick=True)[::2]
+    rows = measured.rows_of(duct, 7.0, "hh", table, quick=True)[::4]
     floor = rows["moments_dbsm"].max() - measured.FLOOR_DB
     found, expected = (np.maximum(one, floor) for one in (measured.levels_of(duct, rows, edges=True, quick=True),
                                                           rows["moments_dbsm"]))

@@ -392,11 +392,11 @@ def test_chirps_that_differ_have_the_signal_of_the_record(live):
         live.scene["sign_30"].position += (0.0, 0.1, 0.0)
 
 
-@pytest.mark.parametrize("travel", [pickle.dumps, copy.copy, copy.deepcopy])
-def test_a_live_scene_says_what_travels_in_its_place(live_at_rest, travel):
+def test_a_live_scene_says_what_travels_in_its_place(live_at_rest):
     live = live_at_rest
-    with pytest.raises(TypeError, match="^Live: holds locks of its threads and cannot be pickled or copied; pickle or copy its "
-                                        "scene and radar"):
-        travel(live)
+    for travel in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(TypeError, match="^Live: holds locks of its threads and cannot be pickled or copied; pickle or copy "
+                                            "its scene and radar"):
+            travel(live)
     again = ep.Live(*pickle.loads(pickle.dumps((live.scene, live.radar))), num_rays=live.num_rays)
     assert np.array_equal(again.update().cube, ep.Live(live.scene, live.radar, num_rays=live.num_rays).update().cube)

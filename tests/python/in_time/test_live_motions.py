@@ -7,7 +7,7 @@ from support.arm import make_arm
 from support.live import difference
 
 ROUNDING = 1e-12  # of the largest sample: signals are added and taken away
-RAYS = 2000
+RAYS = 1000
 ROUGH = ep.Material(permittivity=5.0, scattering=0.5)
 FIRST, LAST = -0.1, 0.3  # s, of what is sampled, around a frame of 38 ms
 

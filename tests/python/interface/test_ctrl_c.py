@@ -17,7 +17,7 @@ from support.shapes import lambert
 PROMISE = 0.5        # s, on a machine with nothing else to do
 PATIENCE = 1.5       # s, with the tests of a busy machine; tries until one keeps to it
 NUM_TRIES = 4
-NUM_PATHS = 3_000_000
+NUM_PATHS = 1_500_000
 HEAD_START = 0.05    # s, of the work before Ctrl-C
 HITS_PER_PATH = 3
 

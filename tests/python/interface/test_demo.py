@@ -12,7 +12,7 @@ import echopath as ep
 from echopath.cli.demo import run_demo
 from echopath.signals.measures import residual, velocity_extent
 
-NUM_RAYS = 4_000
+NUM_RAYS = 2_500
 SUM_TOLERANCE = 1e-12
 BODY_RADIUS = 0.6    # m, from the torso to what reflects: its front, an arm, a foot in front
 WALKING_SPEED = 1.4  # m/s

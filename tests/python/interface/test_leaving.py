@@ -12,7 +12,7 @@ from echopath import _core
 
 def at_once(work):
     threading.Thread(target=work, daemon=True).start()
-    time.sleep(0.3)
+    time.sleep(0.1)
 """
 WORK = {
     "waiting": "at_once(lambda: _core._wait(600.0))",
@@ -31,7 +31,7 @@ points, corners = np.random.default_rng(1).uniform(0, 1, (60000, 3)), np.arange(
 def work():
     while True:
         ep.Mesh(points, corners)
-for _ in range(4):
+for _ in range(3):
     at_once(work)
 """,
     "in an exit handler": """

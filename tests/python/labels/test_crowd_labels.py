@@ -44,12 +44,18 @@ def scene():
 
 @pytest.fixture(scope="module")
 def paths(scene, radar):
-    return ep.trace(scene, radar, num_rays=8_000, max_bounces=3, seed=4)
+    return ep.trace(scene, radar, num_rays=5_000, max_bounces=3, seed=4)
 
 
 @pytest.fixture(scope="module")
 def families(paths):
     return ep.families(paths)
+
+
+@pytest.fixture(scope="module")
+def usual(paths, radar):
+    """The labels as anybody makes them."""
+    return ep.annotate(paths, None, radar)
 
 
 @pytest.fixture(scope="module")
@@ -160,9 +166,8 @@ def test_families_without_power_are_not_left_out(radar):
 
 
 @pytest.mark.parametrize("shown", [0.0, 1e-9, 1e-1, 1e12])
-def test_what_maps_of_families_leave_out_at_first_owns_its_cells_all_the_same(paths, radar, monkeypatch, shown):
+def test_what_maps_of_families_leave_out_at_first_owns_its_cells_all_the_same(paths, radar, usual, monkeypatch, shown):
     """With a floor of 1e12 times the noise no map shows anything at first, with 0 each shows all."""
-    usual = ep.annotate(paths, None, radar)
     monkeypatch.setattr(family_pass, "SHOWN", shown)
     other = ep.annotate(paths, None, radar)
     assert other.objects and np.array_equal(other.object_map, usual.object_map)
@@ -173,9 +178,8 @@ def test_what_maps_of_families_leave_out_at_first_owns_its_cells_all_the_same(pa
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e12])
-def test_cells_are_divided_among_families_early_or_late(paths, radar, monkeypatch, apart):
+def test_cells_are_divided_among_families_early_or_late(paths, radar, usual, monkeypatch, apart):
     """With 0 families are looked at where their rival wins any cell so far, with 1e12 only once the owners are known."""
-    usual = ep.annotate(paths, None, radar)
     assert any(ghost.cells for ghost in usual.ghosts)
     monkeypatch.setattr(family_pass, "APART", apart)
     other = ep.annotate(paths, None, radar)

@@ -13,7 +13,7 @@ from support.radars import build_radar
 
 pytestmark = pytest.mark.hard
 
-FEW = settings(max_examples=60, deadline=None, derandomize=True)
+FEW = settings(max_examples=30, deadline=None, derandomize=True)
 SUM_SHARE = 1e-12    # of the whole signal: sums of doubles in another order
 LENGTH = 1e-9        # m: keys of some metres in double precision, through splines of steep pieces
 ROTATION = 1e-12     # of a unit quaternion
@@ -177,7 +177,7 @@ def test_scene_files_place_what_they_say(tmp_path_factory, width, height, positi
 junk = st.text(alphabet="[]={}\"'#\n .,abcdefnorstuvwxyz_0123456789+-e", max_size=200)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=75, deadline=None, derandomize=True)
 @given(text=junk, behind=st.booleans())
 def test_no_scene_file_is_worse_than_an_error(tmp_path_factory, text, behind):
     path = tmp_path_factory.mktemp("junk") / "scene.toml"

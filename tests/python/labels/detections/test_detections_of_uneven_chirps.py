@@ -26,7 +26,7 @@ def uneven(radar, slots):
 @pytest.mark.parametrize("slots", SLOTS.values(), ids=SLOTS)
 def test_the_field_of_a_single_path_is_that_of_its_signal_at_all_velocities(slots, window, zero_pad):
     radar = uneven(radar_with(receivers=2, transmitters=2), slots)
-    paths = ep.trace(scene_of(TARGETS), radar, num_rays=2000, max_bounces=1, start_time=0.01)
+    paths = ep.trace(scene_of(TARGETS), radar, num_rays=600, max_bounces=1, start_time=0.01)
     spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar, window, zero_pad)
     echoes, nearest_cell = echo_fields(paths, spectrum), cells_of(paths, spectrum)
     for chosen in (np.argmax(np.where(paths.mesh_id[paths.offsets] == number, np.abs(paths.amplitude), 0.0))
@@ -49,7 +49,7 @@ def test_detections_have_the_strongest_family_of_their_cells_and_the_paths_behin
     scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=lambert(0.27), position=(14, -1, 0),
               motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
     radar = uneven(radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6), slots)
-    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=1)
+    paths = ep.trace(scene, radar, num_rays=1500, max_bounces=1)
     maps = {family.object: ep.range_doppler(cube, radar).values
             for family, cube in ep.decompose(paths, radar, ep.families(paths)).items()}
     spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=2), radar)

@@ -60,7 +60,7 @@ def movers():
     scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)
     scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=lambert(0.27), position=(14, -1, 0),
               motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
-    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=2)
+    paths = ep.trace(scene, radar, num_rays=1500, max_bounces=2)
     return radar, paths, ep.synthesize(paths, radar)
 
 
@@ -237,7 +237,7 @@ def rotor(request):
                      transmit_power=20.0)
     scene = ep.Scene()
     scene.add(ep.actors.drone(), name="drone", position=(12, 0, 6))
-    paths = ep.trace(scene, radar, num_rays=800)
+    paths = ep.trace(scene, radar, num_rays=400)
     return radar, paths, ep.synthesize(paths, radar)
 
 

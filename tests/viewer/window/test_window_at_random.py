@@ -11,7 +11,7 @@ from echopath_viewer.window.keys import KEYS
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, settle
 
-NUM_ACTIONS = int(os.environ.get("ECHOPATH_VIEWER_ACTIONS", "60"))
+NUM_ACTIONS = int(os.environ.get("ECHOPATH_VIEWER_ACTIONS", "30"))
 LEAVE_OUT = ("dialog", "help", "quit")  # methods that ask or close
 
 

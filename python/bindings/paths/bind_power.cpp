@@ -2,11 +2,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <sstream>
 #include <string>
 
 #include "call/define.h"
 #include "call/run_job.h"
+#include "echopath/base/text/streamed.h"
 #include "echopath/power/received_power.h"
 #include "values/array.h"
 #include "values/travel.h"
@@ -41,10 +41,8 @@ py::tuple powers_of_sortings(const Paths& paths, const std::vector<std::pair<Gro
 }
 
 std::string power_text(const ReceivedPower& self) {
-  std::ostringstream text;
-  text << "ReceivedPower(" << self.power << " W, 95 % in [" << self.low << ", " << self.high << "] W"
-       << (self.resolved() ? "" : ", not resolved") << ")";
-  return text.str();
+  return streamed("ReceivedPower(", self.power, " W, 95 % in [", self.low, ", ", self.high, "] W",
+                  self.resolved() ? ")" : ", not resolved)");
 }
 
 }  // namespace
@@ -59,51 +57,41 @@ half the density of rays would take, and the spread of the batches or, of one ba
 reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
 and are NaN for one batch.)");
   define_no_init(bound, "ep.received_power");
-  bound.def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
-      .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
-      .def_readonly("coherent", &ReceivedPower::coherent,
-                    "W, |field|^2 of coherent paths; with batches free of bias by noise, which can take it below zero")
-      .def_readonly("coherent_error", &ReceivedPower::coherent_error, "W, standard error")
-      .def_readonly("diffuse", &ReceivedPower::diffuse, "W, sum over diffuse hits of |field of all paths over that hit|^2")
-      .def_readonly("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error")
-      .def_readonly("low", &ReceivedPower::low, "W, lower end of the 95 % interval, of bias and chance together")
-      .def_readonly("high", &ReceivedPower::high, "W, upper end of it")
-      .def_readonly("bias", &ReceivedPower::bias, "W, that finer launch cells may add to the coherent power")
-      .def_readonly(
-          "bias_of_rays", &ReceivedPower::bias_of_rays,
-          "W, the part of it that more rays mend: not what facets that stray from a smooth surface leave open, and "
-          "edges behind other bounces")
-      .def_readonly("chance", &ReceivedPower::chance, "W, standard error; of one batch estimated from the record")
-      .def_readonly("field", &ReceivedPower::field, "sqrt(W), sum of the coherent paths as they arrive")
-      .def_readonly("half_density_field", &ReceivedPower::half_density_field,
-                    "sqrt(W), the same through the footprint filter of launch cells sqrt(2) wider")
-      .def_readonly("unfiltered", &ReceivedPower::unfiltered, "W, sum of |a|^2 of the coherent paths without the filter")
-      .def_readonly("between_rays", &ReceivedPower::between_rays,
-                    "W, coherent power that launch cells may hold between rays: of points of reflection and of edges")
-      .def_readonly("num_coherent_paths", &ReceivedPower::num_coherent_paths, "number of coherent paths")
-      .def_readonly("num_diffuse_hits", &ReceivedPower::num_diffuse_hits, "number of diffuse hits")
-      .def_readonly("strongest_share", &ReceivedPower::strongest_share, "share of the diffuse power of its strongest hit")
+  bound
       .def_property_readonly("resolved", &ReceivedPower::resolved,
                              "the interval reaches no further than 0.3 dB to either side")
       .def_property_readonly("interval_db", &ReceivedPower::interval_db,
                              "dB, half the interval, the larger one of its sides; infinite where it reaches down to nothing")
-      .def_readonly("num_batches", &ReceivedPower::num_batches, "independent parts of the rays behind the errors")
       .def_property_readonly(
           "error_db", &ReceivedPower::error_db,
           "dB, 10 log10(1 + standard_error / power); infinite of one batch, which has no standard error, and where "
           "that is more than half the power")
       .def("__repr__", &power_text);
-  def_travel(bound, field("power", &ReceivedPower::power), field("standard_error", &ReceivedPower::standard_error),
-             field("coherent", &ReceivedPower::coherent), field("coherent_error", &ReceivedPower::coherent_error),
-             field("diffuse", &ReceivedPower::diffuse), field("diffuse_error", &ReceivedPower::diffuse_error),
-             field("num_batches", &ReceivedPower::num_batches), field("low", &ReceivedPower::low),
-             field("high", &ReceivedPower::high), field("bias", &ReceivedPower::bias),
-             field("bias_of_rays", &ReceivedPower::bias_of_rays), field("chance", &ReceivedPower::chance),
-             field("field", &ReceivedPower::field), field("half_density_field", &ReceivedPower::half_density_field),
-             field("unfiltered", &ReceivedPower::unfiltered), field("between_rays", &ReceivedPower::between_rays),
-             field("num_coherent_paths", &ReceivedPower::num_coherent_paths),
-             field("num_diffuse_hits", &ReceivedPower::num_diffuse_hits),
-             field("strongest_share", &ReceivedPower::strongest_share));
+  def_travel(
+      bound, attribute("power", &ReceivedPower::power, "W, coherent + diffuse"),
+      attribute("standard_error", &ReceivedPower::standard_error, "W, of the power"),
+      attribute("coherent", &ReceivedPower::coherent,
+                "W, |field|^2 of coherent paths; with batches free of bias by noise, which can take it below zero"),
+      attribute("coherent_error", &ReceivedPower::coherent_error, "W, standard error"),
+      attribute("diffuse", &ReceivedPower::diffuse, "W, sum over diffuse hits of |field of all paths over that hit|^2"),
+      attribute("diffuse_error", &ReceivedPower::diffuse_error, "W, standard error"),
+      attribute("low", &ReceivedPower::low, "W, lower end of the 95 % interval, of bias and chance together"),
+      attribute("high", &ReceivedPower::high, "W, upper end of it"),
+      attribute("bias", &ReceivedPower::bias, "W, that finer launch cells may add to the coherent power"),
+      attribute("bias_of_rays", &ReceivedPower::bias_of_rays,
+                "W, the part of it that more rays mend: not what facets that stray from a smooth surface leave open, and "
+                "edges behind other bounces"),
+      attribute("chance", &ReceivedPower::chance, "W, standard error; of one batch estimated from the record"),
+      attribute("field", &ReceivedPower::field, "sqrt(W), sum of the coherent paths as they arrive"),
+      attribute("half_density_field", &ReceivedPower::half_density_field,
+                "sqrt(W), the same through the footprint filter of launch cells sqrt(2) wider"),
+      attribute("unfiltered", &ReceivedPower::unfiltered, "W, sum of |a|^2 of the coherent paths without the filter"),
+      attribute("between_rays", &ReceivedPower::between_rays,
+                "W, coherent power that launch cells may hold between rays: of points of reflection and of edges"),
+      attribute("num_coherent_paths", &ReceivedPower::num_coherent_paths, "number of coherent paths"),
+      attribute("num_diffuse_hits", &ReceivedPower::num_diffuse_hits, "number of diffuse hits"),
+      attribute("strongest_share", &ReceivedPower::strongest_share, "share of the diffuse power of its strongest hit"),
+      attribute("num_batches", &ReceivedPower::num_batches, "independent parts of the rays behind the errors"));
   m.def("received_power", &power_of, py::arg("paths"), py::kw_only(), py::arg("tx") = 0, py::arg("rx") = 0,
         py::arg("progress") = py::none(), "What ep.received_power calls.");
   m.def("received_powers", &powers_of, py::arg("paths"), py::arg("group_of_path"), py::arg("num_groups"), py::kw_only(),

@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include "call/argument.h"
@@ -42,69 +41,58 @@ auto share(double ValidityShares::* field) {
 }
 
 std::string repr_of(const Validity& self) {
-  std::ostringstream text;
-  text << "Validity(" << (self.warnings().empty() ? "one trace serves" : counted(self.warnings().size(), "warning")) << ", "
-       << counted(self.num_paths, "path") << ", phase error " << self.rms_phase_error << " rad rms)";
-  return text.str();
+  const std::string found = self.warnings().empty() ? "one trace serves" : counted(self.warnings().size(), "warning");
+  return streamed("Validity(", found, ", ", counted(self.num_paths, "path"), ", phase error ", self.rms_phase_error,
+                  " rad rms)");
 }
 
 void bind_shares(py::module_& m) {
   py::class_<ValidityShares> bound(m, "ValidityShares",
                                    "What one trace does not serve, as shares of the power of some paths.");
   define_no_init(bound, "ep.validity");
-  bound.def_readonly("power", &ValidityShares::power, "W, what the shares are of")
-      .def_readonly("slid", &ValidityShares::slid, "share: phase error of points of reflection above 0.3 rad")
-      .def_readonly("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit")
-      .def_readonly("blocked", &ValidityShares::blocked, "share: something comes in the way")
-      .def_readonly("turned", &ValidityShares::turned,
-                    "share: a cosine of incidence or departure changes its sign or by more than a factor of two")
-      .def_readonly("beside_edges", &ValidityShares::beside_edges,
-                    "share: what edges of unmarked planes leave of images over them changes by more than 0.3 of the field")
-      .def_readonly("new_surface", &ValidityShares::new_surface,
-                    "share of single echoes of all that is seen: of what was hidden from the trace")
-      .def("__repr__", [](const ValidityShares& self) {
-        std::ostringstream text;
-        text << "ValidityShares(slid=" << self.slid << ", left=" << self.left << ", blocked=" << self.blocked
-             << ", turned=" << self.turned << ", beside_edges=" << self.beside_edges << ", new_surface=" << self.new_surface
-             << ")";
-        return text.str();
-      });
-  def_travel(bound, field("power", &ValidityShares::power), field("slid", &ValidityShares::slid),
-             field("left", &ValidityShares::left), field("blocked", &ValidityShares::blocked),
-             field("turned", &ValidityShares::turned), field("beside_edges", &ValidityShares::beside_edges),
-             field("new_surface", &ValidityShares::new_surface));
+  bound.def("__repr__", [](const ValidityShares& self) {
+    return streamed("ValidityShares(slid=", self.slid, ", left=", self.left, ", blocked=", self.blocked,
+                    ", turned=", self.turned, ", beside_edges=", self.beside_edges, ", new_surface=", self.new_surface, ")");
+  });
+  def_travel(
+      bound, attribute("power", &ValidityShares::power, "W, what the shares are of"),
+      attribute("slid", &ValidityShares::slid, "share: phase error of points of reflection above 0.3 rad"),
+      attribute("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit"),
+      attribute("blocked", &ValidityShares::blocked, "share: something comes in the way"),
+      attribute("turned", &ValidityShares::turned,
+                "share: a cosine of incidence or departure changes its sign or by more than a factor of two"),
+      attribute("beside_edges", &ValidityShares::beside_edges,
+                "share: what edges of unmarked planes leave of images over them changes by more than 0.3 of the field"),
+      attribute("new_surface", &ValidityShares::new_surface,
+                "share of single echoes of all that is seen: of what was hidden from the trace"));
 }
 
 void bind_objects(py::module_& m) {
   py::class_<ObjectValidity, ValidityShares> bound(
       m, "ObjectValidity", "What one trace does not serve of an object: of the paths that scattered on it last.");
   define_no_init(bound, "ep.validity");
-  bound.def_readonly("name", &ObjectValidity::name, "of the object")
-      .def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
-      .def_readonly("disappears", &ObjectValidity::disappears,
-                    "share of its power that is lost, mean over the times of the check")
-      .def_readonly("error_db", &ObjectValidity::error_db,
-                    "dB, of its power over the frame: the replay over what is there with new surface; 0: not known")
-      .def_readonly("seen_power", &ObjectValidity::seen_power, "W, largest power with which the times of the check see it")
-      .def_readonly("turn", &ObjectValidity::turn, "rad, how far it turns within the frame at most")
-      .def_readonly("has_paths", &ObjectValidity::has_paths, "False: it has no path that carries power")
+  bound.def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
       .def_readonly("in_range", &ObjectValidity::is_in_range,
                     "at most 60 dB below the strongest object, and above the noise of a range-Doppler cell")
       .def("__repr__", [](const ObjectValidity& self) {
-        std::ostringstream text;
-        text << "<ObjectValidity " << self.name << (self.ok() ? ": ok" : ": not served")
-             << ", new_surface=" << self.new_surface << ", disappears=" << self.disappears << ", error_db=" << self.error_db
-             << ">";
-        return text.str();
+        return streamed("<ObjectValidity ", self.name, self.ok() ? ": ok" : ": not served",
+                        ", new_surface=", self.new_surface, ", disappears=", self.disappears, ", error_db=", self.error_db,
+                        ">");
       });
-  def_travel(bound, field("name", &ObjectValidity::name), field("power", &ObjectValidity::power),
-             field("slid", &ObjectValidity::slid), field("left", &ObjectValidity::left),
-             field("blocked", &ObjectValidity::blocked), field("turned", &ObjectValidity::turned),
-             field("beside_edges", &ObjectValidity::beside_edges), field("new_surface", &ObjectValidity::new_surface),
-             field("disappears", &ObjectValidity::disappears), field("error_db", &ObjectValidity::error_db),
-             field("seen_power", &ObjectValidity::seen_power), field("turn", &ObjectValidity::turn),
-             field("has_paths", &ObjectValidity::has_paths), field("is_in_range", &ObjectValidity::is_in_range),
-             field("is_too_fast", &ObjectValidity::is_too_fast), field("is_asked", &ObjectValidity::is_asked));
+  def_travel(
+      bound, attribute("name", &ObjectValidity::name, "of the object"), field("power", &ObjectValidity::power),
+      field("slid", &ObjectValidity::slid), field("left", &ObjectValidity::left), field("blocked", &ObjectValidity::blocked),
+      field("turned", &ObjectValidity::turned), field("beside_edges", &ObjectValidity::beside_edges),
+      field("new_surface", &ObjectValidity::new_surface),
+      attribute("disappears", &ObjectValidity::disappears,
+                "share of its power that is lost, mean over the times of the check"),
+      attribute("error_db", &ObjectValidity::error_db,
+                "dB, of its power over the frame: the replay over what is there with new surface; 0: not known"),
+      attribute("seen_power", &ObjectValidity::seen_power, "W, largest power with which the times of the check see it"),
+      attribute("turn", &ObjectValidity::turn, "rad, how far it turns within the frame at most"),
+      attribute("has_paths", &ObjectValidity::has_paths, "False: it has no path that carries power"),
+      field("is_in_range", &ObjectValidity::is_in_range), field("is_too_fast", &ObjectValidity::is_too_fast),
+      field("is_asked", &ObjectValidity::is_asked));
 }
 
 // A column of what was found of each path.
@@ -114,21 +102,25 @@ auto found(const char* name, std::vector<T> ValidityArrays::* column) {
 }
 
 void def_validity_travel(py::class_<Validity, ValidityPtr>& bound) {
-  def_travel(
-      bound, field("num_paths", &Validity::num_paths), field("times", &Validity::times),
-      field("has_array", &Validity::has_array), field("shares", &Validity::shares),
-      field("rms_phase_error", &Validity::rms_phase_error), field("largest_phase_error", &Validity::largest_phase_error),
-      field("motion_phase_error", &Validity::motion_phase_error),
-      field("stepped_phase_error", &Validity::stepped_phase_error),
-      field("largest_cosine_change", &Validity::largest_cosine_change),
-      field("largest_edge_change", &Validity::largest_edge_change), field("edge_slide", &Validity::edge_slide),
-      field("objects", &Validity::objects), field("cell_noise", &Validity::cell_noise),
-      field("specular", &Validity::specular, kSpecularPoints), found("path_power", &ValidityArrays::power),
-      found("path_phase_error", &ValidityArrays::phase_error),
-      found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error), found("path_left", &ValidityArrays::left),
-      found("path_blocked", &ValidityArrays::blocked), found("path_receiver_blocked", &ValidityArrays::receiver_blocked),
-      found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change),
-      found("path_edge_change", &ValidityArrays::edge_change));
+  def_travel(bound, attribute("num_paths", &Validity::num_paths, "P, their number"),
+             attribute("times", &Validity::times, "[T] s, of the check"), field("has_array", &Validity::has_array),
+             attribute("shares", &Validity::shares, "ValidityShares of all paths"),
+             attribute("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power"),
+             attribute("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas"),
+             attribute("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas"),
+             attribute("stepped_phase_error", &Validity::stepped_phase_error,
+                       "rad, largest that a Newton step to the moved points of reflection leaves"),
+             attribute("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear"),
+             attribute("largest_edge_change", &Validity::largest_edge_change,
+                       "largest change of what edges of unmarked planes leave of a field, over the larger of both"),
+             field("edge_slide", &Validity::edge_slide), field("objects", &Validity::objects),
+             field("cell_noise", &Validity::cell_noise), field("specular", &Validity::specular, kSpecularPoints),
+             found("path_power", &ValidityArrays::power), found("path_phase_error", &ValidityArrays::phase_error),
+             found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error),
+             found("path_left", &ValidityArrays::left), found("path_blocked", &ValidityArrays::blocked),
+             found("path_receiver_blocked", &ValidityArrays::receiver_blocked),
+             found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change),
+             found("path_edge_change", &ValidityArrays::edge_change));
 }
 
 void bind_report(py::module_& m) {
@@ -141,9 +133,7 @@ the trace time and the times of the check; physical-optics paths are scaled to t
 within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
 over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
   define_no_init(bound, "ep.validity");
-  bound.def_readonly("num_paths", &Validity::num_paths, "P, their number")
-      .def_readonly("times", &Validity::times, "[T] s, of the check")
-      .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
+  bound
       .def_property_readonly("phase_error_share", share(&ValidityShares::slid),
                              "share of the power whose points of reflection make an error above 0.3 rad")
       .def_property_readonly("occluded_share", share(&ValidityShares::blocked), "share of the power that something blocks")
@@ -159,14 +149,6 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
       .def_property_readonly(
           "replay", [](const Validity& self) { return kSpecularPoints.name_of(self.specular); },
           "\"material\" or \"fermat\": the replay that was certified")
-      .def_readonly("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power")
-      .def_readonly("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas")
-      .def_readonly("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas")
-      .def_readonly("stepped_phase_error", &Validity::stepped_phase_error,
-                    "rad, largest that a Newton step to the moved points of reflection leaves")
-      .def_readonly("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear")
-      .def_readonly("largest_edge_change", &Validity::largest_edge_change,
-                    "largest change of what edges of unmarked planes leave of a field, over the larger of both")
       .def_property_readonly("keyframes", &Validity::keyframes,
                              "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
       .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
@@ -216,16 +198,14 @@ void bind_renewal(py::module_& m) {
       .def_property_readonly(
           "paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },
           "Paths that are still there, in their order.")
-      .def_readonly("num_blocked", &Renewal::num_blocked, "Paths left out because something stands in the way of a leg.")
-      .def_readonly("num_lost", &Renewal::num_lost, "Paths left out because a point of reflection has left its surface.")
-      .def_readonly("num_moved", &Renewal::num_moved, "Paths whose points of reflection were found anew.")
       .def("__repr__", [](const Renewal& self) {
-        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) +
-               ", num_blocked=" + std::to_string(self.num_blocked) + ", num_lost=" + std::to_string(self.num_lost) +
-               ", num_moved=" + std::to_string(self.num_moved) + ")";
+        return streamed("Renewal(paths=", self.paths.num_paths(), ", num_blocked=", self.num_blocked,
+                        ", num_lost=", self.num_lost, ", num_moved=", self.num_moved, ")");
       });
-  def_travel(bound, field("paths", &Renewal::paths), field("num_blocked", &Renewal::num_blocked),
-             field("num_lost", &Renewal::num_lost), field("num_moved", &Renewal::num_moved));
+  def_travel(bound, field("paths", &Renewal::paths),
+             attribute("num_blocked", &Renewal::num_blocked, "Paths left out because something stands in the way of a leg."),
+             attribute("num_lost", &Renewal::num_lost, "Paths left out because a point of reflection has left its surface."),
+             attribute("num_moved", &Renewal::num_moved, "Paths whose points of reflection were found anew."));
   m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
         py::arg("progress") = py::none(), "What ep.renew calls.");
 }

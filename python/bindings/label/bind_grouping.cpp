@@ -107,26 +107,41 @@ py::tuple families_of(const Paths& paths, const std::optional<Objects>& objects)
   return py::make_tuple(names, found.families, numpy_take(std::move(found.family_of_path)), families_grouping(surfaces));
 }
 
-std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, const std::optional<Objects>& objects,
-                                            std::optional<double> time, int num_directions, const py::object& progress) {
+py::tuple visibility_tuple(const VisibilityFromEnd& seen) {
+  py::dict occluders;
+  for (const auto& [name, share] : seen.occluders) occluders[py::str(name)] = share;
+  return py::make_tuple(seen.visible_share, occluders, seen.in_view, seen.distance, seen.solid_angle);
+}
+
+py::list sight_list(const std::vector<ObjectVisibility>& seen) {
+  py::list out;
+  for (const ObjectVisibility& object : seen) {
+    out.append(py::make_tuple(object.name, py::tuple(py::cast(object.mesh_ids)), visibility_tuple(object.transmitter),
+                              visibility_tuple(object.receiver)));
+  }
+  return out;
+}
+
+py::list visibility_of(Scene scene, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,
+                       int num_directions, const py::object& progress) {
   const double at = time.value_or(radar.middle_of_frame(0.0));
-  return run_job("visibility", progress, [&](Job& job) {
+  return sight_list(run_job("visibility", progress, [&](Job& job) {
     radar.validate();
     const SurfaceMap surfaces = objects ? surfaces_of(scene, *objects) : map_surfaces(scene, at, radar);
     return visibility(scene, radar, surfaces, {at, num_directions}, &job);
-  });
+  }));
 }
 
 // Of the objects that families_of finds, whatever the radar, at the time of the trace where there is no other. The geometry
 // of the trace serves where it is kept: it is brought to that time, which costs what moves.
-std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Radar& radar,
-                                                  const std::optional<Objects>& objects, std::optional<double> time,
-                                                  int num_directions, const py::object& progress) {
+py::list visibility_in_trace(const Paths& paths, const Radar& radar, const std::optional<Objects>& objects,
+                             std::optional<double> time, int num_directions, const py::object& progress) {
   const SurfaceMap surfaces = surfaces_of(paths, objects);
   const VisibilitySettings settings{time.value_or(paths.frame.trace_time), num_directions};
   const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
-  return run_job("visibility", progress,
-                 [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job, kept.get()); });
+  return sight_list(run_job("visibility", progress, [&](Job& job) {
+    return visibility(*paths.scene, radar, surfaces, settings, &job, kept.get());
+  }));
 }
 
 // Of the objects named, those that may_appear at shares of the frame.
@@ -157,21 +172,6 @@ py::dict meshes_by_name(const SurfaceMap& surfaces) {
   return meshes;
 }
 
-py::tuple visibility_tuple(const VisibilityFromEnd& seen) {
-  py::dict occluders;
-  for (const auto& [name, share] : seen.occluders) occluders[py::str(name)] = share;
-  return py::make_tuple(seen.visible_share, occluders, seen.in_view, seen.distance, seen.solid_angle);
-}
-
-py::list sight_list(const std::vector<ObjectVisibility>& seen) {
-  py::list out;
-  for (const ObjectVisibility& object : seen) {
-    out.append(py::make_tuple(object.name, py::tuple(py::cast(object.mesh_ids)), visibility_tuple(object.transmitter),
-                              visibility_tuple(object.receiver)));
-  }
-  return out;
-}
-
 void bind_visibility(py::module_& m) {
   m.def(
       "check_objects", [](const Scene& scene, const Objects& objects) { surfaces_of(scene, objects); }, py::arg("scene"),
@@ -189,15 +189,9 @@ void bind_visibility(py::module_& m) {
       },
       py::arg("scene"), py::arg("radar"), py::arg("time"),
       "{name: IDs of its meshes} of the objects that find_families has where none are named, at a time in s.");
-  m.def(
-      "visibility_in_trace",
-      [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,
-         int num_directions, const py::object& progress) {
-        return sight_list(visibility_in_trace(paths, radar, objects, time, num_directions, progress));
-      },
-      py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"),
-      py::arg("progress"),
-      "As visibility, of the objects that find_families has for a trace; time: s, None: that of the trace.");
+  m.def("visibility_in_trace", &visibility_in_trace, py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("time"),
+        py::arg("num_directions"), py::arg("progress"),
+        "As visibility, of the objects that find_families has for a trace; time: s, None: that of the trace.");
   m.def(
       "remember_geometry",
       [](const Paths& paths, const std::shared_ptr<KeptGeometry>& kept) {
@@ -211,16 +205,10 @@ void bind_visibility(py::module_& m) {
   m.def("may_appear_in_frame", &may_appear_in_frame, py::arg("paths"), py::arg("radar"), py::arg("objects"),
         py::arg("hidden"), py::arg("shares"), py::arg("hidden_share"),
         "Of the objects named in hidden, those that may be in sight at shares of the frame: the others are not.");
-  m.def(
-      "visibility",
-      [](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,
-         int num_directions, const py::object& progress) {
-        return sight_list(visibility_of(scene, radar, objects, time, num_directions, progress));
-      },
-      py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"),
-      py::arg("progress"),
-      "[(name, mesh IDs, of the transmitter, of the receiver), ...], the last two each a tuple of the fields of "
-      "echopath.VisibilityFromEnd.");
+  m.def("visibility", &visibility_of, py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"),
+        py::arg("num_directions"), py::arg("progress"),
+        "[(name, mesh IDs, of the transmitter, of the receiver), ...], the last two each a tuple of the fields of "
+        "echopath.VisibilityFromEnd.");
 }
 
 void bind_family(py::module_& m) {

@@ -59,7 +59,7 @@ struct Mask {
   static constexpr auto type_name = py::detail::const_name("ArrayLike");
   static Taken from(py::handle value, const char* argument) {
     const auto keep = checked_array<bool>(value, argument, "[P]");
-    return Taken(keep.data(), keep.data() + keep.size());
+    return {keep.data(), keep.data() + keep.size()};
   }
 };
 

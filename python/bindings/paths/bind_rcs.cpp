@@ -12,7 +12,6 @@
 
 #include "call/run_job.h"
 #include "call/warn.h"
-#include "echopath/base/constants.h"
 #include "echopath/base/text/streamed.h"
 #include "echopath/em/mie.h"
 #include "echopath/sim/rcs.h"

@@ -47,9 +47,6 @@ py::array cube_array(Cube&& cube) {
   return numpy_take(std::move(cube.values), {cube.num_tx, cube.num_rx, cube.num_chirps, cube.num_samples});
 }
 
-// None: the radar of the trace.
-const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar ? *radar : paths.radar; }
-
 // New surface is looked for in some of many stretches.
 void warn_of_few_searches(const CubeSettings& settings) {
   if (settings.keyframes.retrace != Retrace::kInvalid || settings.keyframes.keyframes <= kMaxSurfaceSearches) return;
@@ -74,29 +71,38 @@ void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSetting
                        paths.num_paths(), " paths; 'interpolated' is quick, with phases to phase_tolerance"));
 }
 
-py::array synthesize_cube(const Paths& paths, const Radar* radar, double tolerance, const std::string& method,
-                          const std::string& replay, const std::string& evaluate, double phase_tolerance,
-                          const std::string& retrace, int keyframes, const py::object& progress, SignalProbe* probe) {
-  CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
-  set_probe(probe, settings);
-  warn_of_long_work(paths, radar_or_own(paths, radar), settings);
-  warn_of_few_searches(settings);
-  return cube_array(run_job("synthesize", progress,
-                            [&](Job& job) { return synthesize(paths, radar_or_own(paths, radar), settings, &job); }));
+// Binds call(paths, radar, settings, progress, extra...) with the settings of a signal behind its own arguments. A radar that
+// is None is that of the trace.
+template <class Result, class... Extra, class... Names>
+void def_signal(py::module_& m, const char* name, const char* doc,
+                Result (*call)(const Paths&, const Radar&, const CubeSettings&, const py::object&, Extra...),
+                Names... names) {
+  const auto bound = [call](const Paths& paths, const Radar* given, Extra... extra, double tolerance,
+                            const std::string& method, const std::string& replay, const std::string& evaluate,
+                            double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
+                            SignalProbe* probe) {
+    CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
+    set_probe(probe, settings);
+    const Radar& radar = given ? *given : paths.radar;
+    warn_of_long_work(paths, radar, settings);
+    warn_of_few_searches(settings);
+    return call(paths, radar, settings, progress, extra...);
+  };
+  m.def(name, bound, py::arg("paths"), names..., py::kw_only(), py::arg("tolerance") = 1e-7, py::arg("method") = "auto",
+        py::arg("replay") = "material", py::arg("evaluate") = "interpolated",
+        py::arg("phase_tolerance") = ReplaySettings{}.phase_tolerance, py::arg("retrace") = "never",
+        py::arg("keyframes") = 0, py::arg("progress") = py::none(), py::arg("probe") = py::none(), doc);
 }
 
-py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vector<KeyedGrouping>& views, double tolerance,
-                         const std::string& method, const std::string& replay, const std::string& evaluate,
-                         double phase_tolerance, const std::string& retrace, int keyframes, const py::object& progress,
-                         SignalProbe* probe) {
-  CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
-  set_probe(probe, settings);
-  warn_of_long_work(paths, radar_or_own(paths, radar), settings);
-  warn_of_few_searches(settings);
+py::array synthesize_cube(const Paths& paths, const Radar& radar, const CubeSettings& settings, const py::object& progress) {
+  return cube_array(run_job("synthesize", progress, [&](Job& job) { return synthesize(paths, radar, settings, &job); }));
+}
+
+py::list decompose_cubes(const Paths& paths, const Radar& radar, const CubeSettings& settings, const py::object& progress,
+                         std::vector<KeyedGrouping> views) {
   std::vector<Grouping> rules;
   for (const KeyedGrouping& view : views) rules.push_back(view.rule);
-  auto cubes = run_job("decompose", progress,
-                       [&](Job& job) { return decompose(paths, radar_or_own(paths, radar), rules, settings, &job); });
+  auto cubes = run_job("decompose", progress, [&](Job& job) { return decompose(paths, radar, rules, settings, &job); });
   py::list out;
   for (size_t view = 0; view < views.size(); ++view) {
     py::dict parts;
@@ -189,21 +195,13 @@ void bind_sim(py::module_& m) {
   const ReplaySettings aims;
   m.attr("PHASE_TOLERANCE") = aims.phase_tolerance;
   m.attr("AMPLITUDE_TOLERANCE") = aims.amplitude_tolerance;
-  m.def("synthesize", &synthesize_cube, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
-        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
-        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,
-        py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
-        py::arg("probe") = py::none(), "What ep.synthesize calls.");
-  m.def("decompose", &decompose_cubes, py::arg("paths"), py::arg("radar"), py::arg("views"), py::kw_only(),
-        py::arg("tolerance") = 1e-7, py::arg("method") = "auto", py::arg("replay") = "material",
-        py::arg("evaluate") = "interpolated", py::arg("phase_tolerance") = aims.phase_tolerance,
-        py::arg("retrace") = "never", py::arg("keyframes") = 0, py::arg("progress") = py::none(),
-        py::arg("probe") = py::none(),
-        R"(The signals of parts of the paths, several views of them replayed once.
+  def_signal(m, "synthesize", "What ep.synthesize calls.", &synthesize_cube, py::arg("radar") = py::none());
+  def_signal(m, "decompose", R"(The signals of parts of the paths, several views of them replayed once.
 
 views: list of Grouping
-Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
-The other arguments are those of ep.synthesize.)");
+Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. The other
+arguments are those of ep.synthesize.)",
+             &decompose_cubes, py::arg("radar"), py::arg("views"));
 }
 
 }  // namespace echopath::bindings

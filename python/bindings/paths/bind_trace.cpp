@@ -99,22 +99,17 @@ py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const st
 
 py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points, const py::object& progress) {
   const auto legs = run_job("legs around edges", progress, [&](Job& job) { return legs_around_edges(query, points, &job); });
-  const auto count = std::ssize(legs);
-  py::array_t<uint32_t> mesh_id(count);
-  py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
-  for (py::ssize_t i = 0; i < count; ++i) {
-    const LegAroundEdge& leg = legs[i];
-    mesh_id.mutable_at(i) = leg.mesh_id;
-    for (py::ssize_t k = 0; k < 3; ++k) at.mutable_at(i, k) = leg.point[k];
-    length.mutable_at(i) = leg.length;
-    share.mutable_at(i) = leg.share;
+  std::vector<uint32_t> mesh_id;
+  std::vector<Vec3> point;
+  std::vector<double> length, share;
+  for (const LegAroundEdge& leg : legs) {
+    mesh_id.push_back(leg.mesh_id);
+    point.push_back(leg.point);
+    length.push_back(leg.length);
+    share.push_back(leg.share);
   }
-  py::dict found;
-  found["mesh_id"] = mesh_id;
-  found["point"] = at;
-  found["length"] = length;
-  found["share"] = share;
-  return found;
+  return py::dict(py::arg("mesh_id") = to_numpy(mesh_id), py::arg("point") = to_numpy(point),
+                  py::arg("length") = to_numpy(length), py::arg("share") = to_numpy(share));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <limits>
-#include <string>
 
 #include "call/argument.h"
 #include "call/define.h"

@@ -29,12 +29,6 @@ struct HitRows {
   }
 };
 
-// All of an array, which is no copy until then: records take gigabytes.
-template <class T, int kFlags>
-std::vector<T> vector_of(const py::array_t<T, kFlags>& values) {
-  return {values.data(), values.data() + values.size()};
-}
-
 // Rows of `size` numbers.
 template <class Row, class T, int kFlags>
 std::vector<Row> rows_of(const py::array_t<T, kFlags>& values, size_t size) {

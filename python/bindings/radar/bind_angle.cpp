@@ -30,13 +30,6 @@ std::vector<double> as_angles(const py::object& value, const char* argument) {
   return as_vector<double>(value, argument);
 }
 
-std::vector<Cell> as_cells(const py::object& value) {
-  const auto array = checked_array<int64_t>(value, "cells", "[N, 2]");
-  std::vector<Cell> cells;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) cells.push_back({array.at(i, 0), array.at(i, 1)});
-  return cells;
-}
-
 BeamformOptions beams_of(const std::string& method, const py::object& window, const std::string& overlaps, bool compensate,
                          double diagonal_loading, int velocity_neighbours, int range_neighbours, bool forward_backward) {
   return {kBeamMethod.value_of(method),
@@ -81,7 +74,7 @@ BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGri
   if (cells.is_none()) {
     return run_job("beamform", progress, [&](Job& job) { return beamform(map, radar, angles, beams, &job); });
   }
-  const std::vector<Cell> chosen = as_cells(cells);
+  const std::vector<Cell> chosen = as_pairs(cells, "cells");
   return run_job("beamform", progress, [&](Job& job) { return beamform(map, radar, chosen, angles, beams, &job); });
 }
 
@@ -104,7 +97,7 @@ RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, cons
 AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& beams,
                          const py::object& progress, py::object cells, py::object velocity, int max_peaks,
                          double peak_range_db, int folds) {
-  const std::vector<Cell> chosen = as_cells(cells);
+  const std::vector<Cell> chosen = as_pairs(cells, "cells");
   const EstimateOptions options{beams, max_peaks, peak_range_db, folds,
                                 velocity.is_none() ? std::vector<double>() : as_vector<double>(velocity, "velocity")};
   return run_job("estimate_angles", progress,

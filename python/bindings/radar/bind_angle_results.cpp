@@ -5,7 +5,6 @@
 
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "call/argument.h"
 #include "call/define.h"
@@ -14,6 +13,7 @@
 #include "echopath/spectrum/angle/beamform.h"
 #include "echopath/spectrum/angle/estimate_angles.h"
 #include "echopath/spectrum/angle/range_azimuth.h"
+#include "radar/map_plot.h"
 #include "values/array.h"
 #include "values/in_package.h"
 #include "values/travel.h"
@@ -39,6 +39,8 @@ Shape shape_of(const BeamPower& beams) {
   return shape;
 }
 
+Shape shape_of(const RangeAzimuth& map) { return {std::ssize(map.azimuth), std::ssize(map.range)}; }
+
 std::string text_of(const RangeAzimuth& map) {
   return streamed("RangeAzimuth([", map.azimuth.size(), ", ", map.range.size(), "], ", map.azimuth.front(), " to ",
                   map.azimuth.back(), " rad, 0 to ", map.range.back(), " m)");
@@ -52,11 +54,7 @@ sin(azimuth) cos(elevation) and sin(elevation).)");
   define_no_init(bound, "ep.angle_fft");
   bound
       .def_property_readonly(
-          "values",
-          [](const py::object& self) {
-            const auto& spectrum = self.cast<const AngleSpectrum&>();
-            return numpy_view(spectrum.values.data(), shape_of(spectrum), self);
-          },
+          "values", view_of(&AngleSpectrum::values, &shape_of),
           "[elevation, azimuth, velocity, range] complex in sqrt(W), read-only; phase as at the array's centre")
       .def_property_readonly(
           "azimuth", [](const AngleSpectrum& self) { return to_numpy(angles_of(self.sin_azimuth)); },
@@ -98,13 +96,8 @@ void bind_beam_power(py::module_& m) {
   py::class_<BeamPower> bound(m, "BeamPower", "Power of beams with their axes; made by beamform.");
   define_no_init(bound, "ep.beamform");
   bound
-      .def_property_readonly(
-          "power",
-          [](const py::object& self) {
-            const auto& beams = self.cast<const BeamPower&>();
-            return numpy_view(beams.power.data(), shape_of(beams), self);
-          },
-          "[elevation, azimuth, velocity, range] in W, read-only; of cells [elevation, azimuth, cell]")
+      .def_property_readonly("power", view_of(&BeamPower::power, &shape_of),
+                             "[elevation, azimuth, velocity, range] in W, read-only; of cells [elevation, azimuth, cell]")
       .def("__repr__", [](const BeamPower& self) { return "BeamPower(" + text_of(shape_of(self)) + ")"; });
   def_travel_checked(
       bound, [](const BeamPower& made) { require_shape(made.power, shape_of(made), "power"); },
@@ -119,13 +112,8 @@ void bind_range_azimuth_map(py::module_& m) {
   py::class_<RangeAzimuth> bound(m, "RangeAzimuth", "A range-azimuth map with its axes; made by range_azimuth.");
   define_no_init(bound, "ep.range_azimuth");
   bound
-      .def_property_readonly(
-          "power",
-          [](const py::object& self) {
-            const auto& map = self.cast<const RangeAzimuth&>();
-            return numpy_view(map.power.data(), {std::ssize(map.azimuth), std::ssize(map.range)}, self);
-          },
-          "[azimuth, range] in W, read-only: the largest over elevation")
+      .def_property_readonly("power", view_of(&RangeAzimuth::power, &shape_of),
+                             "[azimuth, range] in W, read-only: the largest over elevation")
       .def("__repr__", [](const RangeAzimuth& self) { return text_of(self); });
   define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_azimuth_array"),
          R"(The map as an xarray.DataArray, without a copy: power in W.
@@ -134,26 +122,15 @@ Axes: azimuth (rad, left positive) and range (m); attributes elevation (rad, of 
 only some were taken).
 
 Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)");
-  define(
-      bound, "plot",
-      [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
-         Arg<"title", Text> title) {
-        return in_package("plots", "draw_range_azimuth")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
-                                                         py::arg("vmax") = vmax, py::arg("title") = *title);
-      },
-      py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
-      py::arg("title") = "Received power from above",
-      R"(Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
+  define_map_plot(bound, "draw_range_azimuth", "Received power from above",
+                  R"(Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
 
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
 Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
 TypeError or ValueError naming the argument.)");
   def_travel_checked(
-      bound,
-      [](const RangeAzimuth& made) {
-        require_shape(made.power, {std::ssize(made.azimuth), std::ssize(made.range)}, "power");
-      },
+      bound, [](const RangeAzimuth& made) { require_shape(made.power, shape_of(made), "power"); },
       array_attribute("azimuth", &RangeAzimuth::azimuth, "[azimuth] rad, ascending, left positive"),
       array_attribute("range", &RangeAzimuth::range, "[range] m"),
       array_attribute("elevation", &RangeAzimuth::elevation, "[elevation] rad, of the beams"),

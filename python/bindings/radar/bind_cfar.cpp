@@ -21,31 +21,34 @@ namespace {
 
 constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
 
-CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
-                   std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
-                   std::optional<int> training_range, double rank, std::vector<double> noise_shape,
-                   const py::object& progress) {
-  const CfarOptions options{
-      kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank,
-      std::move(noise_shape)};
+// Binds call(map, radar, options, extra...) with the settings of a design before its own arguments.
+template <class Result, class... Extra, class... Names>
+void def_cfar(py::module_& m, const char* name, const char* doc,
+              Result (*call)(const RangeDoppler&, const Radar&, CfarOptions, Extra...), Names... names) {
+  const CfarOptions standard;
+  m.def(
+      name,
+      [call](const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
+             std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
+             std::optional<int> training_range, double rank, Extra... extra) {
+        return call(map, radar,
+                    {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
+                     training_range, rank},
+                    extra...);
+      },
+      py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
+      py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
+      py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(), py::arg("training_range") = py::none(),
+      py::arg("rank") = standard.rank, names..., doc);
+}
+
+CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, CfarOptions options, std::vector<double> noise_shape,
+                   py::object progress) {
+  options.noise_shape = std::move(noise_shape);
   return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
 }
 
-void check_cfar(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
-                std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
-                std::optional<int> training_range, double rank) {
-  cfar_design(map, radar,
-              {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
-               training_range, rank});
-}
-
-py::array_t<int64_t> cells_array(const std::vector<std::array<int64_t, 2>>& values) {
-  py::array_t<int64_t> cells({std::ssize(values), py::ssize_t{2}});
-  for (size_t i = 0; i < values.size(); ++i) {
-    for (int axis = 0; axis < 2; ++axis) cells.mutable_at(i, axis) = values[i][axis];
-  }
-  return cells;
-}
+void check_cfar(const RangeDoppler& map, const Radar& radar, CfarOptions options) { cfar_design(map, radar, options); }
 
 py::array_t<bool> mask_of(const CfarResult& result) {
   py::array_t<bool> mask({result.num_velocities, result.num_ranges});
@@ -57,7 +60,7 @@ py::array_t<bool> mask_of(const CfarResult& result) {
 py::dict peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult& found, const py::object& progress) {
   Peaks peaks = run_job("find_peaks", progress, [&](Job& job) { return find_peaks(map, radar, found, &job); });
   py::dict out;
-  out["cells"] = cells_array(peaks.cells);
+  out["cells"] = to_numpy(peaks.cells);
   out["velocity"] = numpy_take(std::move(peaks.velocity));
   out["range"] = numpy_take(std::move(peaks.range));
   out["power"] = numpy_take(std::move(peaks.power));
@@ -75,8 +78,10 @@ std::string text_of(const CfarResult& result) {
                   cells.training_velocity, " x ", cells.training_range, ")");
 }
 
+Shape shape_of(const CfarResult& result) { return {result.num_velocities, result.num_ranges}; }
+
 void check_result(const CfarResult& made) {
-  require_shape(made.power, {made.num_velocities, made.num_ranges}, "power");
+  require_shape(made.power, shape_of(made), "power");
   require_shape(made.noise, {std::ssize(made.cells)}, "noise");
   for (const auto& [velocity, range] : made.cells) {
     require(velocity >= 0 && velocity < made.num_velocities, "cells", "must lie in the map", velocity);
@@ -120,18 +125,10 @@ void def_cfar_travel(py::class_<CfarResult>& bound) {
 void bind_cfar(py::module_& m) {
   py::class_<CfarResult> bound(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.");
   define_no_init(bound, "ep.cfar");
-  bound
-      .def_property_readonly(
-          "power",
-          [](const py::object& self) {
-            const auto& result = self.cast<const CfarResult&>();
-            return numpy_view(result.power.data(), {result.num_velocities, result.num_ranges}, self);
-          },
-          "[velocity, range] W, mean over channels")
+  bound.def_property_readonly("power", view_of(&CfarResult::power, &shape_of), "[velocity, range] W, mean over channels")
       .def_property_readonly("mask", &mask_of, "[velocity, range] bool, true in the cells found")
-      .def_property_readonly(
-          "cells", [](const CfarResult& self) { return cells_array(self.cells); },
-          "[D, 2] (velocity, range) indices of the cells found, ascending")
+      .def_property_readonly("cells", array_of(&CfarResult::cells),
+                             "[D, 2] (velocity, range) indices of the cells found, ascending")
       .def_property_readonly(
           "factor", [](const CfarResult& self) { return self.factors.factor.back() * self.factors.statistic; },
           "power over noise, linear, from which a cell away from the ends of the range axis is found")
@@ -155,17 +152,9 @@ void bind_cfar(py::module_& m) {
       .def("__repr__", [](const CfarResult& self) { return text_of(self); });
   def_cfar_travel(bound);
 
-  const CfarOptions standard;
-  m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
-        py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
-        py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
-        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank,
-        py::arg("noise_shape") = standard.noise_shape, py::arg("progress") = py::none(), "What ep.cfar calls.");
-  m.def("check_cfar", &check_cfar, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
-        py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
-        py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
-        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank,
-        "Raises what cfar would for these settings, at no cost.");
+  def_cfar(m, "cfar", "What ep.cfar calls.", &cfar_of, py::arg("noise_shape") = std::vector<double>(),
+           py::arg("progress") = py::none());
+  def_cfar(m, "check_cfar", "Raises what cfar would for these settings, at no cost.", &check_cfar);
   m.def("find_peaks", &peaks_of, py::arg("spectrum"), py::arg("radar"), py::arg("found"), py::arg("progress") = py::none(),
         R"(Local maxima among the cells found, and where between the cells they lie.
 

@@ -33,7 +33,7 @@ AntennaPattern gain_table(Arg<"azimuth", VectorOf<double>> azimuth, Arg<"elevati
     const bool fits = given.shape(0) == std::ssize(*elevation) && given.shape(1) == std::ssize(*azimuth);
     require(fits, argument, "must have a row for each elevation and a column for each azimuth",
             std::to_string(given.shape(0)) + " x " + std::to_string(given.shape(1)));
-    return std::vector<double>(given.data(), given.data() + given.size());
+    return vector_of(given);
   };
   const std::vector<double> gains = samples(*gain, "gain");
   const std::vector<double> phases = *phase ? samples(**phase, "phase") : std::vector<double>{};

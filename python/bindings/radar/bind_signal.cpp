@@ -41,8 +41,8 @@ py::array synthesize_echoes(const ChirpSequence& waveform, const py::object& del
   Echoes echoes;
   echoes.sampling = sampling_of_rows(waveform, delay.shape(0), num_slots);
   echoes.num_echoes = delay.shape(1);
-  echoes.delay.assign(delay.data(), delay.data() + delay.size());
-  echoes.amplitude.assign(amplitude.data(), amplitude.data() + amplitude.size());
+  echoes.delay = vector_of(delay);
+  echoes.amplitude = vector_of(amplitude);
   const SynthesisOptions options{tolerance, kMethod.value_of(method)};
   auto samples = run_job("synthesize", py::none(), [&](Job& job) {
     Synthesizer synthesizer(waveform, 1, 1, echoes.num_echoes, options);

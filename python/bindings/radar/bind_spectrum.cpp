@@ -9,6 +9,7 @@
 #include "echopath/base/text/streamed.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "radar/cube_array.h"
+#include "radar/map_plot.h"
 #include "radar/window_name.h"
 #include "values/array.h"
 #include "values/in_package.h"
@@ -23,17 +24,14 @@ RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const
   return run_job("range_doppler", py::none(), [&](Job& job) { return range_doppler(values, radar, taper, zero_pad, &job); });
 }
 
-py::array values_of(const py::object& self) {
-  const auto& map = self.cast<const RangeDoppler&>();
-  return numpy_view(map.values.data(),
-                    {map.num_transmitters, map.num_receivers, std::ssize(map.velocity), std::ssize(map.range)}, self);
+Shape shape_of(const RangeDoppler& map) {
+  return {map.num_transmitters, map.num_receivers, std::ssize(map.velocity), std::ssize(map.range)};
 }
 
 void check_map(const RangeDoppler& map) {
   require(map.num_transmitters >= 1, "num_transmitters", "must be at least 1", map.num_transmitters);
   require(map.num_receivers >= 1, "num_receivers", "must be at least 1", map.num_receivers);
-  require_shape(map.values, {map.num_transmitters, map.num_receivers, std::ssize(map.velocity), std::ssize(map.range)},
-                "values");
+  require_shape(map.values, shape_of(map), "values");
 }
 
 std::string text_of(const RangeDoppler& map) {
@@ -47,7 +45,9 @@ std::string text_of(const RangeDoppler& map) {
 void bind_spectrum(py::module_& m) {
   py::class_<RangeDoppler> bound(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.");
   define_no_init(bound, "ep.range_doppler");
-  bound.def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
+  bound
+      .def_property_readonly("values", view_of(&RangeDoppler::values, &shape_of),
+                             "[tx, rx, velocity, range] complex in sqrt(W), read-only")
       .def_property_readonly(
           "window", [](const RangeDoppler& self) { return map_windows_value(self.window); },
           "as range_doppler takes it: a name or (\"chebyshev\", sidelobe level in dB) of both axes, or those of (range, "
@@ -59,16 +59,8 @@ void bind_spectrum(py::module_& m) {
 Axes: tx, rx, velocity (m/s, receding positive) and range (m).
 
 Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)");
-  define(
-      bound, "plot",
-      [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
-         Arg<"title", Text> title) {
-        return in_package("plots", "draw_range_doppler")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
-                                                         py::arg("vmax") = vmax, py::arg("title") = *title);
-      },
-      py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
-      py::arg("title") = "Received power by range and radial velocity",
-      R"(Draws the map, the mean over the channels, cropped to where there is signal.
+  define_map_plot(bound, "draw_range_doppler", "Received power by range and radial velocity",
+                  R"(Draws the map, the mean over the channels, cropped to where there is signal.
 
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak

@@ -25,7 +25,7 @@ inline std::vector<std::complex<double>> as_cube(py::handle value, const Radar& 
                                          shape[2], ", ", shape[3], "], got [", array.shape(0), ", ", array.shape(1), ", ",
                                          array.shape(2), ", ", array.shape(3), "]"));
   }
-  return {array.data(), array.data() + array.size()};
+  return vector_of(array);
 }
 
 }  // namespace echopath::bindings

@@ -25,14 +25,10 @@ constexpr auto kCurveInterpolation = choice<CurveInterpolation>("interpolation",
 using CurveArgument = Optional<Instance<Curve>>;
 using Rows = Array<double, "[T, C]">;
 
-std::vector<double> numbers_of(const py::array_t<double, py::array::c_style>& rows) {
-  return {rows.data(), rows.data() + rows.size()};
-}
-
 Curve curve(Arg<"times", VectorOf<double>> times, Arg<"values", Rows> values,
             Arg<"interpolation", OneOf<kCurveInterpolation>> interpolation, Arg<"in_tangents", Optional<Rows>> in_tangents,
             Arg<"out_tangents", Optional<Rows>> out_tangents) {
-  Curve made{*times, numbers_of(*values), *interpolation, {}, {}};
+  Curve made{*times, vector_of(*values), *interpolation, {}, {}};
   require(values->shape(1) >= 1, "values", "must have at least one column", values->shape(1));
   const bool is_hermite = *interpolation == CurveInterpolation::kHermite;
   const auto check = [&](const std::optional<Rows::Value>& given, const char* name) {
@@ -41,7 +37,7 @@ Curve curve(Arg<"times", VectorOf<double>> times, Arg<"values", Rows> values,
   };
   check(*in_tangents, "in_tangents");
   check(*out_tangents, "out_tangents");
-  if (is_hermite) made.in_tangents = numbers_of(**in_tangents), made.out_tangents = numbers_of(**out_tangents);
+  if (is_hermite) made.in_tangents = vector_of(**in_tangents), made.out_tangents = vector_of(**out_tangents);
   made.validate_times("times");
   made.validate("values", static_cast<size_t>(values->shape(1)));
   return made;

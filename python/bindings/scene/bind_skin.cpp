@@ -65,11 +65,11 @@ SkinWeights skin_weights(const py::array_t<double>& given, const std::optional<p
                          size_t num_joints) {
   SkinWeights out;
   out.per_vertex = given.shape(1);
-  out.weight.assign(given.data(), given.data() + given.size());
+  out.weight = vector_of(given);
   if (joint_indices) {
     const bool fits = joint_indices->shape(0) == given.shape(0) && joint_indices->shape(1) == given.shape(1);
     if (!fits) refuse_value("joint_indices", "must have the shape of weights, " + shown(given), *joint_indices);
-    out.joint.assign(joint_indices->data(), joint_indices->data() + joint_indices->size());
+    out.joint = vector_of(*joint_indices);
     return out;
   }
   require(static_cast<size_t>(out.per_vertex) == num_joints, "weights", "must have a column for each joint", out.per_vertex);

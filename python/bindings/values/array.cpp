@@ -66,13 +66,14 @@ void put(const Quaternion& q, double* wxyz) {
 
 template <class Number, class Row>
 py::array_t<Number> rows_to_numpy(const std::vector<Row>& rows) {
-  py::array_t<Number> array({std::ssize(rows), py::ssize_t{3}});
+  constexpr auto kColumns = static_cast<py::ssize_t>(sizeof(Row) / sizeof(Number));
+  py::array_t<Number> array({std::ssize(rows), kColumns});
   Number* to = array.mutable_data();
-  for (const Row& row : rows) to = std::copy_n(row.data(), 3, to);
+  for (const Row& row : rows) to = std::copy_n(row.data(), kColumns, to);
   return array;
 }
 
-// The rows of a table [N, 3] as structs of three numbers.
+// The rows of a table as structs of as many numbers.
 template <class Row, class T>
 std::vector<Row> as_rows(const py::array_t<T, py::array::c_style>& table) {
   std::vector<Row> rows(table.shape(0));
@@ -134,6 +135,10 @@ std::vector<IndexTriple> as_triangles(py::handle value, std::string_view argumen
   return as_rows<IndexTriple>(checked_array<uint32_t>(value, argument, "[F, 3]"));
 }
 
+std::vector<IndexPair> as_pairs(py::handle value, std::string_view argument) {
+  return as_rows<IndexPair>(checked_array<int64_t>(value, argument, "[N, 2]"));
+}
+
 Transform as_transform(py::handle value, std::string_view argument) {
   const auto array = checked_array<double>(value, argument, "[4, 4]");
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(array.data());
@@ -190,6 +195,8 @@ py::array_t<double> to_numpy(const std::vector<std::vector<Vec3>>& frames) {
 }
 
 py::array_t<uint32_t> to_numpy(const std::vector<IndexTriple>& values) { return rows_to_numpy<uint32_t>(values); }
+
+py::array_t<int64_t> to_numpy(const std::vector<IndexPair>& values) { return rows_to_numpy<int64_t>(values); }
 
 py::array_t<double> numpy_view(const std::vector<Vec3>& values, py::handle owner) {
   return numpy_view(values.empty() ? nullptr : values.data()->data(), {std::ssize(values), 3}, owner);

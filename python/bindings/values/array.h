@@ -25,16 +25,24 @@ namespace echopath::bindings {
 namespace py = pybind11;
 using Shape = std::vector<py::ssize_t>;
 using IndexTriple = std::array<uint32_t, 3>;
+using IndexPair = std::array<int64_t, 2>;
 
 // `value` as a contiguous array of T with that shape. T: double takes real numbers, std::complex<double> real and complex
 // ones, an integer type integers within its range, bool only bool. Lists and tuples of numbers will do.
 template <class T>
 py::array_t<T, py::array::c_style> checked_array(py::handle value, std::string_view argument, std::string_view shape);
 
+// All numbers of an array, in C order.
+template <class T, int kFlags>
+std::vector<T> vector_of(const py::array_t<T, kFlags>& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
 Vec3 as_vec3(py::handle value, std::string_view argument);                              // [3], finite
 std::vector<Vec3> as_points(py::handle value, std::string_view argument);               // [N, 3]
 std::vector<std::vector<Vec3>> as_frames(py::handle value, std::string_view argument);  // [T, V, 3]
 std::vector<IndexTriple> as_triangles(py::handle value, std::string_view argument);     // [F, 3], integers >= 0
+std::vector<IndexPair> as_pairs(py::handle value, std::string_view argument);           // [N, 2], integers
 Transform as_transform(py::handle value, std::string_view argument);                    // [4, 4], last row 0 0 0 1
 Quaternion as_quaternion(py::handle value, std::string_view argument);                  // [4] (w, x, y, z), length 1
 std::vector<Quaternion> as_quaternions(py::handle value, std::string_view argument);    // [N, 4]
@@ -42,8 +50,7 @@ std::vector<Quaternion> as_quaternions(py::handle value, std::string_view argume
 // [N] by default; several dimensions are flattened in C order.
 template <class T>
 std::vector<T> as_vector(py::handle value, std::string_view argument, std::string_view shape = "[N]") {
-  const auto array = checked_array<T>(value, argument, shape);
-  return std::vector<T>(array.data(), array.data() + array.size());
+  return vector_of(checked_array<T>(value, argument, shape));
 }
 
 py::array_t<double> to_numpy(const Vec3& value);                             // [3]
@@ -53,6 +60,7 @@ py::array_t<double> to_numpy(const std::vector<Vec3>& values);               // 
 py::array_t<double> to_numpy(const std::vector<Quaternion>& values);         // [N, 4]
 py::array_t<double> to_numpy(const std::vector<std::vector<Vec3>>& frames);  // [T, V, 3], all frames of one size
 py::array_t<uint32_t> to_numpy(const std::vector<IndexTriple>& values);      // [F, 3]
+py::array_t<int64_t> to_numpy(const std::vector<IndexPair>& values);         // [N, 2]
 template <class T>
 py::array_t<T> to_numpy(const std::vector<T>& values) {  // [N]
   return py::array_t<T>(std::ssize(values), values.data());
@@ -99,6 +107,14 @@ auto array_of(Member Class::* member) {
 template <class Class, class Member>
 auto view_of(Member Class::* member) {
   return [member](const py::object& self) { return numpy_view(std::invoke(member, self.cast<const Class&>()), self); };
+}
+// The same of a vector that has several dimensions.
+template <class Class, class Member>
+auto view_of(Member Class::* member, Shape (*shape_of)(const Class& self)) {
+  return [member, shape_of](const py::object& self) {
+    const auto& owner = self.cast<const Class&>();
+    return numpy_view((owner.*member).data(), shape_of(owner), self);
+  };
 }
 
 namespace detail {

@@ -66,21 +66,10 @@ struct Codec<std::vector<Number>> {
   static std::vector<Number> value(py::handle state, const char* name) { return as_vector<Number>(state, name); }
 };
 
-// Pairs of indices as an array [N, 2].
 template <>
-struct Codec<std::vector<std::array<int64_t, 2>>> {
-  using Pairs = std::vector<std::array<int64_t, 2>>;
-  static py::object state(const Pairs& pairs) {
-    std::vector<int64_t> flat;
-    for (const auto& [first, second] : pairs) flat.insert(flat.end(), {first, second});
-    return numpy_take(std::move(flat), {std::ssize(pairs), 2});
-  }
-  static Pairs value(py::handle state, const char* name) {
-    const std::vector<int64_t> flat = as_vector<int64_t>(state, name, "[N, 2]");
-    Pairs pairs(flat.size() / 2);
-    for (size_t i = 0; i < pairs.size(); ++i) pairs[i] = {flat[2 * i], flat[2 * i + 1]};
-    return pairs;
-  }
+struct Codec<std::vector<IndexPair>> {
+  static py::object state(const std::vector<IndexPair>& pairs) { return to_numpy(pairs); }
+  static std::vector<IndexPair> value(py::handle state, const char* name) { return as_pairs(state, name); }
 };
 
 // Whether two values are the same; unlike ==, NaN is the same as NaN.

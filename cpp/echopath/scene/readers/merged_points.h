@@ -1,11 +1,11 @@
 #pragma once
 // Gives points of equal coordinates one number, for formats that repeat a vertex in each triangle. Internal to the module.
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
 
+#include "echopath/base/bit_sum.h"
 #include "echopath/scene/mesh/mesh.h"
 
 namespace echopath {
@@ -27,14 +27,9 @@ class MergedPoints {
   using Key = std::array<double, 3>;
   struct Hash {
     size_t operator()(const Key& key) const {
-      uint64_t sum = 0;
-      for (const double value : key) {  // mixes as splitmix64 does (Steele, Lea, Flood 2014)
-        sum += std::bit_cast<uint64_t>(value) + 0x9E3779B97F4A7C15u;
-        sum = (sum ^ (sum >> 30)) * 0xBF58476D1CE4E5B9u;
-        sum = (sum ^ (sum >> 27)) * 0x94D049BB133111EBu;
-        sum ^= sum >> 31;
-      }
-      return static_cast<size_t>(sum);
+      BitSum sum;
+      sum.add(key);
+      return static_cast<size_t>(sum.value());
     }
   };
 

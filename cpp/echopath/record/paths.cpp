@@ -205,13 +205,7 @@ Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
   const auto column = [&](const auto& values) { return kept(values, keep, count, job); };
   Paths out;
   out.hits = hits;
-  out.offsets = column(offsets);
-  out.num_bounces = column(num_bounces);
-  out.diffuse = column(diffuse);
-  out.weight = column(weight);
-  out.stratum = column(stratum);
-  out.batch = column(batch);
-  out.flags = column(flags);
+  for_each_column([&](auto each) { out.*each = column(this->*each); });
   if (!curved_cell.empty()) out.curved_cell = column(curved_cell);
   if (!jones.empty()) out.jones = column(jones);
   select_passes(*this, keep, out);

@@ -1,6 +1,5 @@
 #pragma once
 // Holds the record of a trace: what every ray touched. It is immutable after the trace; selections share the hits.
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <complex>
@@ -214,5 +213,13 @@ struct Paths {
   // Returns the same paths with only the hits that they use, in their order; hits that paths share stay shared.
   Paths with_own_hits(Job* job = nullptr) const;
 };
+
+// Calls visit(column) for each column that has an entry for every path, as a pointer to the member.
+template <class Visit>
+void for_each_column(const Visit& visit) {
+  const auto visit_all = [&](auto... columns) { (visit(columns), ...); };
+  visit_all(&Paths::offsets, &Paths::num_bounces, &Paths::diffuse, &Paths::weight, &Paths::stratum, &Paths::batch,
+            &Paths::flags);
+}
 
 }  // namespace echopath

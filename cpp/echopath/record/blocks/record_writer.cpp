@@ -55,8 +55,8 @@ double RecordWriter::num_bytes(const std::vector<PathBlock>& like, int64_t num_b
     num_hits += static_cast<double>(block.num_hits());
   }
   const Paths none;
-  size_t of_path = sizeof(none.offsets[0]) + sizeof(none.num_bounces[0]) + sizeof(none.diffuse[0]) + sizeof(none.weight[0]) +
-                   sizeof(none.stratum[0]) + sizeof(none.batch[0]) + sizeof(none.flags[0]);
+  size_t of_path = 0;
+  for_each_column([&](auto column) { of_path += sizeof((none.*column)[0]); });
   if (has(blocks, &PathBlock::curved_cell)) of_path += sizeof(none.curved_cell[0]);
   if (has_matrices(blocks)) of_path += sizeof(none.jones[0]);
   const double times = static_cast<double>(num_blocks) / std::max(1.0, static_cast<double>(like.size()));
@@ -71,13 +71,7 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
   const double times = kRoomToSpare * static_cast<double>(num_blocks) / static_cast<double>(like.size());
   const auto rows = static_cast<size_t>(times * static_cast<double>(places.paths.back()));
   hits_->reserve(static_cast<size_t>(times * static_cast<double>(places.hits.back())));
-  paths_.offsets.reserve(rows);
-  paths_.num_bounces.reserve(rows);
-  paths_.diffuse.reserve(rows);
-  paths_.weight.reserve(rows);
-  paths_.stratum.reserve(rows);
-  paths_.batch.reserve(rows);
-  paths_.flags.reserve(rows);
+  for_each_column([&](auto column) { (paths_.*column).reserve(rows); });
   if (has(blocks, &PathBlock::curved_cell)) paths_.curved_cell.reserve(rows);
   if (has_matrices(blocks)) paths_.jones.reserve(rows);
 }
@@ -88,13 +82,10 @@ void RecordWriter::expect(const std::vector<PathBlock>& like, int64_t num_blocks
 void RecordWriter::make_room(const std::vector<const PathBlock*>& blocks, size_t num_paths, size_t num_hits) {
   const bool has_cells = !paths_.curved_cell.empty() || has(blocks, &PathBlock::curved_cell);
   const bool has_jones = !paths_.jones.empty() || has_matrices(blocks);
-  const std::function<void()> grow[] = {[&] { hits_->resize(num_hits); }, [&] { paths_.offsets.resize(num_paths); }, [&] {
-    paths_.diffuse.resize(num_paths);
-  }, [&] { paths_.weight.resize(num_paths); }, [&] { paths_.flags.resize(num_paths); }, [&] {
-    paths_.num_bounces.resize(num_paths);
-  }, [&] { paths_.stratum.resize(num_paths); }, [&] { paths_.batch.resize(num_paths); }, [&] {
-    paths_.curved_cell.resize(has_cells ? num_paths : 0);
-  }, [&] { paths_.jones.resize(has_jones ? num_paths : 0); }};
+  std::vector<std::function<void()>> grow = {[&] { hits_->resize(num_hits); }};
+  for_each_column([&](auto column) { grow.push_back([&, column] { (paths_.*column).resize(num_paths); }); });
+  grow.push_back([&] { paths_.curved_cell.resize(has_cells ? num_paths : 0); });
+  grow.push_back([&] { paths_.jones.resize(has_jones ? num_paths : 0); });
   parallel_for(std::ssize(grow), [&](int64_t i) { grow[i](); });
 }
 

@@ -79,7 +79,7 @@ def shared_window(qapp):
     from echopath_viewer.window import MainWindow
 
     window = MainWindow()
-    window.resize(1100, 700)
+    window.resize(1210, 700)
     window.show()
     window.activateWindow()
     yield window

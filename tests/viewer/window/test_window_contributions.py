@@ -37,7 +37,7 @@ def test_a_clicked_cell_tells_its_echoes_and_what_it_would_be_without(qtbot, win
     level = window.session.parts.whole.level(0, 0)[velocity, distance]
     assert f"{level:.1f} dBm".replace("-", "−") in panel.title.text()
     assert panel._rows[0].name in panel.title.text()
-    panel._cell_told = "10.94 m, -3.97 m/s: -115.9 dBm", "mostly a ghost: pedestrian by way of wall_left"
+    panel._cell_told = "10.94 m, -3.97 m/s: -115.9 dBm", "mostly a ghost: pedestrian by way of wall_left and of the garage door"
     panel._break_title()
     assert panel.title.sizeHint().width() <= panel.width() and "<br>" in panel.title.text()
     assert "without wall_left " in panel.without.text() and "dB" in panel.without.text()

@@ -169,6 +169,19 @@ def test_radar_material_and_turns_follow(qtbot, live_window):
     assert window.session.radar.position[1] == 0.5 and window.live.yaw("wall") == pytest.approx(np.radians(5.0))
 
 
+def test_flagged_mirrors_stay_such_in_another_material(qtbot, live_window):
+    """A house of metal had no ghosts over it."""
+    window, scene = live_window, live_window.live.live.scene
+    scene["wall"].material = ep.materials["concrete"].replace(mirror=True)
+    scene.add(shapes.plate((11.9, 0.0, 0.0), (-1.0, 0.0, 0.0), 0.2), name="windows", parent="wall", material="concrete")
+    for material, is_mirror in (("metal", True), ("glass_pane", False), ("brick", True)):  # a pane lets rays pass
+        window.live.set_material("wall", ep.materials[material])
+        assert [one.mirror for one in window.live.materials("wall")] == [is_mirror, False]
+        assert window.live.materials("wall")[0] == ep.materials[material].replace(mirror=is_mirror)
+    window.live.restore_materials("wall")
+    assert window.live.materials("wall")[0] == ep.materials["concrete"].replace(mirror=True)
+
+
 def test_material_and_roughness_are_those_of_the_object_that_is_chosen(qtbot, live_window):
     window, panel = live_window, live_window.live_panel
     settled(qtbot, window)

@@ -93,9 +93,15 @@ class LiveControl(QtCore.QObject):
         self._change(name, "yaw", yaw)
 
     def set_material(self, name: str, material) -> None:
-        """Of all meshes of an object."""
+        """Of all meshes of an object. Flagged mirrors, as of `ep.mark_mirrors`, stay such unless the material lets rays pass."""
         self._remember_materials(name)
-        self._change(name, "material", material)
+
+        def change(scene):
+            for mesh in scene[name].meshes:
+                is_mirror = self._first_materials[mesh.name].mirror and not material.layers
+                scene[mesh.name].material = material.replace(mirror=is_mirror or material.mirror)
+
+        self._try(lambda: self.live.change(change))
 
     def restore_materials(self, name: str) -> None:
         """Each mesh of an object gets the material that it had when the scene became live."""

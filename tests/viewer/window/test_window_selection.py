@@ -160,6 +160,23 @@ def test_the_check_box_of_a_mesh_with_meshes_below_it_tells_of_both(qtbot, windo
         assert (house.checkState(0), house.child(0).checkState(0)) == shown
 
 
+def test_the_tree_shows_the_row_of_a_mesh_that_is_chosen_in_the_scene(qtbot, window):
+    tree = window.tree
+    tree.collapseAll()
+    window.view3d.mesh_clicked.emit(window.session.mesh_names.index("walker/legs"))
+    settle(qtbot)
+    legs = tree.topLevelItem(0).child(1)
+    assert tree.selectedItems() == [legs] and tree.viewport().rect().contains(tree.visualItemRect(legs))
+    tree.collapseAll()
+    window.session.set_mesh_visible([0], False)
+    settle(qtbot)
+    assert not tree.topLevelItem(0).isExpanded()  # it is told once
+    qtbot.keyClick(window, Qt.Key.Key_Escape)
+    settle(qtbot)
+    assert tree.selectedItems() == []
+    tree.expandAll()
+
+
 def test_menus_of_the_tree_go_without_a_trace_and_without_a_word_of_qt(qtbot, window, qtlog):
     place = window.tree.visualItemRect(window.tree.topLevelItem(0)).center()
     for _ in range(3):

@@ -16,15 +16,18 @@ class TwinLayer:
 
     def __init__(self, plotter, set_names):
         """set_names: callable (layer, points [N, 3] m, texts)"""
-        self._plotter, self._set_names, self._actors = plotter, set_names, []
+        self._plotter, self._set_names, self._actors, self._shown = plotter, set_names, [], None
 
     def show(self, session) -> None:
         """What the session has switched on."""
+        twins = session.known_data(TWINS) if TWINS in session.layers else None
+        if twins is self._shown:
+            return
+        self._shown = twins
         for name in self._actors:
             self._plotter.remove_actor(name, render=False)
         self._actors = []
-        twins = session.known_data(TWINS) if TWINS in session.layers else []
-        tops = []
+        tops, twins = [], twins or []
         for number, twin in enumerate(twins):
             points, faces = _joined(session, twin.meshes)
             points = points + twin.offset

@@ -17,7 +17,7 @@ class SceneTree(QtWidgets.QTreeWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session = None
+        self.session, self._marked = None, None  # the name of the row whose map was asked for
         self.setHeaderLabels(["Mesh", "Paths"])
         self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names differ at their ends
         self.header().setStretchLastSection(False)
@@ -30,7 +30,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         self.setToolTip(HINT)
 
     def show_session(self, session) -> None:
-        self.session = None
+        self.session = self._marked = None
         self.clear()
         self._items, self._mesh_items, items = {}, {}, []
         mesh_of_node = {mesh.node: mesh.id for mesh in session.scene.meshes}
@@ -75,6 +75,18 @@ class SceneTree(QtWidgets.QTreeWidget):
             if item.childCount():
                 item.setCheckState(NAME, _state_of_all(item, name in with_mesh))
         self.session = session
+        self._mark(session.node)
+
+    def _mark(self, name: str | None) -> None:
+        """Shows the row of what is chosen, wherever it was: in the scene, where its row may be closed and out of sight."""
+        if name == self._marked:
+            return
+        self._marked = name
+        if name in self._items:
+            self.setCurrentItem(self._items[name])
+            self.scrollToItem(self._items[name])
+        else:
+            self.clearSelection()
 
     def _checked(self, item, column: int) -> None:
         if self.session is None or column != NAME:

@@ -11,9 +11,11 @@ from PIL import Image
 
 import echopath as ep
 from echopath.base.storage.film import write_film
+from echopath_viewer.model import Session, from_paths
 from echopath_viewer.scene_builder.export import export_rays
-from echopath_viewer.scene_builder.web_page import ScenePage
+from echopath_viewer.scene_builder.web_page import MESH_OPACITY, MIRROR_OPACITY, ScenePage
 from echopath_viewer.window.files.exporting import export
+from support import shapes
 
 NUM_PICTURES = 4  # of the film, of a frame of more chirps
 
@@ -108,6 +110,19 @@ def test_a_page_holds_all_it_needs_and_knows_each_ray(qtbot, window, tmp_path):
         assert f'"name":"{name}"' in text
     rays = next(trace for trace in ScenePage(window.session)._traces if trace.name == "rays")
     assert "bdata" not in rays.to_json()  # packed arrays, which the script of a click cannot go through
+
+
+def test_walls_of_a_page_are_clear_where_windows_were_cut_from_them(frame):
+    """A house had hidden all rays behind it: its windows are no mirrors. Both are one row of the legend."""
+    pytest.importorskip("plotly")
+    scene = ep.Scene()
+    mirror = ep.Material.metal().replace(mirror=True)
+    scene.add(shapes.plate((9.0, 0.0, 0.0), (-1.0, 0.0, 0.0), 4.0), name="house", material=mirror)
+    scene.add(shapes.plate((8.9, 0.0, 0.0), (-1.0, 0.0, 0.0), 1.0), name="windows", parent="house", material="metal")
+    paths = ep.trace(scene, frame.radar, num_rays=300, max_bounces=1, seed=1)
+    bodies = [trace for trace in ScenePage(Session(from_paths(scene, paths)))._traces if trace.type == "mesh3d"]
+    assert sorted((body.opacity, body.showlegend) for body in bodies) == [(MIRROR_OPACITY, False), (MESH_OPACITY, True)]
+    assert {body.legendgroup for body in bodies} == {"house"}
 
 
 def test_frames_show_themselves_in_notebooks(frame, tmp_path):

@@ -65,16 +65,18 @@ class ScenePage:
     # --- what is drawn ---
 
     def _bodies(self) -> list:
-        """One for each object, in the shades of its meshes."""
+        """One for each object, in the shades of its meshes, and one for its mirrors, which are nearly clear, as in the window."""
         names, object_of_mesh = objects_of(self._session.scene)
         found = []
         for number, name in enumerate(names):
             meshes = [mesh for mesh in np.flatnonzero(object_of_mesh == number) if mesh not in self._session.hidden_meshes]
-            if meshes:
-                found.append(self._body(name, meshes))
+            mirrors = [mesh for mesh in meshes if self._session.scene.meshes[mesh].material.mirror]
+            for own, opacity in ((sorted(set(meshes) - set(mirrors)), MESH_OPACITY), (mirrors, MIRROR_OPACITY)):
+                if own:
+                    found.append(self._body(name, own, opacity, is_listed=mirrors == meshes or own is not mirrors))
         return found
 
-    def _body(self, name: str, meshes: list):
+    def _body(self, name: str, meshes: list, opacity: float, is_listed: bool):
         session, points, faces, colours, texts = self._session, [], [], [], []
         for mesh in meshes:
             triangles = np.asarray(session.scene.meshes[mesh].triangles, np.int64)
@@ -83,10 +85,9 @@ class ScenePage:
             colours += [_css(session.palette[mesh])] * len(triangles)
             texts += [escape(session.mesh_names[mesh])] * len(points[-1])
         (x, y, z), (i, j, k) = np.concatenate(points).T, np.concatenate(faces).T
-        is_plane = all(session.scene.meshes[mesh].material.mirror for mesh in meshes)
         return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text",
-                                   opacity=MIRROR_OPACITY if is_plane else MESH_OPACITY, flatshading=True, showlegend=True,
-                                   name=escape(name), showscale=False, color=_css(session.palette[meshes[0]]))
+                                   opacity=opacity, flatshading=True, showlegend=is_listed, name=escape(name),
+                                   legendgroup=escape(name), showscale=False, color=_css(session.palette[meshes[0]]))
 
     def _antennas(self):
         x, y, z = np.array(self._session.antennas_at(self._session.time)).T

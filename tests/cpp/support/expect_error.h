@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 namespace echopath::test {
@@ -18,6 +19,16 @@ void expect_error(const std::function<void()>& call, std::initializer_list<std::
     return;
   }
   ADD_FAILURE() << "no error that speaks of " << *pieces.begin();
+}
+
+// Returns the text of the invalid_argument that the call raises.
+inline std::string error_text(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "no error";
 }
 
 }  // namespace echopath::test

@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/record/near_antenna.h"
+#include "echopath/replay/factors/launch_cell.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "echopath/scene/smooth/smooth.h"
 

@@ -5,7 +5,6 @@
 #include <complex>
 #include <vector>
 
-#include "echopath/replay/factors/launch_cell.h"
 #include "echopath/replay/factors/radio_constants.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"

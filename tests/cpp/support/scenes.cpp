@@ -45,11 +45,7 @@ Surface ellipsoid(const Vec3& centre, const Vec3& semi_axes, int subdivisions) {
 
 void add_smooth_ball(Scene& scene, const std::string& name, const Vec3& centre, double radius, int subdivisions) {
   Surface surface = ellipsoid(centre, {radius, radius, radius}, subdivisions);
-  Node ball;
-  ball.name = name;
-  ball.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  ball.material = share(Material::metal());
-  ball.smooth = true;
+  Node ball = node_with(name, std::move(surface), share(Material::metal()), true);
   scene.add(ball);
 }
 

@@ -45,6 +45,15 @@ struct Surface {
 };
 Surface ellipsoid(const Vec3& centre, const Vec3& semi_axes, int subdivisions);
 
+inline Node node_with(const std::string& name, Surface surface, MaterialPtr material, bool smooth = false) {
+  Node node;
+  node.name = name;
+  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+  node.material = std::move(material);
+  node.smooth = smooth;
+  return node;
+}
+
 // Adds a metal ball of 20 * 4^subdivisions triangles, whose normals are interpolated.
 void add_smooth_ball(Scene& scene, const std::string& name, const Vec3& centre, double radius, int subdivisions);
 
@@ -63,6 +72,13 @@ inline Radar plain_radar(const Vec3& transmitter, const Vec3& receiver, double g
   radar.transmitters = {antenna_at(transmitter, gain)};
   radar.receivers = {antenna_at(receiver, gain)};
   return radar;
+}
+
+inline TraceSettings with_rays(int64_t num_rays, int max_bounces = TraceSettings{}.max_bounces) {
+  TraceSettings settings;
+  settings.num_rays = num_rays;
+  settings.max_bounces = max_bounces;
+  return settings;
 }
 
 struct Replayed {

@@ -4,12 +4,6 @@
 
 namespace echopath {
 
-GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job)
-    : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
-  if (!geometry_) geometry_ = std::make_unique<EmbreeScene>();
-  geometry_->update(scene, pose, origin, job);
-}
-
 GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near,
                            EmbreeScene::Upkeep upkeep, Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {

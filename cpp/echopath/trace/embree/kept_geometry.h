@@ -12,10 +12,9 @@ class KeptGeometry;
 // Holds the geometry that one trace uses; at its end it returns it to where it was kept, if anywhere.
 class GeometryLoan {
  public:
-  // Takes the geometry of the scene at the pose: the kept one after an update, or a new one where `kept` is null or has lent
-  // its own to another trace. Raises as EmbreeScene does; nothing is kept then.
-  GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job);
-  // Poses the geometry likewise, with the origin that EmbreeScene::origin_near gives for `near` (m, world).
+  // Takes the geometry of the scene at the pose, with the origin that EmbreeScene::origin_near gives for `near` (m, world):
+  // the kept one after an update, or a new one where `kept` is null or has lent its own to another trace. Raises as
+  // EmbreeScene does; nothing is kept then.
   GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, EmbreeScene::Upkeep upkeep,
                Job* job);
   ~GeometryLoan();

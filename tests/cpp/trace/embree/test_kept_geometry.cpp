@@ -29,11 +29,8 @@ void add_breathing_ball(Scene& scene, const Vec3& centre) {
   for (size_t k = 0; k < frames.size(); ++k) {
     for (Vec3& vertex : frames[k]) vertex.x() += 0.05 * static_cast<double>(k) * vertex.y();
   }
-  Node node;
-  node.name = "breathing";
-  node.mesh = std::make_shared<Mesh>(ball.vertices, ball.triangles);
+  Node node = node_with("breathing", ball, lambert(0.5));
   node.deformation = std::make_shared<VertexSequence>(std::vector<double>{0.0, 1.0, 2.0, 3.0}, frames);
-  node.material = lambert(0.5);
   scene.add(node);
 }
 
@@ -43,13 +40,9 @@ Scene street() {
   add_rectangle(scene, "ground", {0, -10, -1}, {40, 0, 0}, {0, 20, 0}, lambert(0.3));
   add_rectangle(scene, "wall", {0, 10, -1}, {40, 0, 0}, {0, 0, 6}, share(Material::metal()));
   Surface ball = ellipsoid(Vec3::Zero(), {1.0, 0.7, 0.5}, 3);
-  Node car;
-  car.name = "car";
-  car.mesh = std::make_shared<Mesh>(ball.vertices, ball.triangles);
-  car.material = lambert(0.8);
+  Node car = node_with("car", ball, lambert(0.8), true);
   car.placement = Transform(Eigen::Translation3d(8, -3, 0));
   car.motion = moving_at({3, 1, 0}, {0, 0, 0.5});
-  car.smooth = true;
   scene.add(car);
   add_breathing_ball(scene, {10, 3, 0});
   return scene;
@@ -150,8 +143,7 @@ TEST(KeptGeometry, EdgesOfWhatMovesAreClosed) {
 }
 
 Paths trace_at(double start_time, KeptGeometry* kept, const Scene& scene) {
-  TraceSettings settings;
-  settings.num_rays = 5000;
+  TraceSettings settings = with_rays(5000);
   settings.start_time = start_time;
   return trace(scene, plain_radar({0, 0, 0}, {0, 0.1, 0}), settings, nullptr, kept);
 }
@@ -176,9 +168,9 @@ TEST(KeptGeometry, OneLoanAtATime) {
   const Scene scene = street();
   KeptGeometry kept;
   const PosedScene early(scene, 0.0), late(scene, 2.0);
-  const GeometryLoan first(&kept, scene, early, Vec3::Zero(), nullptr);
+  const GeometryLoan first(&kept, scene, early, Vec3::Zero(), EmbreeScene::Upkeep::kTimes, nullptr);
   const Answers before = answers_of(*first);
-  const GeometryLoan second(&kept, scene, late, Vec3::Zero(), nullptr);
+  const GeometryLoan second(&kept, scene, late, Vec3::Zero(), EmbreeScene::Upkeep::kTimes, nullptr);
   expect_same(before, answers_of(*first));
   expect_same(answers_of(EmbreeScene(scene, late, Vec3::Zero())), answers_of(*second));
 }
@@ -187,12 +179,13 @@ TEST(KeptGeometry, ACancelledBuildIsForgotten) {
   const Scene scene = street();
   KeptGeometry kept;
   {
-    const GeometryLoan loan(&kept, scene, PosedScene(scene, 0.0), Vec3::Zero(), nullptr);
+    const GeometryLoan loan(&kept, scene, PosedScene(scene, 0.0), Vec3::Zero(), EmbreeScene::Upkeep::kTimes, nullptr);
   }
   Job job;
   job.cancel();
-  EXPECT_THROW(GeometryLoan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), &job), Cancelled);
-  const GeometryLoan loan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), nullptr);
+  EXPECT_THROW(GeometryLoan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), EmbreeScene::Upkeep::kTimes, &job),
+               Cancelled);
+  const GeometryLoan loan(&kept, scene, PosedScene(scene, 1.0), Vec3::Zero(), EmbreeScene::Upkeep::kTimes, nullptr);
   expect_same(answers_of(EmbreeScene(scene, PosedScene(scene, 1.0), Vec3::Zero())), answers_of(*loan));
 }
 

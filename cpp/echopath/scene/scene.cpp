@@ -1,7 +1,6 @@
 #include "echopath/scene/scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "echopath/base/errors.h"

@@ -5,7 +5,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "echopath/record/paths.h"
 #include "echopath/trace/launch/launch_focus.h"

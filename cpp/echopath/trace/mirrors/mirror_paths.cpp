@@ -1,7 +1,6 @@
 #include "echopath/trace/mirrors/mirror_paths.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "echopath/base/threads/parallel.h"

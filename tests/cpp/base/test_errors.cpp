@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/text/nearest_names.h"
 
@@ -16,13 +17,9 @@ using Names = std::vector<std::string>;
 // What `require` says of a number behind "got ".
 template <class Value>
 std::string said_of(const Value& value) {
-  try {
-    require(false, "bandwidth", "must be positive", value);
-  } catch (const std::invalid_argument& error) {
-    const std::string said = error.what(), before = "bandwidth: must be positive, got ";
-    return said.starts_with(before) ? said.substr(before.size()) : "another message: " + said;
-  }
-  return "nothing";
+  const std::string said = test::error_text([&] { require(false, "bandwidth", "must be positive", value); }),
+                    before = "bandwidth: must be positive, got ";
+  return said.starts_with(before) ? said.substr(before.size()) : "another message: " + said;
 }
 
 TEST(Require, NamesArgumentRuleAndValue) {

@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "cpp/support/expect_error.h"
+
 namespace echopath::test_parallel {
 namespace {
 
@@ -36,12 +38,7 @@ TEST_F(ParallelFor, DoesNothingForAnEmptyRange) {
 
 TEST_F(ParallelFor, RethrowsTheExceptionOfABody) {
   const auto body = [](int64_t i) { require(i != 4321, "index", "must not be that one", i); };
-  try {
-    parallel_for(kCount, body);
-    FAIL() << "no exception";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "index: must not be that one, got 4321");
-  }
+  EXPECT_EQ(test::error_text([&] { parallel_for(kCount, body); }), "index: must not be that one, got 4321");
 }
 
 TEST_F(ParallelFor, WorksAgainAfterAnException) {
@@ -183,12 +180,7 @@ TEST(NumThreads, OneThreadRunsEverythingOnTheCaller) {
 }
 
 TEST(NumThreads, RefusesNegativeNumbers) {
-  try {
-    set_num_threads(-2);
-    FAIL() << "no exception";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "num_threads: must be 0 (one per core) or more, got -2");
-  }
+  EXPECT_EQ(test::error_text([] { set_num_threads(-2); }), "num_threads: must be 0 (one per core) or more, got -2");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "cpp/em/wedges.h"
 #include "echopath/base/constants.h"
 #include "echopath/em/edges/edge_shadow.h"
 
@@ -11,14 +12,10 @@ namespace echopath::test_edge_shadow {
 namespace {
 
 using Complex = std::complex<double>;
+using testing::across, testing::wedge_of;
 constexpr double kFarPhase = 1e6;    // rad: no transition reaches the angles tested
 constexpr double kOfFresnel = 5e-3;  // the transition that is left
 
-// The edge lies along z; angles count from the first face, along x.
-Vec3 across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
-Wedge wedge_of(double exterior) {
-  return {{{across(0.0), across(0.5 * kPi)}, {across(exterior), across(exterior - 0.5 * kPi)}}, exterior};
-}
 struct Coefficients {
   Complex electric, magnetic;  // for fields along the edge
 };

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/em/surface/fresnel.h"
 #include "echopath/em/surface/surface_response.h"
@@ -119,14 +120,7 @@ TEST(SurfaceResponse, ConductivityIsLossOfThePermittivity) {
 }
 
 TEST(Material, BadValuesAreNamed) {
-  const auto message = [](const Material& material) -> std::string {
-    try {
-      material.validate();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto message = [](const Material& material) { return test::error_text([&] { material.validate(); }); };
   Material gain, two = Material::metal(), both, over;
   gain.permittivity = Complex(4.0, 0.2);
   two.reflectivity = 0.5;

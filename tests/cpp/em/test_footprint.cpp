@@ -5,11 +5,13 @@
 #include <complex>
 #include <random>
 
+#include "cpp/em/footprints.h"
 #include "echopath/base/constants.h"
-#include "echopath/em/footprint_formula.h"
 
 namespace echopath::test_footprint {
 namespace {
+
+using namespace testing;
 
 constexpr double kSum = 1e-12;        // of a sum of 1.6e5 terms, which is exact to rounding
 constexpr double kThreeSums = 1e-11;  // of three of them, whose weights add up to 7
@@ -22,22 +24,9 @@ constexpr double kFaded = 1e-6;             // of cells that turn by two cycles
 constexpr double kSmallCell = 1e-5;         // of the first order in phases of 1e-5
 constexpr double kSmallCellSquared = 1e-9;  // of their second order
 
-using FootprintPhase = FootprintPhaseOf<double>;
-
-double first_order(const FootprintPhase& phase) { return first_order_footprint_of<ScalarMath>(phase); }
-
-std::complex<double> second_order(const FootprintPhase& phase, double spread) {
-  const ComplexOf<double> found = second_order_footprint_of<ScalarMath>(phase, spread);
-  return {found.re, found.im};
-}
-
 std::complex<double> edges(const FootprintPhase& phase, double spread) {
   const ComplexOf<double> found = edges_footprint_of<ScalarMath>(phase, spread);
   return {found.re, found.im};
-}
-
-double flat_top(const FootprintPhase& phase) {
-  return flat_top_of<ScalarMath>(phase.g1) * flat_top_of<ScalarMath>(phase.g2);
 }
 
 // Trapezoidal sum over +-9 standard deviations: exact to rounding for a Gaussian times a resolved phase.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "cpp/em/wedges.h"
 #include "echopath/base/constants.h"
 #include "echopath/em/edges/multiple_diffraction.h"
 
@@ -11,6 +12,7 @@ namespace echopath::test_multiple_diffraction {
 namespace {
 
 using Complex = std::complex<double>;
+using testing::across;
 constexpr Complex kJ{0.0, 1.0};
 constexpr double kWavenumber = 200.0;  // rad/m
 
@@ -20,9 +22,6 @@ std::array<DiffractingEdge, 2> strip(double width) {
   return {DiffractingEdge{{{{x, y}, {x, -y}}, kTwoPi}, Vec3::Zero()},
           DiffractingEdge{{{{-x, y}, {-x, -y}}, kTwoPi}, width * x}};
 }
-
-// The direction across z at an angle from the x-axis.
-Vec3 across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
 // Returns the magnetic field that multiple diffraction sends toward an angle from a wave of a unit magnetic field that comes
 // from another angle, in units of c^2, c = e^{-j pi/4} / (2 sqrt(2 pi k)), over e^{-jka}/sqrt(a).

@@ -5,32 +5,19 @@
 #include <cmath>
 #include <complex>
 
+#include "cpp/em/footprints.h"
 #include "cpp/support/sanitized.h"
-#include "echopath/base/constants.h"
 #include "echopath/base/random.h"
-#include "echopath/em/footprint_formula.h"
-#include "echopath/em/polarization/jones.h"
 #include "echopath/em/surface/surface_response.h"
 
 namespace echopath::test_random_draws {
 namespace {
 
+using namespace testing;
+
 // Sanitizers look at the same lines at each draw.
 const uint64_t kDraws = test::kIsSanitized ? 500'000 : 3'000'000;
 constexpr double kRounding = 1e-12;  // of |Gamma|^2 against 1
-
-using FootprintPhase = FootprintPhaseOf<double>;
-
-double first_order(const FootprintPhase& phase) { return first_order_footprint_of<ScalarMath>(phase); }
-
-std::complex<double> second_order(const FootprintPhase& phase, double spread) {
-  const ComplexOf<double> found = second_order_footprint_of<ScalarMath>(phase, spread);
-  return {found.re, found.im};
-}
-
-double flat_top(const FootprintPhase& phase) {
-  return flat_top_of<ScalarMath>(phase.g1) * flat_top_of<ScalarMath>(phase.g2);
-}
 
 // From 10^-low to 10^high, evenly in the exponent.
 double decades(double unit, double low, double high) { return std::pow(10.0, low + unit * (high - low)); }

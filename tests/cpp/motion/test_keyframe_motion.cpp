@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "cpp/support/expect_error.h"
-#include "echopath/base/constants.h"
 #include "echopath/motion/motion.h"
 
 namespace echopath::test_keyframe_motion {

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "cpp/support/expect_error.h"
-#include "echopath/base/constants.h"
 #include "echopath/motion/skin.h"
 
 namespace echopath::test_skin {

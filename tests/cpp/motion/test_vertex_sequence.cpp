@@ -3,9 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cpp/support/any_threads.h"
 #include "cpp/support/expect_error.h"
-#include "echopath/base/constants.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/motion/deformation.h"
 
 namespace echopath::test_vertex_sequence {
@@ -82,13 +81,7 @@ TEST(VertexSequence, EachVertexMovesAsIfItWereAlone) {
 }
 
 TEST(VertexSequence, BitsDoNotDependOnTheNumberOfThreads) {
-  const int before = num_threads();
-  set_num_threads(1);
-  const std::vector<Vec3> one = rotating(12, 5000, Interpolation::kCubic).at(0.77);
-  set_num_threads(4);
-  const std::vector<Vec3> four = rotating(12, 5000, Interpolation::kCubic).at(0.77);
-  set_num_threads(before);
-  EXPECT_EQ(one, four);
+  test::same_on_any_threads([] { return rotating(12, 5000, Interpolation::kCubic).at(0.77); });
 }
 
 TEST(VertexSequence, NamesItsBreakpointsAndSpan) {

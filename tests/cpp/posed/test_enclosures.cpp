@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "cpp/support/boxes.h"
 #include "echopath/posed/enclosures.h"
 
 namespace echopath::test_enclosures {
@@ -7,15 +8,12 @@ namespace {
 
 // A box about the origin with sides of 2 m, its first `count` triangles; outward or inward.
 MeshPtr box(size_t count = 12, bool is_inward = false) {
-  std::vector<Vec3> corners;
-  for (int k = 0; k < 8; ++k) corners.push_back(Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
-  const std::vector<Triangle> all = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  std::vector<Triangle> triangles(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+  std::vector<Triangle> triangles = testing::kBoxTriangles;
+  triangles.resize(count);
   if (is_inward) {
     for (Triangle& triangle : triangles) std::swap(triangle[0], triangle[1]);
   }
-  return std::make_shared<const Mesh>(corners, triangles);
+  return std::make_shared<const Mesh>(testing::box_corners(-Vec3::Ones(), Vec3::Ones()), triangles);
 }
 
 MaterialPtr metal() { return std::make_shared<const Material>(Material::metal()); }

@@ -2,19 +2,18 @@
 
 #include <cmath>
 
+#include "cpp/scene/small_nodes.h"
 #include "echopath/base/constants.h"
 #include "echopath/posed/posed_scene.h"
 
 namespace echopath::test_posed_scene {
 namespace {
 
+using testing::triangle;
+
 constexpr double kRounding = 1e-13;  // of products of a few transforms with entries of order 10
 
 MaterialPtr metal() { return std::make_shared<const Material>(Material::metal()); }
-
-MeshPtr triangle() {
-  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}});
-}
 
 // 4x4 matrices written out, to share nothing with the transforms of the program.
 using Matrix4 = Eigen::Matrix4d;

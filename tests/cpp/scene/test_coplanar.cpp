@@ -3,10 +3,10 @@
 #include <limits>
 #include <random>
 
+#include "cpp/support/any_threads.h"
 #include "cpp/support/expect_error.h"
 #include "echopath/base/box_tree.h"
 #include "echopath/base/constants.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/motion/motion.h"
 #include "echopath/scene/overlap/coplanar.h"
 
@@ -248,16 +248,12 @@ TEST(Coplanar, HoldsAtItsTimeOnly) {
 
 TEST(Coplanar, DoesNotDependOnTheNumberOfThreads) {
   const Scene scene = scene_of({rectangle(0, 0, 1, 1, 0, 60), rectangle(0.1, 0.2, 1, 1, 3e-6, 41)}, random_place(4));
-  const auto expected = coplanar_overlaps(scene);
-  for (const int threads : {1, 2, 3, 7}) {
-    set_num_threads(threads);
+  const auto overlap = [&] {
     const auto found = coplanar_overlaps(scene);
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].area, expected[0].area);
-    EXPECT_EQ(found[0].distance, expected[0].distance);
-    EXPECT_EQ(found[0].num_triangles, expected[0].num_triangles);
-  }
-  set_num_threads(0);
+    EXPECT_EQ(found.size(), 1u);
+    return std::tuple(found.at(0).area, found.at(0).distance, found.at(0).num_triangles);
+  };
+  test::same_on_any_threads(overlap, {2, 3, 7});
 }
 
 TEST(Coplanar, EmptySceneAndBadInput) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "cpp/support/boxes.h"
 #include "echopath/scene/edges/planar_patches.h"
 
 namespace echopath::test_planar_patches {
@@ -11,12 +12,8 @@ namespace {
 using Patches = std::vector<std::vector<uint32_t>>;
 
 TEST(PlanarPatches, ABoxHasSixPlanesOfTwoTriangles) {
-  std::vector<Vec3> vertices;
-  for (int i = 0; i < 8; ++i) vertices.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
-  const std::vector<Triangle> triangles = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                           {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
   const Patches expected = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}, {10, 11}};
-  EXPECT_EQ(planar_patches(vertices, triangles, 1e-6), expected);
+  EXPECT_EQ(planar_patches(testing::box_corners(Vec3::Zero(), Vec3::Ones()), testing::kBoxTriangles, 1e-6), expected);
 }
 
 // A wall of many triangles with noise below the tolerance, and a plane across its last edge.

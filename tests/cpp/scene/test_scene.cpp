@@ -4,7 +4,6 @@
 
 #include "cpp/scene/small_nodes.h"
 #include "cpp/support/expect_error.h"
-#include "echopath/base/constants.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath::test_scene {

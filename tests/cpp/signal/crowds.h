@@ -1,6 +1,5 @@
 #pragma once
 // Many moving echoes, for tests of how the NUFFT adds them.
-#include <algorithm>
 
 #include "cpp/signal/slow_sum.h"
 

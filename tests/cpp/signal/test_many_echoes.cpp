@@ -1,10 +1,8 @@
 // The NUFFT as it adds many moving echoes: sorted, in tiles, by moments of cells. Truth is the direct sum in double.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "cpp/signal/crowds.h"
-#include "echopath/base/threads/parallel.h"
+#include "cpp/support/any_threads.h"
 
 namespace echopath::test_many_echoes {
 namespace {
@@ -183,17 +181,13 @@ TEST(ManyEchoes, SameBitsForAnyNumberOfThreads) {
                                       crowd(w, 2000, 405 * cell_delay(w), 300, 1)};
   Echoes still = testing::static_echoes(w.num_chirps, moving[1].delay, moving[1].amplitude);
   still.num_echoes = 4000;
-  std::vector<std::vector<Complex>> cubes;
-  for (const int threads : {1, 2, 5}) {
-    set_num_threads(threads);
+  const auto cube = [&] {
     Synthesizer synthesizer(w, 1, 1, 8000);
     synthesizer.add(0, moving);
     synthesizer.add(0, still);
-    cubes.push_back(synthesizer.cube());
-  }
-  set_num_threads(0);
-  EXPECT_EQ(cubes[0], cubes[1]);
-  EXPECT_EQ(cubes[0], cubes[2]);
+    return synthesizer.cube();
+  };
+  test::same_on_any_threads(cube, {2, 5});
 }
 
 }  // namespace

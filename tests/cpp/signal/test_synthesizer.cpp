@@ -4,7 +4,8 @@
 #include <limits>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/base/threads/parallel.h"
+#include "cpp/support/any_threads.h"
+#include "cpp/support/expect_error.h"
 
 namespace echopath::test_synthesizer {
 namespace {
@@ -35,16 +36,12 @@ TEST(Synthesizer, SameBitsForAnyNumberOfThreads) {
   Echoes echoes = testing::exact_echoes(w, testing::MovingPoints(700, 5, 1.0, 70.0));
   echoes.group = round_robin(700, 3);
   for (const Method method : kMethods) {
-    std::vector<std::vector<Complex>> cubes;
-    for (const int threads : {1, 2, 5}) {
-      set_num_threads(threads);
+    const auto cube = [&] {
       Synthesizer synthesizer(w, 1, 3, 700, {.method = method});
       synthesizer.add(0, echoes);
-      cubes.push_back(synthesizer.cube(1));
-    }
-    set_num_threads(0);
-    EXPECT_EQ(cubes[0], cubes[1]);
-    EXPECT_EQ(cubes[0], cubes[2]);
+      return synthesizer.cube(1);
+    };
+    test::same_on_any_threads(cube, {2, 5});
   }
 }
 
@@ -256,12 +253,8 @@ TEST(Synthesizer, BadInputIsNamed) {
     Echoes echoes = good;
     spoil(echoes);
     Synthesizer synthesizer(w, 1, 2, 4);
-    try {
-      synthesizer.add(0, echoes);
-      ADD_FAILURE() << field << " was accepted";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(field + ": ", 0), 0u) << error.what();
-    }
+    const std::string message = test::error_text([&] { synthesizer.add(0, echoes); });
+    EXPECT_TRUE(message.starts_with(field + ": ")) << field << ": " << message;
   }
   EXPECT_THROW(Synthesizer(w, 0, 1, 1), std::invalid_argument);
   EXPECT_THROW(Synthesizer(w, 1, 0, 1), std::invalid_argument);

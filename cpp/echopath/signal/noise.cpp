@@ -36,8 +36,9 @@ uint64_t noise_seed_of_frame(uint64_t seed, double start_time) {
   return uint64_t{words[0]} << 32 | words[1];
 }
 
-void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job) {
+void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job) {
   radar.validate();
+  const int64_t size = std::ssize(cube);
   require(size == cube_size(radar), "cube", "must have transmitters x receivers x chirps x samples values", size);
   const bool real = radar.waveform.real;
   const double deviation = std::sqrt(real ? noise_power(radar) : 0.5 * noise_power(radar));
@@ -48,10 +49,6 @@ void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uin
       cube[i] += real ? noise.real() : noise;
     }
   }, job);
-}
-
-void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job) {
-  add_noise(cube.data(), std::ssize(cube), radar, seed, job);
 }
 
 }  // namespace echopath

@@ -15,8 +15,6 @@ namespace echopath {
 // parallel over chirps. Raises invalid_argument unless the cube has the size that the radar gives it; raises Cancelled when
 // the job is cancelled.
 void add_noise(std::vector<std::complex<double>>& cube, const Radar& radar, uint64_t seed, Job* job = nullptr);
-// Adds this noise to the `size` samples at `cube`.
-void add_noise(std::complex<double>* cube, int64_t size, const Radar& radar, uint64_t seed, Job* job = nullptr);
 
 // Returns the seed of the noise of the frame that starts at `start_time` (s): frames that start at different times have
 // independent noise of one seed, and a frame has the same noise whether it is simulated alone or among others. It is `seed`

@@ -14,11 +14,7 @@ constexpr double kRadius = 0.4, kWavenumber = 1600.0;  // m, rad/m
 constexpr double kSample = 0.03;                       // relative: of a part of the facets, which differ by a third
 
 Node ball_of(const Surface& surface) {
-  Node ball;
-  ball.name = "ball";
-  ball.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-  ball.material = share(Material::metal());
-  ball.smooth = true;
+  Node ball = node_with("ball", surface, share(Material::metal()), true);
   return ball;
 }
 

@@ -33,8 +33,7 @@ Scene corner_scene() {
 
 // The diffuse paths.
 Paths traced(uint64_t seed = 1, const Radar& radar = plain_radar({0, 0, 0}, {0, 0, 0})) {
-  TraceSettings settings;
-  settings.num_rays = kRays;
+  TraceSettings settings = with_rays(kRays);
   settings.seed = seed;
   const Paths paths = trace(corner_scene(), radar, settings);
   std::vector<uint8_t> keep;
@@ -158,8 +157,7 @@ TEST(FaintPaths, AreFaintBetweenAllAntennas) {
 TEST(FaintPaths, AreNoCoherentOnesAndNoneWhereNothingIsAskedFor) {
   Scene scene;
   add_smooth_ball(scene, "ball", {10, 0, 0}, 0.1, 3);
-  TraceSettings settings;
-  settings.num_rays = kRays;
+  TraceSettings settings = with_rays(kRays);
   settings.faint_power = 1.0;
   Paths coherent = trace(scene, plain_radar({0, 0, 0}, {0, 0, 0}), settings);
   EXPECT_EQ(thinned(coherent).weight, coherent.weight);

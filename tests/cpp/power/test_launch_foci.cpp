@@ -83,11 +83,7 @@ Scene two_balls(bool is_rough) {
   Scene scene;
   for (const double y : {-1.0, 1.0}) {
     const Surface surface = ellipsoid({10, y, 0}, {0.1, 0.1, 0.1}, 4);
-    Node ball;
-    ball.name = y < 0 ? "right" : "left";
-    ball.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-    ball.material = is_rough ? lambert(0.3) : share(Material::metal());
-    ball.smooth = !is_rough;
+    Node ball = node_with(y < 0 ? "right" : "left", surface, is_rough ? lambert(0.3) : share(Material::metal()), !is_rough);
     scene.add(ball);
   }
   return scene;
@@ -102,8 +98,7 @@ LaunchGuide guide() {
 }
 
 Paths shot(const Scene& scene, const LaunchGuide& guide, int batches = 1) {
-  TraceSettings settings;
-  settings.num_rays = 40000;
+  TraceSettings settings = with_rays(40000);
   settings.guide = guide;
   settings.batches = batches;
   return trace(scene, radar(), settings);
@@ -160,9 +155,7 @@ TEST(LaunchFoci, LeaveEveryWayAsItIsInBothPolarisations) {
   wall.mirror = true;
   add_rectangle(scene, "wall", {5, 2.5, -3}, {12, 0, 0}, {0, 0, 6}, share(wall));
   for (const PolarizationModel model : {PolarizationModel::kScalar, PolarizationModel::kJones}) {
-    TraceSettings settings;
-    settings.num_rays = 400000;
-    settings.max_bounces = 3;
+    TraceSettings settings = with_rays(400000, 3);
     settings.polarization = model;
     const Paths even = trace(scene, radar(), settings);
     settings.guide = guide_like(even.frame.strata);

@@ -28,12 +28,10 @@ constexpr char kStatistics[] = "statistics of 400 traces, of code that the tests
 
 Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,
            Footprint footprint = Footprint::kSecondOrder, int max_bounces = 4) {
-  TraceSettings settings;
-  settings.num_rays = num_rays;
+  TraceSettings settings = with_rays(num_rays, max_bounces);
   settings.seed = seed;
   settings.batches = batches;
   settings.footprint = footprint;
-  settings.max_bounces = max_bounces;
   return trace(scene, radar, settings);
 }
 

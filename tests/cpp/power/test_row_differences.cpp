@@ -1,7 +1,6 @@
 // Errors of sums over a lattice, by differences between neighbours: against how much such sums scatter.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>

@@ -1,8 +1,6 @@
 // Errors of sums over scatterers of surfaces: against how much such sums scatter.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <vector>
 
 #include "echopath/power/interval/triangle_points.h"

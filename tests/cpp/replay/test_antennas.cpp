@@ -43,10 +43,7 @@ Paths paths_around(const Radar& radar) {
     const Vec3 across = centre.unitOrthogonal() * 0.1, up = centre.cross(across).normalized() * 0.1;
     add_rectangle(scene, "square" + std::to_string(index++), centre - 0.5 * (across + up), across, up, lambert(0.5));
   }
-  TraceSettings settings;
-  settings.num_rays = 2000;
-  settings.max_bounces = 1;
-  return trace(scene, radar, settings);
+  return trace(scene, radar, with_rays(2000, 1));
 }
 
 Vec3 point_of(const Paths& paths, int64_t path) {
@@ -118,8 +115,7 @@ TEST(AntennaTable, PhaseOfADisplacementIsTheDisplacement) {
 TEST(AntennaTable, PathsOverMirrorsAloneHaveThePhasesOfBothAntennas) {
   Scene scene;
   add_rectangle(scene, "wall", Vec3(-5, 3, -5), Vec3(20, 0, 0), Vec3(0, 0, 10), share(Material::metal(true)));
-  TraceSettings settings;
-  settings.num_rays = 100;
+  TraceSettings settings = with_rays(100);
   Paths paths = trace(scene, plain_radar(Vec3::Zero(), Vec3(4, 0, 0)), settings);
   ASSERT_EQ(paths.num_paths(), 1);
   const std::complex<double> plain = replayed(paths).amplitudes[0];

@@ -68,12 +68,8 @@ struct Case {
 Case stretching(uint32_t n, const Vec3& from, const Vec3& to, const MaterialPtr& material, bool smooth = false) {
   const Surface sheet = grid(n);
   Case made{std::make_shared<Stretch>(sheet, from, to), {}};
-  Node node;
-  node.name = "sheet";
-  node.mesh = std::make_shared<Mesh>(sheet.vertices, sheet.triangles);
+  Node node = node_with("sheet", sheet, material, smooth);
   node.deformation = made.stretch;
-  node.material = material;
-  node.smooth = smooth;
   made.scene.add(node);
   return made;
 }
@@ -81,9 +77,7 @@ Case stretching(uint32_t n, const Vec3& from, const Vec3& to, const MaterialPtr&
 Radar boresight_radar() { return plain_radar(Vec3::Zero(), Vec3::Zero()); }
 
 Paths traced(const Scene& scene, double start_time, int64_t num_rays) {
-  TraceSettings settings;
-  settings.num_rays = num_rays;
-  settings.max_bounces = 1;
+  TraceSettings settings = with_rays(num_rays, 1);
   settings.start_time = start_time;
   return trace(scene, boresight_radar(), settings);
 }
@@ -151,11 +145,8 @@ TEST(Deforming, UnevenStretchingIsWeighedTriangleByTriangle) {
   };
   const Surface sheet = grid(4);
   Scene scene;
-  Node node;
-  node.name = "sheet";
-  node.mesh = std::make_shared<Mesh>(sheet.vertices, sheet.triangles);
+  Node node = node_with("sheet", sheet, lambert(1.0));
   node.deformation = std::make_shared<OneColumn>(sheet);
-  node.material = lambert(1.0);
   scene.add(node);
   const Paths paths = traced(scene, 0.0, 4000);
   const double start = paths.frame.trace_time;
@@ -214,11 +205,7 @@ TEST(Deforming, RigidMotionKeepsTheWeightOfEveryHit) {
   const auto motion = std::make_shared<const LinearMotion>(Vec3(-1, 0.5, 0), Vec3(0, 0, 0.3));
   const Surface ball = ellipsoid(Vec3(10, 0, 0), Vec3(0.3, 0.2, 0.4), 3);
   Scene rigid, skinned;
-  Node node;
-  node.name = "ball";
-  node.mesh = std::make_shared<Mesh>(ball.vertices, ball.triangles);
-  node.material = share(Material::metal());
-  node.smooth = true;
+  Node node = node_with("ball", ball, share(Material::metal()), true);
   Node skin = node;
   node.motion = motion;
   rigid.add(node);

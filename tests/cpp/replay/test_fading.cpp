@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "cpp/replay/small_arrays.h"
 #include "cpp/support/scenes.h"
@@ -24,17 +23,11 @@ constexpr double kGrazing = 5e-3;         // of a cosine: antennas 0.03 m apart,
 Paths record(const Radar& radar) {
   Scene scene;
   Surface surface = ellipsoid(Vec3::Zero(), {.3, .02, .02}, 2);
-  Node node;
-  node.name = "rotor";
+  Node node = node_with("rotor", std::move(surface), lambert(0.4));
   node.placement = Eigen::Translation3d(8, 0.5, 0) * Transform::Identity();
-  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  node.material = lambert(0.4);
   node.motion = std::make_shared<LinearMotion>(Vec3::Zero(), Vec3(0, 0, 200));
   scene.add(node);
-  TraceSettings settings;
-  settings.num_rays = 1000;
-  settings.max_bounces = 1;
-  return trace(scene, radar, settings);
+  return trace(scene, radar, with_rays(1000, 1));
 }
 
 // Paths whose lengths follow a polynomial and whose amplitudes do not.
@@ -102,8 +95,7 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   const PathGrids path_grids = replayer.path_grids();
   const GridIndex polynomial = path_grids.first(0);
   replayer.pose_polynomial(polynomial, all_of(paths));
-  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  std::iota(indices.begin(), indices.end(), 0);
+  std::vector<int64_t> indices = all_of(paths);
   std::vector<UnfollowedPath> failed;
   const std::vector<Echoes> echoes = replayer.interpolated(indices, polynomial, failed);
   EXPECT_EQ(echoes.front().num_echoes, paths.num_paths() - static_cast<int64_t>(failed.size()));
@@ -136,8 +128,7 @@ TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
   const PathGrids path_grids = replayer.path_grids();
   const GridIndex polynomial = path_grids.first(0);
   replayer.pose_polynomial(polynomial, all_of(paths));
-  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  std::iota(indices.begin(), indices.end(), 0);
+  std::vector<int64_t> indices = all_of(paths);
   std::vector<UnfollowedPath> failed, none;
   const std::vector<Echoes> all = replayer.interpolated(indices, polynomial, failed);
   ASSERT_GT(failed.size(), 20u);

@@ -21,19 +21,12 @@ constexpr double kAmplitudeTolerance = 2e-5;  // relative to the largest of the 
 Paths record(const Radar& radar) {
   Scene scene;
   Surface surface = ellipsoid(Vec3::Zero(), {1.4, 1.0, 1.2}, 5);
-  Node node;
-  node.name = "drop";
+  Node node = node_with("drop", std::move(surface), share(Material::metal()), true);
   node.placement = Eigen::Translation3d(9, 1, 0) * Transform::Identity();
-  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  node.material = share(Material::metal());
-  node.smooth = true;
   node.motion = std::make_shared<LinearMotion>(Vec3(-40, 28, 0), Vec3(0, 0, 1.0));
   scene.add(node);
   add_rectangle(scene, "plate", Vec3(12, -4, -1), Vec3(0, 3, 0), Vec3(0, 0, 2), lambert(0.4));
-  TraceSettings settings;
-  settings.num_rays = 600;
-  settings.max_bounces = 2;
-  return trace(scene, radar, settings);
+  return trace(scene, radar, with_rays(600, 2));
 }
 
 Radar radar_of_a_long_frame() {

@@ -21,19 +21,13 @@ Paths record(const Radar& radar) {
   Scene scene;
   for (const double side : {-1.0, 1.0}) {
     Surface surface = ellipsoid(Vec3::Zero(), {.3, .2, .25}, 3);
-    Node node;
-    node.name = side < 0 ? "left" : "right";
+    Node node = node_with(side < 0 ? "left" : "right", std::move(surface),
+                          std::make_shared<const Material>(Material::metal()), true);
     node.placement = Eigen::Translation3d(8, side, 0) * Transform::Identity();
-    node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-    node.material = std::make_shared<const Material>(Material::metal());
     node.motion = std::make_shared<LinearMotion>(Vec3(-3, 0, 0), Vec3(0, 0, 2 * side));
-    node.smooth = true;
     scene.add(node);
   }
-  TraceSettings settings;
-  settings.num_rays = 2000;
-  settings.max_bounces = 1;
-  return trace(scene, radar, settings);
+  return trace(scene, radar, with_rays(2000, 1));
 }
 
 // Returns the largest amplitude of each path over the frame and all channels.

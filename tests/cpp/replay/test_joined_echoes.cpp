@@ -27,10 +27,7 @@ Paths record(bool wall_is_mirror = false) {
   add_rectangle(scene, "wall", {-20, 3, -3}, {60, 0, 0}, {0, 0, 6}, share(rough));
   Radar radar = plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0));
   radar.waveform.num_chirps = 32;
-  TraceSettings settings;
-  settings.num_rays = 1500;
-  settings.max_bounces = 2;
-  return trace(scene, radar, settings);
+  return trace(scene, radar, with_rays(1500, 2));
 }
 
 std::vector<uint8_t> joined(const Paths& paths, const std::vector<int64_t>& indices,

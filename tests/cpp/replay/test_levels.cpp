@@ -21,10 +21,8 @@ double rcs_dbsm(const Paths& paths) { return decibel(rcs_of(std::norm(coherent_s
 
 Paths far_trace(const Scene& scene, int64_t num_rays, int max_bounces,
                 PolarizationModel model = PolarizationModel::kScalar) {
-  TraceSettings settings;
+  TraceSettings settings = with_rays(num_rays, max_bounces);
   settings.polarization = model;
-  settings.num_rays = num_rays;
-  settings.max_bounces = max_bounces;
   return trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
 }
 
@@ -73,16 +71,10 @@ double smooth_sphere_error_db(double radius, int subdivisions, int64_t num_rays)
     const Quaternion turn(Eigen::AngleAxisd(0.7 * trial, Vec3(1, trial, 2).normalized()));
     Surface surface = ellipsoid(Vec3::Zero(), Vec3::Constant(radius), subdivisions);
     for (Vec3& vertex : surface.vertices) vertex = kCentre * radius / 0.1 + turn * vertex;
-    Node node;
-    node.name = "sphere";
-    node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-    node.material = share(Material::metal());
-    node.smooth = true;
+    Node node = node_with("sphere", std::move(surface), share(Material::metal()), true);
     Scene scene;
     scene.add(node);
-    TraceSettings settings;
-    settings.num_rays = num_rays;
-    settings.max_bounces = 1;
+    TraceSettings settings = with_rays(num_rays, 1);
     settings.seed = static_cast<uint64_t>(trial);
     const Paths paths = trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
     const double rcs = rcs_of(std::norm(coherent_sum(paths)), kFarRange * radius / 0.1, 77e9);
@@ -150,9 +142,7 @@ TEST(LambertPlate, MeanIsLambertAndSpeckleIsExponential) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   constexpr int kRealisations = 600;
   std::vector<double> looks;
-  TraceSettings settings;
-  settings.num_rays = 500;
-  settings.max_bounces = 1;
+  TraceSettings settings = with_rays(500, 1);
   double mean = 0.0;
   for (int i = 0; i < kRealisations; ++i) {
     settings.seed = static_cast<uint64_t>(i);
@@ -183,10 +173,7 @@ TEST(Furnace, DiffusePowerIsConserved) {
   const Vec3 centre(4, 1, 0.5);
   add_rectangle(scene, "facet", centre - Vec3(0, .05, .05), {0, .1, 0}, {0, 0, .1}, share(material));
   Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
-  TraceSettings settings;
-  settings.num_rays = 4000;
-  settings.max_bounces = 1;
-  const Paths all = trace(scene, radar, settings);
+  const Paths all = trace(scene, radar, with_rays(4000, 1));
   std::vector<uint8_t> is_diffuse;
   for (const uint64_t bits : all.diffuse) is_diffuse.push_back(bits != 0);
   const Paths paths = all.select(is_diffuse);

@@ -32,9 +32,7 @@ Levels dihedral(const Material& material, double angle, const Vec3& polarization
   radar.receivers.push_back(radar.receivers[0]);
   radar.receivers[0].polarization = polarization;
   radar.receivers[1].polarization = Vec3::UnitX().cross(polarization);
-  TraceSettings settings;
-  settings.num_rays = num_rays;
-  settings.max_bounces = 2;
+  TraceSettings settings = with_rays(num_rays, 2);
   settings.polarization = PolarizationModel::kJones;
   const Paths all = trace(scene, radar, settings);
   std::vector<int64_t> kept;
@@ -88,8 +86,7 @@ TEST(Polarization, ModelsAgreeAtNormalIncidence) {
     add_rectangle(scene, "plate", {50, -.05, -.05}, {0, .1, 0}, {0, 0, .1}, share(Material::metal(mirror)));
     std::complex<double> sums[2];
     for (const PolarizationModel model : {PolarizationModel::kScalar, PolarizationModel::kJones}) {
-      TraceSettings settings;
-      settings.num_rays = 5000;
+      TraceSettings settings = with_rays(5000);
       settings.polarization = model;
       sums[static_cast<int>(model)] = coherent_sum(trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings));
     }
@@ -106,8 +103,7 @@ TEST(Polarization, DielectricPlateReflectsWithFresnelsCoefficientInBothModels) {
     for (const bool metal : {false, true}) {
       Scene scene;
       add_rectangle(scene, "plate", {50, -.05, -.05}, {0, .1, 0}, {0, 0, .1}, metal ? share(Material::metal()) : earth);
-      TraceSettings settings;
-      settings.num_rays = 5000;
+      TraceSettings settings = with_rays(5000);
       settings.polarization = model;
       sums[metal] = coherent_sum(trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings));
     }
@@ -118,8 +114,7 @@ TEST(Polarization, DielectricPlateReflectsWithFresnelsCoefficientInBothModels) {
 TEST(Polarization, ScalarTraceKeepsNoMatrix) {
   Scene scene;
   add_rectangle(scene, "plate", {50, -.05, -.05}, {0, .1, 0}, {0, 0, .1}, share(Material::metal()));
-  TraceSettings settings;
-  settings.num_rays = 1000;
+  TraceSettings settings = with_rays(1000);
   EXPECT_TRUE(trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings).jones.empty());
 }
 

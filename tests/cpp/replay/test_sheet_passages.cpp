@@ -49,9 +49,7 @@ Scene scene_behind(const MaterialPtr& pane, double angle, const MaterialPtr& tar
 }
 
 Paths traced(const Scene& scene, double attenuation = 0.0) {
-  TraceSettings settings;
-  settings.num_rays = 4000;
-  settings.max_bounces = 1;
+  TraceSettings settings = with_rays(4000, 1);
   settings.attenuation = attenuation;
   return trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
 }

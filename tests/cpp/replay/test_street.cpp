@@ -37,11 +37,8 @@ Scene street() {
                                                     {{0, .27, 1.15}, {.05, .05, .33}}, {{0, -.27, 1.15}, {.05, .05, .33}}};
   for (size_t i = 0; i < parts.size(); ++i) {
     Surface surface = ellipsoid(foot + parts[i].first, parts[i].second, 4);
-    Node node;
-    node.name = "part" + std::to_string(i);
+    Node node = node_with("part" + std::to_string(i), std::move(surface), lambert(0.34));
     node.parent = parent;
-    node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-    node.material = lambert(0.34);
     scene.add(node);
   }
   add_rectangle(scene, "left", {-20, 3, 0}, {60, 0, 0}, {0, 0, 12}, rough_mirror(0.2));
@@ -109,8 +106,7 @@ class Street : public ::testing::TestWithParam<PolarizationModel> {
   static const Paths& paths() {
     const auto [entry, is_new] = traced_.try_emplace(GetParam());
     if (is_new) {
-      TraceSettings settings;
-      settings.num_rays = 40000;
+      TraceSettings settings = with_rays(40000);
       settings.polarization = GetParam();
       entry->second = trace(street(), plain_radar({0, 0, 1}, {0, 0, 1}), settings);
     }

@@ -30,9 +30,7 @@ TEST(WeightRules, IntegratingSphere) {
     Scene scene;
     Surface wall = ellipsoid(Vec3::Zero(), {3, 3, 3}, 4);
     add_mesh(scene, "wall", std::move(wall.vertices), std::move(wall.triangles), lambert(reflectivity));
-    TraceSettings settings;
-    settings.num_rays = 100000;
-    settings.max_bounces = 60;
+    TraceSettings settings = with_rays(100000, 60);
     settings.batches = 8;
     const Paths paths = trace(scene, plain_radar(Vec3::Zero(), {0.7, 0.4, -0.3}), settings);
     const ReceivedPower power = received_power(paths);
@@ -55,9 +53,7 @@ void expect_powers_of_chains(int num_mirrors) {
   add_mesh(scene, "wall", std::move(wall.vertices), std::move(wall.triangles), lambert(kReflectivity));
   add_rectangle(scene, "floor", {-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, share(Material::metal(true)));
   if (num_mirrors > 1) add_rectangle(scene, "side", {0, -4, -4}, {0, 8, 0}, {0, 0, 8}, share(Material::metal(true)));
-  TraceSettings settings;
-  settings.num_rays = 40000;
-  settings.max_bounces = 20;
+  TraceSettings settings = with_rays(40000, 20);
   settings.batches = 16;
   const Paths paths = trace(scene, plain_radar({0.5, 0.3, 0.8}, {0.5, 0.3, 0.8}), settings);
   const Replayed replay = replayed(paths);

@@ -17,11 +17,7 @@ struct Walker {
   NormalsOfMeshes normals;
 
   void add(const Surface& surface, bool smooth) {
-    Node node;
-    node.name = "surface";
-    node.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-    node.material = share(Material::metal());
-    node.smooth = smooth;
+    Node node = node_with("surface", surface, share(Material::metal()), smooth);
     scene.add(node);
     normals = {nullptr};
     if (!smooth) return;

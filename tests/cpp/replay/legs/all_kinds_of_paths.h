@@ -15,13 +15,9 @@ inline MaterialPtr rough(double diffuse_share, bool mirror) {
 inline void add_body(Scene& scene, const std::string& name, const Vec3& centre, const Transform& placement,
                      std::shared_ptr<const Motion> motion, bool smooth = false) {
   Surface surface = ellipsoid(Vec3::Zero(), {.4, .3, .5}, 3);
-  Node node;
-  node.name = name;
+  Node node = testing::node_with(name, std::move(surface), rough(0.5, false), smooth);
   node.placement = Eigen::Translation3d(centre) * placement;
-  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  node.material = rough(0.5, false);
   node.motion = std::move(motion);
-  node.smooth = smooth;
   scene.add(node);
 }
 
@@ -55,10 +51,8 @@ inline Radar array() {
 
 inline Paths record(const Radar& radar, bool has_mirrors = true,
                     PolarizationModel polarization = PolarizationModel::kScalar) {
-  TraceSettings settings;
+  TraceSettings settings = testing::with_rays(1200, 4);
   settings.polarization = polarization;
-  settings.num_rays = 1200;
-  settings.max_bounces = 4;
   return trace(scene_of_all_kinds(has_mirrors), radar, settings);
 }
 

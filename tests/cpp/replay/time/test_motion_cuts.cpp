@@ -37,11 +37,8 @@ Radar long_frame() {
 
 void add_body(Scene& scene, const std::string& name, Surface surface, const Vec3& place,
               std::shared_ptr<const Motion> motion, std::shared_ptr<const Deformation> deformation = nullptr) {
-  Node node;
-  node.name = name;
+  Node node = node_with(name, std::move(surface), lambert(0.4));
   node.placement = Eigen::Translation3d(place) * Transform::Identity();
-  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  node.material = lambert(0.4);
   node.motion = std::move(motion);
   node.deformation = std::move(deformation);
   scene.add(node);
@@ -54,9 +51,7 @@ Scene swaying_limb() {
 }
 
 Paths record(const Radar& radar, const Scene& scene = swaying_limb()) {
-  TraceSettings settings;
-  settings.num_rays = 2000;
-  settings.max_bounces = 1;
+  TraceSettings settings = with_rays(2000, 1);
   settings.start_time = 0.05;
   return trace(scene, radar, settings);
 }

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "cpp/support/scenes.h"
-#include "echopath/base/constants.h"
 #include "echopath/replay/time/time_grids.h"
 
 namespace echopath::test_time_grids {

@@ -181,14 +181,14 @@ void MapTransform::spread_still(const std::vector<double>& power, double* cells)
   }
 }
 
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const MapWindows& window,
+RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window,
                            int zero_pad, Job* job) {
   check_map(radar, zero_pad);
   const ChirpSequence& waveform = radar.waveform;
   const int64_t num_maps = static_cast<int64_t>(radar.transmitters.size() * radar.receivers.size());
   const int64_t num_rows = num_maps * waveform.num_chirps;
-  require(size == num_rows * waveform.num_samples, "cube", "must have transmitters x receivers x chirps x samples values",
-          size);
+  require(std::ssize(cube) == num_rows * waveform.num_samples, "cube",
+          "must have transmitters x receivers x chirps x samples values", cube.size());
 
   RangeDoppler map;
   map.window = window;
@@ -202,14 +202,9 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   const int64_t num_ranges = std::ssize(map.range);
   const Taper range_taper = range_taper_of(waveform, window.range);
   const Taper doppler_taper = make_taper(window.velocity, waveform.num_chirps);
-  const auto profiles = range_transform(cube, num_rows, range_taper, range_size, num_ranges, job);
+  const auto profiles = range_transform(cube.data(), num_rows, range_taper, range_size, num_ranges, job);
   map.values = doppler_transform(profiles, num_maps, doppler_taper, doppler_size, num_ranges, job);
   return map;
-}
-
-RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window,
-                           int zero_pad, Job* job) {
-  return range_doppler(cube.data(), std::ssize(cube), radar, window, zero_pad, job);
 }
 
 std::vector<double> mean_power(const RangeDoppler& map, Job* job) {

@@ -35,8 +35,6 @@ std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, 
 // zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, positive beat frequencies
 // only). The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the
 // threads. Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const MapWindows& window = {},
-                           int zero_pad = 1, Job* job = nullptr);
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 

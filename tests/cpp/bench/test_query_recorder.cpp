@@ -50,8 +50,7 @@ void write_block_down(Tracer& tracer, QueryLog& log) {
 }
 
 TraceSettings few_rays() {
-  TraceSettings settings;
-  settings.num_rays = 256;
+  TraceSettings settings = with_rays(256);
   return settings;
 }
 

@@ -2,11 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 
+#include "cpp/support/any_threads.h"
 #include "cpp/support/scenes.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/scene/readers/readers.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/synthesize.h"
@@ -83,9 +82,7 @@ TEST(Chain, MeshFileBecomesADecomposedMap) {
   const Scene scene = scene_from_file();
   ASSERT_EQ(scene.mesh_names(), (std::vector<std::string>{"car/front", "car/back", "wall"}));
   const Radar radar = frame_radar();
-  TraceSettings settings;
-  settings.num_rays = 20000;
-  const Paths paths = trace(scene, radar, settings);
+  const Paths paths = trace(scene, radar, with_rays(20000));
   const Selection ghosts = Selection::touches("wall") & Selection::touches("car/front") & Selection::num_bounces(2, 2);
   const Grouping route =
       by_selections({{"front", "T 'car/front' R"}, {"back", "T 'car/back' R"}, {"wall", "T .* 'wall' .* R"}});
@@ -126,16 +123,8 @@ TEST(Chain, BitsDoNotDependOnThreads) {
   const Scene scene = scene_from_file();
   Radar radar = frame_radar();
   radar.waveform.num_chirps = 8;
-  TraceSettings settings;
-  settings.num_rays = 3000;
-  std::vector<Cube> cubes;
-  for (const int threads : {1, 2, 7}) {
-    set_num_threads(threads);
-    cubes.push_back(synthesize(trace(scene, radar, settings), radar));
-  }
-  set_num_threads(0);
-  EXPECT_TRUE(cubes[0].values == cubes[1].values);
-  EXPECT_TRUE(cubes[0].values == cubes[2].values);
+  TraceSettings settings = with_rays(3000);
+  test::same_on_any_threads([&] { return synthesize(trace(scene, radar, settings), radar).values; }, {2, 7});
 }
 
 TEST(Chain, EmptySceneGivesZeros) {
@@ -148,9 +137,7 @@ TEST(Chain, EmptySceneGivesZeros) {
 
 TEST(Chain, CancellingStopsSynthesis) {
   const Radar radar = frame_radar();
-  TraceSettings settings;
-  settings.num_rays = 3000;
-  const Paths paths = trace(scene_from_file(), radar, settings);
+  const Paths paths = trace(scene_from_file(), radar, with_rays(3000));
   Job job;
   job.cancel();
   EXPECT_THROW(synthesize(paths, radar, {}, &job), Cancelled);

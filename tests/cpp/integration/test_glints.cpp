@@ -27,10 +27,8 @@ void add_ball(Scene& scene, const std::string& name, const Vec3& centre, double 
 }
 
 Paths shot(const Scene& scene, int batches = 1, int max_bounces = 1) {
-  TraceSettings settings;
-  settings.num_rays = 20000;
+  TraceSettings settings = with_rays(20000, max_bounces);
   settings.batches = batches;
-  settings.max_bounces = max_bounces;
   return trace(scene, radar(), settings);
 }
 

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "cpp/label/hand_made_paths.h"
-#include "echopath/base/threads/parallel.h"
+#include "cpp/support/any_threads.h"
+#include "cpp/support/expect_error.h"
 #include "echopath/label/expressions/automaton.h"
 #include "echopath/label/expressions/expression.h"
 
@@ -28,12 +29,7 @@ bool takes(const std::string& text, const HandMadePath& path) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    Automaton(parse_path_expression(text), make_street()->mesh_names());
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { Automaton(parse_path_expression(text), make_street()->mesh_names()); });
 }
 
 constexpr HandMadeHit kS{kFloor, false}, kD{kFloor, true};
@@ -270,13 +266,7 @@ TEST(Automaton, AgreesWithStdRegexOnRandomExpressionsAndPaths) {
 TEST(Automaton, NumberOfThreadsDoesNotMatter) {
   const Paths paths = make_paths(random_paths(200000, 0, 5, 3));
   const Automaton automaton(parse_path_expression("T .* 'pedestrian' S* R"), paths.scene->mesh_names());
-  const int before = num_threads();
-  set_num_threads(1);
-  const std::vector<uint8_t> one = matches(automaton, paths);
-  set_num_threads(4);
-  const std::vector<uint8_t> four = matches(automaton, paths);
-  set_num_threads(before);
-  EXPECT_EQ(one, four);
+  test::same_on_any_threads([&] { return matches(automaton, paths); });
 }
 
 }  // namespace

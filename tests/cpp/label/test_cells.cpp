@@ -5,7 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "echopath/base/threads/parallel.h"
+#include "cpp/support/any_threads.h"
 
 namespace echopath::test_cells {
 namespace {
@@ -124,13 +124,8 @@ TEST(Cells, RegionsRefuseLabelsThatNameNothing) {
 TEST(Cells, TheNumberOfThreadsChangesNoBit) {
   const std::vector<double> power = random_powers(3 * 50'000);
   const std::vector<uint8_t> all(50'000, 1);
-  set_num_threads(1);
-  const auto share = power_shares(power, 3);
-  const auto strongest = strongest_part(power, 3, all);
-  set_num_threads(4);
-  EXPECT_EQ(power_shares(power, 3), share);
-  EXPECT_EQ(strongest_part(power, 3, all), strongest);
-  set_num_threads(0);
+  test::same_on_any_threads([&] { return power_shares(power, 3); });
+  test::same_on_any_threads([&] { return strongest_part(power, 3, all); });
 }
 
 }  // namespace

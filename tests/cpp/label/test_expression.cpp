@@ -3,18 +3,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/label/expressions/expression.h"
 
 namespace echopath::test_expression {
 namespace {
 
 std::string error_of(const std::string& text) {
-  try {
-    parse_path_expression(text);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { parse_path_expression(text); });
 }
 
 // The caret points at the first '@' of `marked`; the expression is `marked` without it.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cpp/label/hand_made_paths.h"
-#include "echopath/base/threads/parallel.h"
+#include "cpp/support/any_threads.h"
 #include "echopath/label/grouping.h"
 #include "echopath/label/objects/families.h"
 
@@ -108,13 +108,10 @@ TEST(Families, WithoutPathsThereIsTheBackground) {
 
 TEST(Families, NumberOfThreadsDoesNotMatter) {
   const Paths paths = make_paths(random_paths(200000, 0, 5, 3));
-  set_num_threads(1);
-  const Families one = find_families(paths, walker_first());
-  set_num_threads(4);
-  const Families four = find_families(paths, walker_first());
-  set_num_threads(0);
-  EXPECT_EQ(one.families, four.families);
-  EXPECT_EQ(one.family_of_path, four.family_of_path);
+  test::same_on_any_threads([&] {
+    const Families found = find_families(paths, walker_first());
+    return std::pair(found.families, found.family_of_path);
+  });
 }
 
 TEST(Families, CancelledJobStops) {

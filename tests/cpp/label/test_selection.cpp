@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cpp/label/hand_made_paths.h"
+#include "cpp/support/expect_error.h"
 #include "echopath/label/expressions/selection.h"
 
 namespace echopath::test_selection {
@@ -140,12 +141,9 @@ TEST(Selection, JoinedTextIsTheAlgebra) {
 
 // The glob stands where its path expression begins in the text, not where the text does.
 TEST(Selection, GlobsWithoutAMeshAreMarkedWithinJoinedText) {
-  try {
-    Selection("T . R | ~T 'street' 'pedestrain' R").matches(make_paths(some_paths()));
-    FAIL() << "no error";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_TRUE(std::string(error.what()).ends_with("\n  T 'street' 'pedestrain' R\n             ^")) << error.what();
-  }
+  const std::string message =
+      test::error_text([] { Selection("T . R | ~T 'street' 'pedestrain' R").matches(make_paths(some_paths())); });
+  EXPECT_TRUE(message.ends_with("\n  T 'street' 'pedestrain' R\n             ^")) << message;
 }
 
 TEST(Selection, NoPathsGiveNoBits) {
@@ -158,14 +156,7 @@ TEST(Selection, NoPathsGiveNoBits) {
 }
 
 TEST(Selection, BadInputNamesTheArgument) {
-  const auto error_of = [](auto make) -> std::string {
-    try {
-      make();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "no error";
-  };
+  const auto error_of = &test::error_text;
   EXPECT_TRUE(error_of([] { Selection::touches("it's"); }).starts_with("glob: "));
   EXPECT_TRUE(error_of([] { Selection::touches(""); }).starts_with("glob: "));
   EXPECT_TRUE(error_of([] { Selection::num_bounces(-1); }).starts_with("num_bounces: "));

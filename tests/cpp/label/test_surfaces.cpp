@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "cpp/label/hand_made_paths.h"
+#include "cpp/support/boxes.h"
+#include "cpp/support/expect_error.h"
 #include "cpp/support/scenes.h"
 #include "echopath/label/objects/surfaces.h"
 
@@ -15,12 +17,7 @@ using namespace testing;
 using Names = std::vector<std::string>;
 
 std::string error_of(const std::vector<NamedGlobs>& objects) {
-  try {
-    map_surfaces(*make_street(), objects);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { map_surfaces(*make_street(), objects); });
 }
 
 void add_group(Scene& scene, const std::string& name, int parent = -1) {
@@ -84,22 +81,7 @@ TEST(SurfaceMap, ObjectsAreChildrenOfTheRootAwayFromTheAntennaAndNoMirrors) {
 
 // A box from `low` to `high`, of six faces.
 void add_box(Scene& scene, const std::string& name, const Vec3& low, const Vec3& high) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) corners.push_back(Eigen::AlignedBox3d(low, high).corner(Eigen::AlignedBox3d::CornerType(i)));
-  add_mesh(scene, name, corners,
-           {{0, 1, 3},
-            {0, 3, 2},
-            {4, 5, 7},
-            {4, 7, 6},
-            {0, 1, 5},
-            {0, 5, 4},
-            {2, 3, 7},
-            {2, 7, 6},
-            {0, 2, 6},
-            {0, 6, 4},
-            {1, 3, 7},
-            {1, 7, 5}},
-           std::make_shared<const Material>(Material::metal()));
+  add_mesh(scene, name, box_corners(low, high), kBoxTriangles, share(Material::metal()));
 }
 
 TEST(SurfaceMap, LongObjectsBesideTheAntennaStayObjects) {

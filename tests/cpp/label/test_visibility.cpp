@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cpp/label/plates.h"
+#include "cpp/support/any_threads.h"
 #include "cpp/support/scenes.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/label/objects/appearing.h"
 #include "echopath/label/objects/visibility.h"
 #include "echopath/trace/embree/kept_geometry.h"
@@ -201,15 +201,10 @@ TEST(Visibility, NumberOfThreadsDoesNotMatter) {
   Scene scene;
   add_disc(scene, "far", 10, 1);
   add_facing(scene, "screen", 5, -2, 0.13, -2, 2);
-  std::vector<VisibilityFromEnd> visibilities;
-  for (const int threads : {1, 4}) {
-    set_num_threads(threads);
-    visibilities.push_back(seen_in(scene, {"far"}).front().transmitter);
-  }
-  set_num_threads(0);
-  EXPECT_EQ(visibilities[0].visible_share, visibilities[1].visible_share);
-  EXPECT_EQ(visibilities[0].occluders, visibilities[1].occluders);
-  EXPECT_EQ(visibilities[0].distance, visibilities[1].distance);
+  test::same_on_any_threads([&] {
+    const VisibilityFromEnd seen = seen_in(scene, {"far"}).front().transmitter;
+    return std::tuple(seen.visible_share, seen.occluders, seen.distance);
+  });
 }
 
 TEST(Visibility, LabelsInThePlaneOfAPlateDoNotHideIt) {

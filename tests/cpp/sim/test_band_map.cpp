@@ -43,9 +43,7 @@ Paths paths_of(const Radar& radar, double far = 7.0) {
     plate.motion = std::make_shared<LinearMotion>(Vec3(-20.0, 0.0, 0.0));
     moving.add(plate);
   }
-  TraceSettings settings;
-  settings.num_rays = 300;
-  return trace(moving, radar, settings);
+  return trace(moving, radar, with_rays(300));
 }
 
 class BandMaps : public ::testing::TestWithParam<Case> {};

@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "cpp/support/boxes.h"
 #include "cpp/support/expect_error.h"
 #include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/scene/readers/skin_parts.h"
@@ -13,6 +14,8 @@ namespace echopath::test_mesh_part {
 namespace {
 
 using test::expect_error;
+using testing::box_corners;
+using testing::kBoxTriangles;
 using Invalid = std::invalid_argument;
 
 // A wavy sheet of n x n squares, and one sheet more on an inner edge, which makes that edge non-manifold.
@@ -34,15 +37,7 @@ MeshPtr sheet(uint32_t n) {
   return std::make_shared<const Mesh>(vertices, triangles);
 }
 
-MeshPtr cube() {
-  std::vector<Vec3> vertices;
-  for (int i = 0; i < 8; ++i) vertices.emplace_back(i & 1, i >> 1 & 1, i >> 2);
-  // clang-format off
-  return std::make_shared<const Mesh>(
-      vertices, std::vector<Triangle>{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}});
-  // clang-format on
-}
+MeshPtr cube() { return std::make_shared<const Mesh>(box_corners(Vec3::Zero(), Vec3::Ones()), kBoxTriangles); }
 
 std::vector<uint32_t> from_to(uint32_t begin, uint32_t end) {
   std::vector<uint32_t> range(end - begin);

@@ -92,8 +92,7 @@ TEST(Batches, EachCoversItsStratum) {
 }
 
 TEST(Batches, MarkPathsAndLeaveImagesOut) {
-  TraceSettings settings;
-  settings.num_rays = 4000;
+  TraceSettings settings = with_rays(4000);
   settings.batches = 5;
   const Paths paths = trace(rough_ball_and_wall(), plain_radar({0, 0, 0}, {0, 0.1, 0}), settings);
   EXPECT_EQ(paths.frame.batches, 5);

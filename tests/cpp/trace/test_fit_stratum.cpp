@@ -4,18 +4,14 @@
 #include <cmath>
 #include <random>
 
+#include "cpp/support/boxes.h"
 #include "echopath/base/constants.h"
 #include "echopath/trace/strata/fit_stratum.h"
 
 namespace echopath::test_fit_stratum {
 namespace {
 
-std::vector<Vec3> box(const Vec3& low, const Vec3& high) {
-  std::vector<Vec3> corners;
-  for (int k = 0; k < 8; ++k)
-    corners.emplace_back(k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]);
-  return corners;
-}
+using testing::box_corners;
 
 // Whatever its triangles are, a surface lies within the convex hull of its vertices.
 void expect_hold(const Stratum& stratum, const std::vector<Vec3>& vertices, const Vec3& apex) {
@@ -51,7 +47,7 @@ TEST(FitStratum, ASphereGetsItsCone) {
 
 // A pole .1 m wide and 3 m high 30 m away: .1 x 3 / 30^2 sr, a twenty-fourth of the cone around it.
 TEST(FitStratum, APoleGetsAStrip) {
-  const std::vector<Vec3> vertices = box({29.95, 0.95, -1}, {30.05, 1.05, 2});
+  const std::vector<Vec3> vertices = box_corners({29.95, 0.95, -1}, {30.05, 1.05, 2});
   const auto stratum = fit_stratum(vertices, Vec3::Zero(), "pole");
   ASSERT_TRUE(stratum);
   EXPECT_TRUE(stratum->is_strip());
@@ -62,14 +58,14 @@ TEST(FitStratum, APoleGetsAStrip) {
 // A straight rail lies along a great circle however long it is; a slanted pole likewise.
 TEST(FitStratum, LongThingsKeepThinStrips) {
   const Vec3 apex(0, 0, 1);
-  const std::vector<Vec3> rail = box({1, 3.0, 0.4}, {60, 3.1, 0.7});
+  const std::vector<Vec3> rail = box_corners({1, 3.0, 0.4}, {60, 3.1, 0.7});
   const auto along = fit_stratum(rail, apex, "rail");
   ASSERT_TRUE(along);
   EXPECT_TRUE(along->is_strip());
   expect_hold(*along, rail, apex);
   EXPECT_LT(along->solid_angle(), 0.35);  // its own silhouette fills .17 sr, the cone around it 2 sr
   std::vector<Vec3> slanted;
-  for (const Vec3& corner : box({-2, -0.02, -0.02}, {2, 0.02, 0.02}))
+  for (const Vec3& corner : box_corners({-2, -0.02, -0.02}, {2, 0.02, 0.02}))
     slanted.push_back({20, corner[0] + corner[1], corner[0] + corner[2]});
   const auto strip = fit_stratum(slanted, apex, "slanted");
   ASSERT_TRUE(strip);
@@ -84,7 +80,7 @@ TEST(FitStratum, HoldsRandomBoxesNearAndFar) {
   for (int i = 0; i < 100; ++i) {
     const Vec3 middle = Vec3(draw(random), draw(random), draw(random)).normalized() * std::pow(10.0, 1.5 + draw(random));
     const Vec3 half = 2.0 * Vec3(std::abs(draw(random)), std::abs(draw(random)), std::abs(draw(random)));
-    const std::vector<Vec3> vertices = box(middle - half, middle + half);
+    const std::vector<Vec3> vertices = box_corners(middle - half, middle + half);
     const auto stratum = fit_stratum(vertices, Vec3::Zero(), "box");
     if (!stratum) continue;
     num_strips += stratum->is_strip();
@@ -94,13 +90,13 @@ TEST(FitStratum, HoldsRandomBoxesNearAndFar) {
 }
 
 TEST(FitStratum, NothingHoldsWhatSurroundsTheRadar) {
-  EXPECT_FALSE(fit_stratum(box({-1, -1, -1}, {1, 1, 1}), Vec3::Zero(), "room"));
+  EXPECT_FALSE(fit_stratum(box_corners({-1, -1, -1}, {1, 1, 1}), Vec3::Zero(), "room"));
   EXPECT_FALSE(fit_stratum({{-50, -50, 0}, {50, -50, 0}, {0, 70, 0}}, {0, 0, 1}, "ground"));
   EXPECT_FALSE(fit_stratum({{1, 2, 3}}, {1, 2, 3}, "the radar itself"));
 }
 
 TEST(FitStratum, SamplersForDiscsGetCones) {
-  const auto stratum = fit_stratum(box({29.95, 0.95, -1}, {30.05, 1.05, 2}), Vec3::Zero(), "pole", 0);
+  const auto stratum = fit_stratum(box_corners({29.95, 0.95, -1}, {30.05, 1.05, 2}), Vec3::Zero(), "pole", 0);
   ASSERT_TRUE(stratum);
   EXPECT_FALSE(stratum->is_strip());
 }

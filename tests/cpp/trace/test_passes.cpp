@@ -29,10 +29,7 @@ Scene scene_of(int num_panes) {
 }
 
 Paths traced(const Scene& scene, int max_bounces = 1) {
-  TraceSettings settings;
-  settings.num_rays = 400;
-  settings.max_bounces = max_bounces;
-  return trace(scene, plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0)), settings);
+  return trace(scene, plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0)), with_rays(400, max_bounces));
 }
 
 // Whether a path is an echo of a target, not of a pane.

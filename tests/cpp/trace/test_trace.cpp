@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cpp/support/expect_error.h"
 #include "cpp/support/scenes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/embree/embree_scene.h"
@@ -35,8 +36,7 @@ Scene mixed_scene(const Vec3& offset) {
 }
 
 TraceSettings small(int64_t num_rays = 20000) {
-  TraceSettings settings;
-  settings.num_rays = num_rays;
+  TraceSettings settings = with_rays(num_rays);
   return settings;
 }
 
@@ -237,13 +237,8 @@ TEST(Launch, OwnersCoverEachSurfaceOnce) {
 }
 
 TEST(Trace, BadInputIsNamed) {
-  const auto message = [](const Scene& scene, const Radar& radar, const TraceSettings& settings) -> std::string {
-    try {
-      trace(scene, radar, settings);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [](const Scene& scene, const Radar& radar, const TraceSettings& settings) {
+    return test::error_text([&] { trace(scene, radar, settings); });
   };
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   TraceSettings no_rays = small(0), many = small(), late = small();
@@ -256,7 +251,7 @@ TEST(Trace, BadInputIsNamed) {
   Scene bent;
   add_mesh(bent, "bent", {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5.5, 0, 1}}, {{0, 1, 2}, {0, 2, 3}},
            share(Material::metal(true)));
-  EXPECT_EQ(message(bent, radar, small()), "");  // its two planes are mirrors
+  EXPECT_EQ(message(bent, radar, small()), "no error");  // its two planes are mirrors
   Node smooth = bent.nodes().front();
   smooth.smooth = true;
   bent.change(0, smooth);

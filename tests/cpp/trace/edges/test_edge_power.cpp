@@ -72,9 +72,7 @@ TEST(EdgePower, ATraceKeepsWhatStandsOutOfTheNoise) {
   for (int i = 0; i < 40; ++i)
     add_rectangle(scene, "far" + std::to_string(i), Vec3(600.0 + 10.0 * i, 100.0 + 0.4 * i, -1), {0.02, 0.01, 0},
                   {0, 0, 0.01}, metal_of_edges());
-  TraceSettings settings;
-  settings.num_rays = 100;
-  settings.max_bounces = 1;
+  TraceSettings settings = with_rays(100, 1);
   settings.edges = true;
   const auto traced = [&](double noise_figure_db) {
     Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());

@@ -19,10 +19,7 @@ Scene wall() {
   Surface surface;
   surface.vertices = {{kDistance, -50, -50}, {kDistance, 50, -50}, {kDistance, 50, 50}, {kDistance, -50, 50}};
   surface.triangles = {{0, 1, 2}, {0, 2, 3}};
-  Node node;
-  node.name = "wall";
-  node.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-  node.material = lambert(0.5);
+  Node node = node_with("wall", surface, lambert(0.5));
   Scene scene;
   scene.add(node);
   return scene;

@@ -32,11 +32,7 @@ Scene every_surface() {
   uneven.roughness_height = 2e-4;
   black.reflectivity = 0.0;
   Surface ball = ellipsoid({6, 0.5, 0.2}, {0.8, 0.6, 1.0}, 3), egg = ellipsoid({6, -2.5, 0.2}, {0.8, 0.8, 0.8}, 3);
-  Node smooth;
-  smooth.name = "ball";
-  smooth.mesh = std::make_shared<Mesh>(std::move(ball.vertices), std::move(ball.triangles));
-  smooth.material = share(rough(0.8));
-  smooth.smooth = true;
+  Node smooth = node_with("ball", std::move(ball), share(rough(0.8)), true);
   scene.add(smooth);
   add_mesh(scene, "egg", std::move(egg.vertices), std::move(egg.triangles), share(uneven));
   add_rectangle(scene, "floor", {5, -3, -1.1}, {4, 0, 0}, {0, 5, 0}, share(dielectric));
@@ -77,8 +73,7 @@ bool same_hits(const Row& a, const Row& b) {
 // A small flagged mirror that reflects the radar past everything, but has every hit looked at for legs by itself.
 TEST(Trace, PacketsWriteDownWhatRaysDoOneByOne) {
   const Radar radar = plain_radar({0, 0, 0}, {0, 0.1, 0.3});
-  TraceSettings settings;
-  settings.num_rays = 20000;
+  TraceSettings settings = with_rays(20000);
   settings.batches = 3;
   const Scene alone = every_surface();
   Scene mirrored = every_surface();
@@ -105,9 +100,7 @@ TEST(Trace, PacketsWriteDownWhatRaysDoOneByOne) {
 TEST(Trace, PacketsDropWhatLiesAtAnAntenna) {
   Scene scene;
   add_rectangle(scene, "speck", {6, -1e-3, -1e-3}, {0, 2e-3, 0}, {0, 0, 2e-3}, share(rough(0.5)));
-  TraceSettings settings;
-  settings.num_rays = 4000;
-  settings.max_bounces = 1;
+  TraceSettings settings = with_rays(4000, 1);
   const Vec3 receiver(6 - 5e-4, 0, 0);
   const Paths paths = trace(scene, plain_radar(Vec3::Zero(), receiver), settings);
   const double half = std::sqrt(1e-6 - 25e-8);  // m: radius on the speck of what is nearer than 1 mm

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "answers.h"
+#include "cpp/support/boxes.h"
 #include "cpp/support/scenes.h"
 #include "echopath/trace/embree/mesh_clusters.h"
 #include "echopath/trace/embree/tree_shape.h"
@@ -19,32 +20,15 @@ using namespace testing;
 constexpr int kRows = 20, kColumns = 20;  // of boxes
 
 Node node_of(const std::string& name, const Surface& surface, const Vec3& position) {
-  Node node;
-  node.name = name;
-  node.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-  node.material = lambert(0.5);
+  Node node = node_with(name, surface, lambert(0.5));
   node.placement = Transform(Eigen::Translation3d(position));
   return node;
 }
 
 // A box of 12 triangles about the origin.
 Surface box(double length) {
-  Surface out;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 unit(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-    out.vertices.emplace_back(length * (unit - Vec3::Constant(0.5)));
-  }
-  const auto add = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-    out.triangles.push_back({a, b, c});
-    out.triangles.push_back({a, c, d});
-  };
-  add(0, 2, 6, 4);
-  add(1, 5, 7, 3);
-  add(0, 4, 5, 1);
-  add(2, 3, 7, 6);
-  add(0, 1, 3, 2);
-  add(4, 6, 7, 5);
-  return out;
+  const Vec3 high = Vec3::Constant(0.5 * length);
+  return {box_corners(-high, high), kBoxTriangles};
 }
 
 // A wall of boxes that face the origin, 1 m apart.
@@ -166,7 +150,7 @@ TEST(Trees, WhatIsMetOfASharedTreeGoesByItsOwnName) {
     RayHit hit;
     ASSERT_EQ(geometry.intersect(Vec3(0, face.y(), face.z()), Vec3::UnitX(), hit), EmbreeScene::Verdict::kHit);
     EXPECT_EQ(hit.hit.mesh_id, mesh);
-    EXPECT_LT(hit.hit.triangle_id, 2u);  // the face at -x
+    EXPECT_EQ(hit.hit.triangle_id / 2, 4u);  // the face at -x
     EXPECT_NEAR((hit.position - face).norm(), 0.0, 1e-6);
     EmbreeScene::MeshHits hits;
     LaneVectors along;

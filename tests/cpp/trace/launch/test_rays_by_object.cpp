@@ -1,7 +1,6 @@
 // Shares of rays that hang little on other objects: their sum, their proportions, and how many change with the scene.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>

@@ -25,12 +25,8 @@ MaterialPtr rough_metal() {
 
 Node ball(const std::string& name, const Vec3& place, bool smooth) {
   static const Surface surface = ellipsoid(Vec3::Zero(), {0.7, 0.5, 0.6}, 2);
-  Node node;
-  node.name = name;
-  node.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-  node.material = smooth ? share(Material::metal()) : lambert(0.7);
+  Node node = node_with(name, surface, smooth ? share(Material::metal()) : lambert(0.7), smooth);
   node.placement = Transform(Eigen::Translation3d(place));
-  node.smooth = smooth;
   return node;
 }
 
@@ -52,8 +48,7 @@ Scene street(bool mirrors) {
 }
 
 TraceSettings settings_with(Scatterers scatterers = Scatterers::kRays, int64_t num_rays = 3000) {
-  TraceSettings settings;
-  settings.num_rays = num_rays;
+  TraceSettings settings = with_rays(num_rays);
   settings.scatterers = scatterers;
   settings.for_edits = true;
   return settings;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <random>
 
+#include "cpp/support/any_threads.h"
 #include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
 #include "cpp/support/slow_images.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/trace/frusta/frustum_locator.h"
 #include "echopath/trace/trace.h"
 
@@ -47,10 +47,7 @@ std::vector<MirrorRectangle> random_mirrors(int count, unsigned seed) {
 
 Paths traced(const std::vector<MirrorRectangle>& rectangles, const Vec3& transmitter, const Vec3& receiver,
              int max_bounces) {
-  TraceSettings settings;
-  settings.num_rays = 1;
-  settings.max_bounces = max_bounces;
-  return trace(scene_of(rectangles), testing::plain_radar(transmitter, receiver), settings);
+  return trace(scene_of(rectangles), testing::plain_radar(transmitter, receiver), testing::with_rays(1, max_bounces));
 }
 
 // A room of six walls with a slanting board in it.
@@ -129,19 +126,13 @@ TEST(MirrorPaths, AreTheSameBothWays) {
 
 TEST(MirrorPaths, AreInOrderWhateverTheNumberOfThreads) {
   const auto mirrors = testing::city_block(20);
-  const int threads = num_threads();
   for (const int max_bounces : {3, 4}) {
-    std::vector<std::vector<std::vector<int>>> found;
-    for (const int count : {1, 4}) {
-      set_num_threads(count);
-      found.push_back(sequences_of(traced(mirrors, {9.3, 8.7, 3.1}, {11.2, -29.6, 2.3}, max_bounces)));
-    }
-    set_num_threads(threads);
-    EXPECT_EQ(found[0], found[1]);
-    EXPECT_TRUE(std::is_sorted(found[0].begin(), found[0].end(), [](const auto& a, const auto& b) {
+    const auto found = test::same_on_any_threads(
+        [&] { return sequences_of(traced(mirrors, {9.3, 8.7, 3.1}, {11.2, -29.6, 2.3}, max_bounces)); });
+    EXPECT_TRUE(std::is_sorted(found.begin(), found.end(), [](const auto& a, const auto& b) {
       return a.size() != b.size() ? a.size() < b.size() : a < b;
     }));
-    EXPECT_GT(found[0].size(), max_bounces == 3 ? 1u : 3u);
+    EXPECT_GT(found.size(), max_bounces == 3 ? 1u : 3u);
   }
 }
 

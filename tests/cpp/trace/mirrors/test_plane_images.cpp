@@ -5,10 +5,10 @@
 #include <map>
 #include <set>
 
+#include "cpp/support/any_threads.h"
 #include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
 #include "cpp/support/slow_images.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath::test_plane_images {
@@ -74,10 +74,7 @@ Sequences image_sequences(const Paths& paths) {
 }
 
 Paths traced(const Scene& scene, const Radar& radar, int64_t num_rays, int max_bounces) {
-  TraceSettings settings;
-  settings.num_rays = num_rays;
-  settings.max_bounces = max_bounces;
-  return trace(scene, radar, settings);
+  return trace(scene, radar, testing::with_rays(num_rays, max_bounces));
 }
 
 TEST(PlaneImages, RaysShowAllPathsOfACityOfHouses) {
@@ -169,14 +166,11 @@ TEST(PlaneImages, ManyBouncesInARoomTakeMemoryLikeTheRecord) {
 TEST(PlaneImages, AreTheSameForAnyNumberOfThreads) {
   const Scene scene = houses(testing::city_block(9), false);
   const Radar radar = short_waves({9.3, 8.7, 3.1}, {11.2, -29.6, 2.3});
-  set_num_threads(1);
-  const Paths one = traced(scene, radar, 20'000, 3);
-  set_num_threads(3);
-  const Paths three = traced(scene, radar, 20'000, 3);
-  set_num_threads(0);
-  EXPECT_EQ(one.weight, three.weight);
-  EXPECT_EQ(one.offsets, three.offsets);
-  EXPECT_EQ(one.stratum, three.stratum);
+  const auto columns = [&] {
+    const Paths paths = traced(scene, radar, 20'000, 3);
+    return std::tuple(paths.weight, paths.offsets, paths.stratum);
+  };
+  test::same_on_any_threads(columns, {3});
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "echopath/base/constants.h"
 #include "echopath/trace/scatter/surface_points.h"
 
 namespace echopath::test_surface_points {

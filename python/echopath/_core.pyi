@@ -3366,12 +3366,12 @@ def last(glob: str) -> Selection:
     """
 def legs_around_edges(scene: Scene, time: float, frequency: float, antenna: ArrayLike, polarization: ArrayLike, points: ArrayLike, edges: bool = True, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
     """
-    The strongest leg around one edge from an antenna to each of some points.
+    The strongest leg around one edge from an antenna to each of some points, and what all such legs bring there.
 
     time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
     edges: whether legs around edges are looked for, or only whether the points are seen
     Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
-    m, share [N] of the field that would arrive were nothing in its way.
+    m, share [N] of the field that would arrive were nothing in its way, around all edges together.
     """
 def load_frames(paths: collections.abc.Sequence[os.PathLike[str] | str | bytes], unit: float = 1.0) -> tuple[typing.Any, ...]:
     """

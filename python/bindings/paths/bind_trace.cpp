@@ -142,12 +142,12 @@ void bind_trace(py::module_& m) {
       },
       py::arg("scene"), py::arg("time"), py::arg("frequency"), py::arg("antenna"), py::arg("polarization"),
       py::arg("points"), py::arg("edges") = true, py::arg("progress") = py::none(),
-      R"(The strongest leg around one edge from an antenna to each of some points.
+      R"(The strongest leg around one edge from an antenna to each of some points, and what all such legs bring there.
 
 time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
 edges: whether legs around edges are looked for, or only whether the points are seen
 Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
-m, share [N] of the field that would arrive were nothing in its way.)");
+m, share [N] of the field that would arrive were nothing in its way, around all edges together.)");
   m.def("strongest_edge", &strongest_edge, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "What edges=\"auto\" compares with the noise: W that the strongest sharp edge would carry at a time in s.");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;

@@ -28,7 +28,7 @@ LEAST_LENGTH = 1e-12  # m: a way that is shorter has no direction
 @made_by("ep.around_corners")
 @dataclasses.dataclass(frozen=True, eq=False)
 class AroundCorner:
-    """What an object would send around the strongest edge between it and the radar; made by `around_corners`.
+    """What an object would send around the edges between it and the radar; made by `around_corners`.
 
     name: of the object; hidden_share: of the area that faces the radar, 0 to 1, which something else hides from an end of it
     corner: name of the mesh whose edge leads to the point that the strongest wave comes to, "" where no edge does
@@ -65,12 +65,12 @@ def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0,
     """What objects that something hides would send around one edge there and one back, the strongest first.
 
     `trace` follows no wave into a shadow. This says what it neglects: the level of each object alone, its sharp edges with it,
-    times the power that the uniform theory of diffraction brings around the best edge to each of its hidden points, from the
-    first transmitter and back to the first receiver, with their gains toward that edge. The points are 256, spread over the
-    object's area; what is hidden on less of it may be missed. Edges are those of all bodies that keep their shape, as of
-    perfect conductors; the part of the shadow is that of any body. Waves around two edges, and what the objects' own shadows
-    let pass, are left out; levels are good to some 3 dB where an object is much smaller than its distance from the corner,
-    and `resolved`.
+    times the power that the uniform theory of diffraction brings around edges, as those on both sides of a board, to each of
+    its hidden points, from the first transmitter and back to the first receiver, with their gains toward the strongest edge.
+    The points are 256, spread over the object's area; what is hidden on less of it may be missed. Edges are those of all
+    bodies that keep their shape, as of perfect conductors; the part of the shadow is that of any body. Waves around two edges,
+    one behind the other, and what the objects' own shadows let pass, are left out; levels are good to some 3 dB where an
+    object is much smaller than its distance from the corner, and `resolved`.
     scene, radar: of the frame, without what is absent from it (`SceneNode.lifetime`); time: s, of its middle
     num_rays: for the level of each object alone
     progress: callable (stage, fraction), True for bars, or None

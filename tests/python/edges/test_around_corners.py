@@ -50,6 +50,42 @@ def test_the_shadow_of_a_half_plane_is_sommerfelds(polarization, is_electric):
     assert found["length"] == pytest.approx(BEFORE + BEHIND, rel=1e-9)
 
 
+def board(half_width, low=-300.0, high=300.0):
+    corners = np.array([(BEFORE, y, z) for y, z in ((-1, low), (1, low), (1, high), (-1, high))]) * (1.0, half_width, 1.0)
+    return ep.Mesh(corners, np.array([(0, 1, 2), (0, 2, 3)]))
+
+
+def behind_the_board(*boards):
+    scene = ep.Scene()
+    for k, one in enumerate(boards):
+        scene.add(one, name=f"board {k}", material="metal")
+    aside = np.linspace(-0.2, 0.2, 41)
+    return aside, ways_to(scene, np.stack([np.full(41, BEFORE + BEHIND), aside, np.zeros(41)], axis=-1), np.zeros(3))["share"]
+
+
+def test_waves_from_both_sides_of_a_board_add_up():
+    """As Kirchhoff's field behind a screen of finite width (ITU-R P.526, 4.4.2): on its axis twice that of a side."""
+    half_width = 0.25
+
+    def knife_edge(height):
+        sine, cosine = fresnel(height * np.sqrt(WAVENUMBER / np.pi * (BEFORE + BEHIND) / (BEFORE * BEHIND)))
+        return (0.5 + 0.5j) * ((0.5 - cosine) - 1j * (0.5 - sine))
+
+    aside, found = behind_the_board(board(half_width))
+    line = aside * BEFORE / (BEFORE + BEHIND)
+    sides = [knife_edge(half_width - side * line) for side in (-1.0, 1.0)]
+    wanted = np.abs(sum(sides))
+    assert wanted[20] == pytest.approx(2.0 * np.abs(sides[0][20])) and wanted.min() < 0.3 * wanted.max()
+    assert found == pytest.approx(wanted, abs=0.04 * wanted.max())
+
+
+def test_an_edge_counts_once_however_many_meshes_have_it():
+    """Of two boards in one place, and of two halves that meet at the very height of the ways."""
+    _, whole = behind_the_board(board(0.25))
+    for parts in ((board(0.25), board(0.25)), (board(0.25, high=0.0), board(0.25, low=0.0))):
+        assert behind_the_board(*parts)[1] == pytest.approx(whole, rel=1e-6)
+
+
 def block(low, high):
     corners = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
@@ -12,6 +14,8 @@
 
 namespace echopath {
 namespace {
+
+constexpr double kFaintest = 0.03;  // of the field of the strongest way: fainter ones are left out
 
 // Holds an edge, relative to the antenna, and where the antenna stands beside it.
 struct EdgeSeen {
@@ -47,25 +51,41 @@ class AroundEdges {
     if (query.edges) edges_ = opaque_edges(query.scene, pose_, query.antenna);
   }
 
-  LegAroundEdge best_to(const Vec3& world) const {
+  LegAroundEdge leg_to(const Vec3& world) const {
     const Vec3 point = world - query_.antenna;
-    LegAroundEdge best;
+    LegAroundEdge leg;
     if (is_clear(Vec3::Zero(), point)) {
-      best.share = 1.0;
-      best.length = point.norm();
-      return best;
+      leg.share = 1.0;
+      leg.length = point.norm();
+      return leg;
     }
-    for (const EdgeSeen& edge : edges_) take_better(edge, point, best);
-    return best;
+    thread_local std::vector<Way> ways;
+    ways.clear();
+    for (const EdgeSeen& edge : edges_) add_way(edge, point, ways);
+    std::ranges::stable_sort(ways, std::greater(), &Way::share);
+    keep_separate(point, ways);
+    if (ways.empty()) return leg;
+    const Way& strongest = ways.front();
+    leg = {strongest.edge->mesh_id, strongest.at + query_.antenna, strongest.length, share_of(ways)};
+    return leg;
   }
 
  private:
+  // Holds a way around one edge, and what of the field it brings.
+  struct Way {
+    const EdgeSeen* edge;
+    Vec3 at;                 // m, from the antenna: on the edge
+    Eigen::Vector3cd field;  // over that which nothing would hide, without the phase of the length
+    double length, share;    // m; norm of the field
+  };
+
   // The way ends a little before the point, which may lie on a surface.
   bool is_clear(const Vec3& from, const Vec3& to) const {
     return !geometry_.occluded(from + shift_, to + shift_ - 8.0 * geometry_.lift() * (to - from).normalized());
   }
 
-  void take_better(const EdgeSeen& edge, const Vec3& point, LegAroundEdge& best) const {
+  // Adds the way around an edge, if it has one, whether it is free or not.
+  void add_way(const EdgeSeen& edge, const Vec3& point, std::vector<Way>& ways) const {
     const Vec3 from_end = point - edge.from;
     const double behind = from_end.dot(edge.axis);
     // Keller's point lies between the feet of both ends, so that most edges are left without a root.
@@ -75,25 +95,46 @@ class AroundEdges {
     const double along = (edge.before * off_point + behind * edge.off_antenna) / across;
     if (along < 0.0 || along > edge.length) return;
     const Vec3 at = edge.from + along * edge.axis;
-    const double share = share_of(edge.wedge, at, point);
-    if (share <= best.share) return;
-    const Vec3 lifted = geometry_.lifted(at, outward_of(edge.wedge));
-    if (!is_clear(lifted, Vec3::Zero()) || !is_clear(lifted, point)) return;
-    best = {edge.mesh_id, at + query_.antenna, at.norm() + (point - at).norm(), share};
+    const Eigen::Vector3cd field = field_over(edge.wedge, at, point);
+    const double share = field.norm();
+    if (share > 0.0) ways.push_back({&edge, at, field, at.norm() + (point - at).norm(), share});
   }
 
-  double share_of(const Wedge& wedge, const Vec3& at, const Vec3& point) const {
+  // Keeps of ways, the strongest first, those that are free and no fainter than kFaintest of the strongest of them. Edges
+  // within half a Fresnel zone of a stronger one, as rims of two walls that meet, are one edge with it.
+  void keep_separate(const Vec3& point, std::vector<Way>& ways) const {
+    size_t num_kept = 0;
+    for (size_t i = 0; i < ways.size(); ++i) {
+      if (num_kept > 0 && ways[i].share < kFaintest * ways.front().share) break;
+      const Vec3& at = ways[i].at;
+      const double in = at.norm(), out = (point - at).norm();
+      const double apart = std::sqrt(0.5 * kPi / wavenumber_ * in * out / (in + out));
+      const bool is_one = std::any_of(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(num_kept),
+                                      [&](const Way& stronger) { return (stronger.at - at).norm() < apart; });
+      const Vec3 lifted = geometry_.lifted(at, outward_of(ways[i].edge->wedge));
+      if (is_one || !is_clear(lifted, Vec3::Zero()) || !is_clear(lifted, point)) continue;
+      ways[num_kept++] = ways[i];
+    }
+    ways.resize(num_kept);
+  }
+
+  double share_of(const std::vector<Way>& ways) const {
+    Eigen::Vector3cd field = Eigen::Vector3cd::Zero();
+    for (const Way& way : ways) field += std::polar(1.0, -wavenumber_ * (way.length - ways.front().length)) * way.field;
+    return field.norm();
+  }
+
+  Eigen::Vector3cd field_over(const Wedge& wedge, const Vec3& at, const Vec3& point) const {
     const double in = at.norm(), out = (point - at).norm();
-    if (std::min(in, out) * wavenumber_ < 1.0) return 0.0;
+    if (std::min(in, out) * wavenumber_ < 1.0) return Eigen::Vector3cd::Zero();
     const Vec3 arrival = at / in, departure = (point - at) / out;
     const Vec3 across = query_.polarization - arrival.dot(query_.polarization) * arrival;
     const double sine = axis_of(wedge).cross(arrival).norm();
-    if (across.norm() < 1e-9 || sine < 1e-3) return 0.0;
+    if (across.norm() < 1e-9 || sine < 1e-3) return Eigen::Vector3cd::Zero();
     const double distance = in * out / (in + out);
     const Eigen::Matrix3cd matrix = diffraction_matrix(wedge, arrival, departure, wavenumber_ * distance);
-    const double field = (matrix * across.normalized().cast<std::complex<double>>()).norm();
     const double zone = std::sqrt(kTwoPi * distance / wavenumber_) / sine;  // by stationary phase along the edge
-    return point.norm() * field * zone / (4.0 * kPi * in * out);
+    return point.norm() * zone / (4.0 * kPi * in * out) * (matrix * across.normalized().cast<std::complex<double>>());
   }
 
   AroundQuery query_;
@@ -110,7 +151,7 @@ std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std
   const AroundEdges around(query);
   std::vector<LegAroundEdge> legs(points.size());
   if (job) job->start(std::ssize(points));
-  parallel_for(std::ssize(points), [&](int64_t i) { legs[i] = around.best_to(points[i]); }, job);
+  parallel_for(std::ssize(points), [&](int64_t i) { legs[i] = around.leg_to(points[i]); }, job);
   return legs;
 }
 

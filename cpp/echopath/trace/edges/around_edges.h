@@ -1,10 +1,10 @@
 #pragma once
-// Finds what a wave brings around one edge to points that an antenna does not see: diffraction into shadows.
+// Finds what waves bring around one edge each to points that an antenna does not see: diffraction into shadows.
 //
-// The field is that of the uniform theory of diffraction (em/edges/edge_shadow.h) about Keller's point of the edge, by
-// stationary phase along it. All edges of bodies count as those of perfect conductors: the part that follows from the
-// shadow, which is most of it near the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have
-// none.
+// The field is that of the uniform theory of diffraction (em/edges/edge_shadow.h) about Keller's point of each edge, by
+// stationary phase along it; what comes around several edges, as those on both sides of a board, adds up with its phases.
+// All edges of bodies count as those of perfect conductors: the part that follows from the shadow, which is most of it near
+// the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none.
 #include <limits>
 #include <vector>
 
@@ -24,13 +24,13 @@ struct AroundQuery {
   bool edges = true;   // whether legs around edges are looked for, or only whether the points are seen
 };
 
-// Holds the strongest leg around one edge.
+// Holds the strongest leg around one edge, and what all of them bring.
 struct LegAroundEdge {
   static constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
   uint32_t mesh_id = kNoMesh;  // whose edge; kNoMesh: nothing is in the way, or no edge leads there
   Vec3 point = Vec3::Zero();   // m, world: on the edge
   double length = 0.0;         // m, of the leg
-  double share = 0.0;          // of the field that would arrive were nothing in its way; 1 where nothing is
+  double share = 0.0;          // of the field that would arrive were nothing in its way, of all edges; 1 where nothing is
 };
 
 // Returns a leg for each point (m, world). Raises invalid_argument when a motion is not defined at the time, Cancelled when

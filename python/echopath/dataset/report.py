@@ -136,7 +136,7 @@ def _drawn(found: Statistics) -> Iterable[str]:
     rows = -(-len(chosen) // 3)
     with new_figure(11.0, 2.3 * rows) as figure:
         panels = figure.subplots(rows, 3, squeeze=False).flat
-        for axes, place in zip(panels, chosen):
+        for place, axes in zip(chosen, panels):  # in this order: the iterator that ends first takes none of the other
             _draw_numbers(axes, numbers[place])
             axes.set_title(place.removeprefix("objects."))
             axes.set_xlabel("Value (SI units where its name says no other)")

@@ -174,6 +174,8 @@ def _grey_limits(labels, shown) -> dict:
     highest = float(in_dbm(shown.max(), SMALLEST_POWER))
     noise, weakest = (float(in_dbm(power, SMALLEST_POWER))
                       for power in (labels.noise_power, labels.whole[labels.mask].min(initial=np.inf)))
+    if not shown.any():  # as of files that keep nothing outside of the mask: black, not white
+        return {"vmin": noise, "vmax": noise + 10.0}
     lowest = max(noise, min(highest - min(labels.dynamic_range_db, 90.0), max(weakest, highest - 90.0)))
     return {"vmin": min(lowest, highest - 10.0), "vmax": highest}
 

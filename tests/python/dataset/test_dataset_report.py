@@ -2,11 +2,13 @@
 import base64
 import shutil
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import numpy as np
 
 from echopath import dataset
 from echopath.cli import main
+from echopath.dataset import report
 
 
 class _Page(HTMLParser):
@@ -63,6 +65,16 @@ def test_the_report_counts_what_is_there(small_dataset, tmp_path):
     median = sorted(errors)[len(errors) // 2]  # the upper one of two
     assert known[1] == (f"{median:.1f} dB" if np.isfinite(median) else "not known")
     assert text.count("Validity: ") == 4  # of each frame that is shown
+
+
+def test_numbers_that_were_drawn_have_no_empty_axes_beside_them(monkeypatch):
+    figures = []
+    monkeypatch.setattr(report, "_image", lambda figure: figures.append(figure) or "")
+    for several in (4, 5, 6):
+        drawn = {f"objects.car.position[{number}]": [0.5 * number, 1.0, 7.0] for number in range(several)}
+        list(report._drawn(SimpleNamespace(drawn=drawn)))
+        shown = [axes for axes in figures[-1].axes if axes.axison]
+        assert len(shown) == several and all(axes.has_data() for axes in shown)
 
 
 def test_the_command_writes_the_report_beside_the_frames(small_dataset, tmp_path, monkeypatch, capsys):

@@ -86,6 +86,17 @@ def test_a_picture_without_cells_of_objects_is_the_map_alone(labels):
     assert len(plot_ghosts(labels).axes) == 4
 
 
+def test_a_picture_of_a_map_that_kept_nothing_is_black(labels):
+    """As of files that keep no power outside of an empty mask: it had been white, on a scale about -2975 dBm."""
+    nothing = np.zeros(labels.shape)
+    empty = dataclasses.replace(labels, whole=nothing, mask=nothing.astype(bool), objects=[], ghosts=[],
+                                object_map=nothing.astype(np.int16) - 1, ghost_map=nothing.astype(np.int16) - 1)
+    image = plot_ghosts(empty).axes[0].collections[0]
+    low, high = image.get_clim()
+    noise = 10.0 * np.log10(1e3 * labels.noise_power)
+    assert low == pytest.approx(noise) and noise < high < noise + 20.0 and (image.get_array() < low).all()
+
+
 def _num_cells(axes) -> int:
     from matplotlib.collections import PolyCollection
 

@@ -65,7 +65,8 @@ class Lines:
         """The last line of a command. Raises ep.FileError where there is none."""
         found = self.of(name)
         if not found:
-            raise _core.FileError(f"{self.path}: has no {name}")
+            kind = "" if self.commands else ", nor any other command of the configuration of a sensor (.cfg)"
+            raise _core.FileError(f"{self.path}: has no {name}{kind}")
         return found[-1]
 
 

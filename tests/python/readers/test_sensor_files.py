@@ -185,7 +185,7 @@ def test_bad_lines_are_errors_with_their_numbers(written, lines, told):
 
 def test_what_is_no_configuration_is_told_before_a_board_is_asked_for(tmp_path):
     (tmp_path / "room.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    with pytest.raises(ep.FileError, match="room.obj: has no frameCfg"):
+    with pytest.raises(ep.FileError, match=r"room.obj: has no frameCfg, nor any other command of .* sensor \(.cfg\)$"):
         ep.load_radar(tmp_path / "room.obj")
 
 

@@ -67,6 +67,5 @@ for panel, name in zip(figure.subplots(2, 1, sharex=True), ("upper arm", "forear
     if name == "forearm":
         panel.plot(frames + 0.0192, speed, "w--", linewidth=1)
     panel.set(title=name.capitalize(), xlabel="Time in s", ylabel="Velocity in m/s", ylim=(-2, 2))
-    panel.label_outer()
 figure.colorbar(image, ax=figure.axes, label="Power over the largest of each panel in dB")
 plt.show()

@@ -151,7 +151,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> Ite
     yield write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power, objects=objects))
     vmin, vmax = limits_of_frame(frame)
     title = title_of(frame)
-    mean = for_pictures(f"; in the mean {with_error(frame.mean_power)}")
+    mean = for_pictures(f"; mean power {with_error(frame.mean_power)}")
     yield write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
     names = _picture_names(partitions)
     for index, partition in enumerate(partitions):

@@ -119,7 +119,8 @@ class Repeated:
             return self._function(times)
         place = np.minimum(np.searchsorted(known, times), len(known) - 1)
         found, is_new = values[:, place], known[place] != times
-        found[:, is_new] = self._function(times[is_new])
+        if is_new.any():
+            found[:, is_new] = self._function(times[is_new])
         return found
 
 
@@ -133,9 +134,9 @@ def turned(yaw, yaw_rate, angle=0.0, rate=0.0):
     """(unit quaternions [N, 4] (w, x, y, z), their rates [N, 4] per s): about y by `angle` in rad, then about z by `yaw`."""
     angle, rate = angle + 0.0 * yaw, rate + 0.0 * yaw
     c, s, n, m = np.cos(0.5 * yaw), np.sin(0.5 * yaw), np.cos(0.5 * angle), np.sin(0.5 * angle)
-    values = np.stack([c * n, -s * m, c * m, s * n], axis=-1)
-    by_yaw = np.stack([-s * n, -c * m, -s * m, c * n], axis=-1)
-    by_angle = np.stack([-c * m, -s * n, c * n, -s * m], axis=-1)
+    cn, sm, cm, sn = c * n, s * m, c * m, s * n
+    values, by_yaw, by_angle = (np.stack(one, axis=-1) for one in (
+        [cn, -sm, cm, sn], [-sn, -cm, -sm, cn], [-cm, -sn, cn, -sm]))
     return values, 0.5 * (by_yaw * yaw_rate[:, None] + by_angle * rate[:, None])
 
 

@@ -47,11 +47,12 @@ class Path:
 
     def at(self, distances):
         """(points [N, 3] in m, unit tangents [N, 3], curvature vectors [N, 3] in 1/m) at distances [N] in m."""
-        inside = np.clip(distances, 0.0, self.length)
+        inside = np.minimum(np.maximum(distances, 0.0), self.length)
         point, first, second = self.jets(self._parameters(inside))
         squared = np.sum(first**2, axis=-1, keepdims=True)
-        turns_back = squared[:, 0] == 0.0
-        first[turns_back], squared[turns_back] = _unit(second[turns_back]), 1.0   # where it goes on
+        if not squared.all():  # where it turns back, as it goes on
+            turns_back = squared[:, 0] == 0.0
+            first[turns_back], squared[turns_back] = _unit(second[turns_back]), 1.0
         tangent = first / np.sqrt(squared)
         bend = (second - np.sum(second * tangent, axis=-1, keepdims=True) * tangent) / squared
         beyond = (np.asarray(distances, float) - inside)[:, None]
@@ -174,7 +175,7 @@ class SplinePath(Path):
 
     def _pieces(self, u):
         """(coefficients [4, N, 3] of the powers of the parameter since the knot before, that parameter [N, 1])."""
-        k = np.clip(np.searchsorted(self.knots, u, side="right") - 1, 0, len(self.knots) - 2)
+        k = np.minimum(np.maximum(np.searchsorted(self.knots, u, side="right") - 1, 0), len(self.knots) - 2)
         return np.moveaxis(self._powers[k], 1, 0), (u - self.knots[k])[:, None]
 
 
@@ -188,7 +189,7 @@ class ArcPath(Path):
         super().__init__(self.knots)
 
     def jets(self, u):
-        k = np.clip(np.searchsorted(self.knots, u, side="right") - 1, 0, len(self.knots) - 2)
+        k = np.minimum(np.maximum(np.searchsorted(self.knots, u, side="right") - 1, 0), len(self.knots) - 2)
         along, kappa = (u - self.knots[k])[:, None], self._curvatures[k][:, None]
         direction, normal = self._directions[k], self._normals[k]
         angle = kappa * along

@@ -123,17 +123,18 @@ def paws_of(dog, trajectory, leg, times):
 def test_paws_of_a_dog_stand_still_in_curves_and_at_stops():
     dog = ep.actors.dog(trajectory=STROLL)
     assert dog.motion is STROLL
-    times = np.arange(STROLL.begin + 0.5, STROLL.end - 0.3, 0.004)
+    step = 0.008  # s
+    times = np.arange(STROLL.begin + 0.5, STROLL.end - 0.3, step)
     down = np.zeros(len(times))
     for leg in LEGS:
         paws = paws_of(dog, STROLL, leg, times)
         stands = np.abs(paws[:, 2] - SOLE) < 5e-4
         assert paws[:, 2].min() > SOLE - 2e-3
         both = stands[1:] & stands[:-1]
-        slip = np.linalg.norm(np.diff(paws[:, :2], axis=0), axis=1)[both] / 0.004
+        slip = np.linalg.norm(np.diff(paws[:, :2], axis=0), axis=1)[both] / step
         assert both.mean() > 0.4 and np.quantile(slip, 0.9) < 0.05   # m/s, of a body at 2 m/s
         waits = (STROLL.speed(times) == 0.0)
-        assert waits.sum() > 100 and np.abs(paws[waits, 2] - SOLE).max() < 3e-3
+        assert waits.sum() * step > 0.4 and np.abs(paws[waits, 2] - SOLE).max() < 3e-3
         down += stands
     assert set(np.unique(down)) <= {0, 1, 2, 3, 4}
 

@@ -79,6 +79,7 @@ def test_a_run_ends_with_what_its_rays_do_not_resolve_in_some_frame(scene_path, 
     assert "resolved to" not in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("plain_pictures")
 def test_frames_are_read_once_for_their_pictures_whose_failure_is_a_warning(scene_path, tmp_path, capsys, monkeypatch):
     def full(*given, **more):
         raise MemoryError

@@ -89,9 +89,12 @@ def magnetic_field_at(points, mouth: Facets, wavenumber, toward, electric, magne
         away, distance = _away(points[begin:begin + ROWS_AT_ONCE], mouth.centres)
         unit, x = away / distance[..., None], 1.0 / (wavenumber * distance)
         wavelet = np.exp(-1j * wavenumber * distance) / (4.0 * np.pi * distance)
-        turning = np.einsum("nmx,nm,mw->nwx", unit, wavelet * (1j * wavenumber) * (1.0 - 1j * x), wave, optimize=True)
+        curl = wavelet * (1j * wavenumber) * (1.0 - 1j * x)
+        turning = np.stack([(curl * one) @ wave for one in np.moveaxis(unit, -1, 0)], axis=-1)
         across = (wavelet * (1.0 - 1j * x - x * x)) @ wave
-        radial = np.einsum("nm,nmx,nmy,mw->nwxy", wavelet * (1.0 - 3j * x - 3.0 * x * x), unit, unit, wave, optimize=True)
+        along, radial = wavelet * (1.0 - 3j * x - 3.0 * x * x), np.empty((*across.shape, 3, 3), complex)
+        for one, other in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
+            radial[..., one, other] = radial[..., other, one] = (along * (unit[..., one] * unit[..., other])) @ wave
         found[begin:begin + ROWS_AT_ONCE] = np.cross(electric, turning) - 1j * wavenumber * (
             across[..., None] * magnetic - np.einsum("nwxy,wy->nwx", radial, magnetic))
     return found

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import CellBox, Filters, Legend
+from echopath_viewer.model import CellBox, Filters, Legend, from_paths
 from echopath_viewer.window.scene.filter_box import ErrorLabel
 from echopath_viewer.window.scene.legend_box import LegendBox
 from echopath_viewer.window.scene.name_box import NameBox
@@ -177,6 +177,33 @@ def test_the_tree_is_opened_and_its_meshes_are_chosen_by_keys(qtbot, window):
     qtbot.keyClick(tree, Qt.Key.Key_Return)
     assert window.session.node == "walker/head"
     window.session.select_node(None)
+    window.view3d.setFocus()
+
+
+def test_rows_of_the_tree_are_found_by_a_part_of_their_names(qtbot, window):
+    tree, edit = window.tree, window.scene_box.find_edit
+    tree.collapseAll()
+    rows = {name: tree._items[name] for name in ("walker", "walker/head", "walker/legs", "wall_left", "wall_right")}
+
+    def shown() -> set:
+        return {name for name, item in rows.items() if not item.isHidden()}
+
+    qtbot.keyClick(window, Qt.Key.Key_F, Qt.KeyboardModifier.ControlModifier)
+    assert edit.hasFocus()
+    for text, found, is_open in (("LEG", {"walker", "walker/legs"}, True), ("wal", set(rows), False), ("none", set(), False),
+                                 ("r/h", {"walker", "walker/head"}, True)):
+        tree.collapseAll()
+        edit.setText(text)
+        qtbot.keyClick(edit, Qt.Key.Key_Return)
+        assert shown() == found and rows["walker"].isExpanded() == is_open
+    assert tree.hasFocus() and tree.currentItem() is rows["walker/head"]
+    window.show_input(from_paths(None, window.session.paths))
+    rows = {name: tree._items[name] for name in rows}
+    assert shown() == {"walker", "walker/head"}  # those of the next frame, too
+    edit.setFocus()
+    qtbot.keyClick(edit, Qt.Key.Key_Escape)
+    settle(qtbot)
+    qtbot.waitUntil(lambda: shown() == set(rows), timeout=PATIENCE_MS)
     window.view3d.setFocus()
 
 

@@ -16,6 +16,7 @@ KEYS = (
     ("Ctrl+Z", "undo", "Undo what the view shows"),
     ("Ctrl+Shift+Z", "redo", "Redo it"),
     ("Ctrl+Q", "quit", "Close the window"),
+    ("Ctrl+F", "find_mesh", "Find a mesh by a part of its name"),
     ("F", "look_fit", "Look at everything"),
     ("R", "look_radar", "The radar's eye"),
     ("T", "look_top", "From above"),
@@ -38,9 +39,9 @@ NEEDS_NO_FRAME = ("open_dialog", "open_folder_dialog", "show_help", "show_comman
 MENUS = {
     "File": ("open_dialog", "open_folder_dialog", "reload", "save_view_dialog", "load_view_dialog", "screenshot_dialog",
              "export_rays_dialog", "export_meshes_dialog"),
-    "View": ("undo", "redo", "look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
-             "toggle_play", "previous_chirp", "next_chirp", "previous_frame", "next_frame", "toggle_play_frames", "remove_part",
-             "clear_selection"),
+    "View": ("undo", "redo", "find_mesh", "look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour",
+             "toggle_layout", "toggle_play", "previous_chirp", "next_chirp", "previous_frame", "next_frame",
+             "toggle_play_frames", "remove_part", "clear_selection"),
     "Help": ("show_help", "show_commands"),
 }
 MOUSE = (

@@ -32,6 +32,7 @@ from .qt import QtCore, QtWidgets
 from .scene.ray_table import RayTable
 from .files.remembered import remember_layout, restore_layout
 from .scene.own_window import give_own_window
+from .scene.scene_box import SceneBox
 from .scene.scene_tree import SceneTree
 from .settling import settle
 from .timeline.time_bar import TimeBar
@@ -56,6 +57,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.resize(*SIZE)
         self.setAcceptDrops(True)
         self.tree, self.filter_box, self.view3d = SceneTree(), FilterBox(), View3D(self)
+        self.scene_box = SceneBox(self.tree)
         self.time_bar, self.map_area, self.table = TimeBar(), MapArea(), RayTable()
         self.contributions, self.frame_bar = ContributionsPanel(), FrameBar()
         self.time_bar.is_behind = self.view3d.is_behind

@@ -19,7 +19,7 @@ class Panels:
         self.setTabPosition(Qt.DockWidgetArea.AllDockWidgetAreas, QtWidgets.QTabWidget.TabPosition.North)
         self.setCentralWidget(self._centre())
         self.docks = {}
-        for area, name, widget in ((LEFT, "Scene", self.tree), (LEFT, "Rays shown", self.filter_box),
+        for area, name, widget in ((LEFT, "Scene", self.scene_box), (LEFT, "Rays shown", self.filter_box),
                                    (RIGHT, "Range-Doppler", self.map_area), (RIGHT, "What makes the cell", self.contributions),
                                    (RIGHT, "Rays", self.table)):
             self.add_panel(area, name, widget)

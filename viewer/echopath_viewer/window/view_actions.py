@@ -26,6 +26,10 @@ class ViewActions:
     def toggle_hits(self) -> None:
         self.filter_box.hits_check.toggle()
 
+    def find_mesh(self) -> None:
+        self.open_panel("Scene")
+        self.scene_box.begin()
+
     def next_colour(self) -> None:
         box = self.filter_box.colour_box
         box.setCurrentIndex((box.currentIndex() + 1) % len(COLOUR_MODES))

@@ -1,6 +1,8 @@
 """The meshes of the scene as a tree."""
 from __future__ import annotations
 
+from echopath.base.text.node_names import composed
+
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 NAME, COUNT = 0, 1
@@ -18,6 +20,7 @@ class SceneTree(QtWidgets.QTreeWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.session, self._marked = None, None  # the name of the row whose map was asked for
+        self._found_by, self._found = "", []     # part of a name, rows that were found by it
         self.setHeaderLabels(["Mesh", "Paths"])
         self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names differ at their ends
         self.header().setStretchLastSection(False)
@@ -45,10 +48,33 @@ class SceneTree(QtWidgets.QTreeWidget):
             item.setCheckState(NAME, Qt.CheckState.Checked)
             self._items[node.name] = item
             items.append(item)
-        if sum(1 + self.topLevelItem(row).childCount() for row in range(self.topLevelItemCount())) <= MOST_OPEN:
+        if self._found_by:
+            self.show_found(self._found_by)
+        elif sum(1 + self.topLevelItem(row).childCount() for row in range(self.topLevelItemCount())) <= MOST_OPEN:
             self.expandToDepth(0)
         self.session = session
         self.refresh()
+
+    def show_found(self, text: str) -> None:
+        """Rows whose full names hold a text alone, with those above them; "": all rows. Capitals and small letters are alike."""
+        self._found_by, self._found = _plain(text), []
+        above = set()  # names of rows above those that were found
+        self.setUpdatesEnabled(False)
+        for name, item in reversed(self._items.items()):  # what is below a row comes before it
+            parent, is_above, holds = name.rpartition("/")[0], name in above, self._found_by in _plain(name)
+            is_found = holds and self._found_by not in _plain(parent)
+            if is_found:
+                self._found.insert(0, item)
+            if is_found or is_above:
+                above.add(parent)
+            item.setHidden(not (holds or is_above))
+            if is_above:
+                item.setExpanded(True)
+        self.setUpdatesEnabled(True)
+
+    def first_found(self):
+        """The first row that was found; None where there is none."""
+        return self._found[0] if self._found else None
 
     def follow_session(self, session, is_passing: bool = False) -> None:
         """Another frame: rows that are open stay so where its scene has the same. is_passing: the next one comes at once, and
@@ -142,6 +168,11 @@ def _state_of_all(item, has_mesh: bool) -> Qt.CheckState:
     states = {item.child(row).checkState(NAME) for row in range(item.childCount())}
     states |= {item.checkState(NAME)} if has_mesh else set()
     return states.pop() if len(states) == 1 else Qt.CheckState.PartiallyChecked
+
+
+def _plain(name: str) -> str:
+    """A name as it is looked for."""
+    return composed(name).casefold()
 
 
 def _swatch(rgb) -> QtGui.QIcon:

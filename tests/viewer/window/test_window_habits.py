@@ -124,6 +124,24 @@ def test_the_window_fits_a_small_screen(window):
     assert smallest.width() <= 1024 and smallest.height() <= 700
 
 
+def test_the_tabulator_leaves_a_table(qtbot, window):
+    """It had gone through all of its cells, thousands of rays."""
+    table = window.table.view
+    table.setFocus()
+    table.setCurrentIndex(table.model().index(0, 0))
+    qtbot.keyClick(table, Qt.Key.Key_Tab)
+    assert not table.hasFocus() and not window.contributions.table.tabKeyNavigation()
+
+
+def test_menus_open_by_their_letters(qtbot, window):
+    letters = [menu.text().partition("&")[2][:1] for menu in window.menuBar().actions()]
+    assert all(letters) and len(set(letters)) == len(letters)
+    qtbot.keyClick(window, Qt.Key.Key_L, Qt.KeyboardModifier.AltModifier)
+    menu = QtWidgets.QApplication.activePopupWidget()
+    assert [action.text() for action in menu.actions()][-1] == "Names"
+    menu.close()
+
+
 def test_commands_are_found_by_their_letters(qtbot, window):
     qtbot.keyClick(window, Qt.Key.Key_K, CONTROL)
     palette = window.findChild(CommandPalette)

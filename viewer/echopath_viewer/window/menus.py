@@ -24,14 +24,14 @@ class Menus:
         self.actions_by_name = {method: self._action(key, method, text) for key, method, text in KEYS}
         self._needs_frame = [action for method, action in self.actions_by_name.items() if method not in NEEDS_NO_FRAME]
         for title, methods in MENUS.items():
-            menu = self.menuBar().addMenu(title)
+            menu = self.menuBar().addMenu(f"&{title}")
             for method in methods:
                 menu.addAction(self.actions_by_name[method])
             if title == "File":
                 self._add_recent(menu)
             if title == "View":
                 self._add_layers()
-                self.window_menu = self.menuBar().addMenu("Panels")
+                self.window_menu = self.menuBar().addMenu("&Panels")
         self._fill_bar()
 
     def _action(self, key: str, method: str, text: str):
@@ -55,7 +55,7 @@ class Menus:
 
     def _add_layers(self) -> None:
         """A toggle for each layer, in a menu of its own."""
-        self.layer_actions, menu = {}, self.menuBar().addMenu("Layers")
+        self.layer_actions, menu = {}, self.menuBar().addMenu("&Layers")
         for number, layer in enumerate(LAYERS):
             action = QtGui.QAction(layer.capitalize(), self, checkable=True)
             action.setShortcut(QtGui.QKeySequence(str(number + 1)))

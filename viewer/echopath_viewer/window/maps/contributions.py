@@ -55,6 +55,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setToolTip("Choose a row: its paths light up, wherever they lie.")
         self.table.setWordWrap(False)
+        self.table.setTabKeyNavigation(False)
         self.table.setTextElideMode(Qt.TextElideMode.ElideLeft)  # ways differ at their ends
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(20)

@@ -107,6 +107,7 @@ class RayTable(QtWidgets.QWidget):
         self.view.sortByColumn(*STRONGEST_FIRST)
         self.view.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
         self.view.setAlternatingRowColors(True)
+        self.view.setTabKeyNavigation(False)  # else Tab would go through thousands of cells
         self.view.verticalHeader().setDefaultSectionSize(20)
         self.view.verticalHeader().hide()
         self.view.setWordWrap(False)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.bench.live.street import house
 from echopath.frame.maps import maps_of
 from echopath_viewer.model import Session, from_file, from_frame
 from echopath_viewer.model.frames.maps_input import from_maps
@@ -97,6 +98,34 @@ def test_a_ghost_over_a_plane_seems_to_be_at_the_mirror_image():
     both_ways = next(twin for twin in twins if (twin.object, twin.ghost_type) == ("box", 2) and "(2/3)" in twin.name)
     assert both_ways.offset == pytest.approx([0.0, 8.0, 0.0], rel=0, abs=0.7)  # from y = -1 to its image in
     # y = 3, but for the size of the box, whose nearest faces are seen.
+
+
+def test_things_of_a_town_are_told_apart_as_its_labels_do():
+    """All had been told of as the object that the town was read as: its ghosts had covered the scene."""
+    scene = ep.Scene()
+    scene.add(None, name="town")
+    scene.add(ep.Mesh(*house()), name="house", parent="town", material="brick", position=(10.0, 9.0, 0.0))
+    road = ep.Mesh([[-60, -60, 0], [60, -60, 0], [60, 60, 0], [-60, 60, 0]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(road, name="road", parent="town", material="asphalt")
+    for number in range(2):
+        scene.add(ep.actors.box(size=(4.0, 1.8, 1.8)), name=f"van_{number}", parent="town", material="metal",
+                  position=(12.0 + 8.0 * number, -2.0, 0.0))
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=3e8, num_samples=64, sampling_rate=10e6, num_chirps=4,
+                              chirp_interval=5e-5)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 1.5))], receivers=[ep.Antenna((0, 0.01, 1.5))])
+    ep.mark_mirrors(scene, radar)
+    vans = ep.find_objects(scene, radar)
+    assert vans == {"van_0": "town/van_0", "van_1": "town/van_1"}
+    for objects, told in ((vans, set(vans)), (["town/van_0"], {"town/van_0"}), (["town"], {"town"})):
+        frame = ep.simulate(scene, radar, num_rays=2000, max_bounces=2, seed=1, labels={"objects": objects}, guard=False)
+        session = Session(from_frame(frame))
+        session.set_layer("truth", True)
+        session.set_layer("ghost twins", True)
+        assert set(session.known_data("truth").name) == told
+        touched = Attribution(session.signals, session.told_objects()).things
+        assert {name for name in touched if "van" in name} <= told
+        for twin in session.known_data("ghost twins"):
+            assert twin.object in told and (len(twin.meshes) == 1 or told == {"town"})
 
 
 def _box(centre):

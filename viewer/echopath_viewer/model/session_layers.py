@@ -41,7 +41,7 @@ class SessionLayers:
         if name in self._known_data or name == NAMES:
             return
         if name == TWINS:
-            self._known_data[TWINS] = ghost_twins(self.paths, self.columns)
+            self._known_data[TWINS] = ghost_twins(self.paths, self.columns, self.told_objects())
             return
         if self.known is None:
             raise ValueError(f"{layer}: only frames have them, got paths alone")
@@ -53,6 +53,10 @@ class SessionLayers:
             return self._known_data[layer]
         labels = self._known_data[LABELS]
         return labels.get(self.partition, next(iter(labels.values())))
+
+    def told_objects(self):
+        """What of the scene is an object, as `ep.families` takes it; None: each child of the root."""
+        return None if self.known is None else self.known.objects()
 
     def object_colours(self) -> dict:
         """{object: rgb}, the mean of the shades of its meshes."""

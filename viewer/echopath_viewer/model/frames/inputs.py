@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import cache
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from echopath.signals.same_radar import difference
 from echopath.weather.weather import weather_of
 
 from .kept_orders import KeptOrders, read_kept
+from .told_objects import told_objects
 from ..maps.layers import Known, are_of_map
 from ..maps.part_set import WHOLE, Part, PartSet
 from ..maps.signals import Signals, all_paths, selections_of
@@ -82,16 +84,18 @@ def _weather_of(scene, paths) -> ep.Weather | None:
 
 def _known(frame) -> Known:
     """Taken from the frame where it has it, else made when it is asked for."""
-    return Known(labels=lambda progress: _map_labels(frame, progress),
-                 detections=lambda progress: frame.detections or ep.detect_frame(frame, progress=progress),
-                 truth=lambda progress: frame.truth)
+    objects = cache(lambda: told_objects(frame))
+    return Known(labels=lambda progress: _map_labels(frame, objects, progress),
+                 detections=lambda progress: frame.detections or ep.detect_frame(frame, objects=objects(), progress=progress),
+                 truth=lambda progress: ep.truth(frame, objects()) if frame.kept_truth is None else frame.kept_truth,
+                 objects=objects)
 
 
-def _map_labels(frame, progress) -> dict:
+def _map_labels(frame, objects, progress) -> dict:
     """{partition: Labels} of the range-Doppler map: those of its range-azimuth map lie on other axes."""
     if frame.labels and are_of_map(frame.labels):
         return frame.labels
-    return ep.annotate_frame(frame, progress=progress)
+    return ep.annotate_frame(frame, objects=objects(), progress=progress)
 
 
 def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate="interpolated", retrace="never",

@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.arguments.objects import named_globs
 from echopath.plots.labels import CLASSES
 from echopath.paths.subset import strongest, subset
 
@@ -32,13 +33,13 @@ class GhostTwin:
     power: float
 
 
-def ghost_twins(paths, columns) -> list[GhostTwin]:
-    """The strongest ghosts, strongest first.
+def ghost_twins(paths, columns, objects=None) -> list[GhostTwin]:
+    """The strongest ghosts, strongest first. objects: as in `ep.families`
 
     Model: an echo seems to be at its range, half of the length of its path, in the direction in which it arrives: that of its
     last hit from the receiver. A family is where the mean of its strongest paths is, weighted by power.
     """
-    families = ep.families(paths)
+    families, globs_of = ep.families(paths, objects), dict(named_globs(objects) or ())
     own, ghosts = {}, []
     for number, family in enumerate(families.families):
         mask = families.family_of_path == number
@@ -50,7 +51,8 @@ def ghost_twins(paths, columns) -> list[GhostTwin]:
     twins = []
     for power, family, mask in ghosts[:MOST_TWINS]:
         place, origin = _apparent_place(paths, columns, mask), own.get(family.object)
-        meshes = tuple(mesh.id for mesh in paths.scene.meshes if f"{mesh.name}/".startswith(f"{family.object}/"))
+        globs = globs_of.get(family.object, [family.object])
+        meshes = tuple(mesh.id for mesh in paths.scene.meshes if any(ep._core.glob_takes(glob, mesh.name) for glob in globs))
         origin = _centre(paths, meshes) if origin is None else origin
         if place is not None and meshes:
             twins.append(GhostTwin(name_of(family), family.object, family.ghost_type, meshes, place - origin, power))

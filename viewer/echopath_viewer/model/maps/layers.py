@@ -25,11 +25,13 @@ class Known:
     """How to come by what a frame knows; each is called once, when its layer is first shown, with a progress callable.
 
     labels: -> {partition: ep.Labels}; detections: -> ep.Detections; truth: -> ep.Truth
+    objects: without an argument, -> what of the scene is an object, as `ep.families` takes it
     """
 
     labels: Callable
     detections: Callable
     truth: Callable
+    objects: Callable = lambda: None
 
 
 @dataclasses.dataclass(frozen=True)

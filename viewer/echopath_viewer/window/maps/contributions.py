@@ -108,8 +108,8 @@ class ContributionsPanel(QtWidgets.QWidget):
         elif not self.work.is_running:
             self._show_nothing("The signals of all families of paths are made, once ...")
             self.bar.begin()
-            signals = session.signals
-            self.work.start(lambda progress: Attribution(signals, progress=progress))
+            signals, objects = session.signals, session.told_objects
+            self.work.start(lambda progress: Attribution(signals, objects(), progress))
 
     def resizeEvent(self, event):
         super().resizeEvent(event)

@@ -14,7 +14,7 @@ from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
 from .part_powers import draw_part_powers
-from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours
+from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours, short_name
 
 if TYPE_CHECKING:
     from .. import _core
@@ -185,7 +185,7 @@ def _name_objects(axes, labels) -> None:
     extent, per_dot = axes.get_window_extent(), 72.0 / axes.figure.dpi
     width, height = extent.width * per_dot, extent.height * per_dot  # points
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    places = [(label.name, label.peak[0], _in_plot_units(labels, label.peak[1])) for label in labels.objects
+    places = [(short_name(label.name), label.peak[0], _in_plot_units(labels, label.peak[1])) for label in labels.objects
               if label.peak is not None]
     places = [(name, distance, row, (distance - left) / (right - left) * width, (row - bottom) / (top - bottom) * height)
               for name, distance, row in places]
@@ -301,8 +301,9 @@ def _row_spans(labels, label) -> list:
 
 def _row_name(label) -> str:
     if not hasattr(label, "ghost_type"):
-        return f"{label.name} itself"
-    return f"{label.object} via {' + '.join(label.via)} (type {label.ghost_type}, {counted(label.order, 'bounce')})"
+        return f"{short_name(label.name)} itself"
+    way = " + ".join(map(short_name, label.via))
+    return f"{short_name(label.object)} via {way} (type {label.ghost_type}, {counted(label.order, 'bounce')})"
 
 
 # --- what they share ---

@@ -15,7 +15,7 @@ from ..base.text.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from ..scene.lifetimes import scene_in_frame
 from .clip import clip_triangles, outline
-from .style import BOUNCE_COLOURS, new_figure
+from .style import BOUNCE_COLOURS, new_figure, short_name
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Figure
@@ -260,7 +260,7 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     for name, (low, high) in _named_mirrors(drawing).items():
         is_floor = high[2] - low[2] < CUT
         place = low[0] + NAME_PLACE * (high[0] - low[0]), low[1] if is_floor else 0.5 * (low + high)[1], high[2]
-        axes.text(*place, name if is_floor else f"{name}\n", zorder=5, horizontalalignment="center",
+        axes.text(*place, short_name(name) + ("" if is_floor else "\n"), zorder=5, horizontalalignment="center",
                   verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
     _frame_box(axes, drawing)
     _draw_names_in_perspective(axes, drawing.names)
@@ -274,8 +274,8 @@ def _draw_names_in_perspective(axes, names: dict) -> None:
     tops = {name: (*0.5 * (low + high)[:2], high[2]) for name, (low, high) in names.items()}
     seen = {name: proj_transform(*top, axes.get_proj())[:2] for name, top in tops.items()}
     for name, line in _free_lines(axes, seen).items():
-        axes.text(*tops[name], name + "\n" * (1 + line), zorder=5, horizontalalignment="center", verticalalignment="baseline",
-                  path_effects=_halo(), **NAME_LOOK)
+        axes.text(*tops[name], short_name(name) + "\n" * (1 + line), zorder=5, horizontalalignment="center",
+                  verticalalignment="baseline", path_effects=_halo(), **NAME_LOOK)
 
 
 def _free_lines(axes, places: dict) -> dict:
@@ -287,7 +287,7 @@ def _free_lines(axes, places: dict) -> dict:
     points = {name: axes.transData.transform(place) * POINTS_PER_INCH / axes.figure.dpi for name, place in places.items()}
     taken, raised = [], {}  # taken: (middle, half of the width, height) of the names so far in points of the page
     for name, (middle, height) in sorted(points.items(), key=lambda one: one[1][1]):
-        half = 0.5 * letter * (len(name) + 1)
+        half = 0.5 * letter * (len(short_name(name)) + 1)
         raised[name] = next(k for k in itertools.count() if all(
             abs(middle - other) >= half + its_half or abs(height + k * line - its_height) >= line
             for other, its_half, its_height in taken))
@@ -370,7 +370,7 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> None:
     """Names of the radar, of mirrors that are seen as lines and, from above, of objects; from the side these would stand on each
     other."""
     def write(name: str, place, offset: tuple, ha: str, **look) -> None:
-        axes.annotate(name, place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
+        axes.annotate(short_name(name), place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
 
     is_high = drawing.radar[plane[1]] > drawing.high[plane[1]] - 2.0 * MARGIN  # the title is right above
     write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)

@@ -28,6 +28,7 @@ AZIMUTH_LABEL, ELEVATION_LABEL = "Azimuth in degrees (left: +)", "Elevation in d
 POWER_LABEL = "Received power in dBm"
 
 LETTER = 0.56  # width of a letter over the size of the font, more than the mean
+LONGEST_NAME = 28  # letters, about, of an object in a picture
 
 _SETTINGS = {
     "font.family": "sans-serif", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
@@ -69,6 +70,13 @@ def axes_or_new(ax, width: float, height: float):
 
             ax = pyplot.figure(figsize=(width, height), layout="constrained").subplots()
         yield ax
+
+
+def short_name(name: str) -> str:
+    """The name of an object as pictures write it: of a long one both ends, by which those of foreign files differ."""
+    if len(name) <= LONGEST_NAME:
+        return name
+    return f"{name[:LONGEST_NAME // 2].rstrip()}\N{HORIZONTAL ELLIPSIS}{name[1 - LONGEST_NAME // 2:].lstrip()}"
 
 
 def part_colours(names) -> list:

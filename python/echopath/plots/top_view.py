@@ -12,7 +12,7 @@ from ..arguments.checks import refused
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
-from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, require_drawable, set_title
+from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, require_drawable, set_title, short_name
 
 if TYPE_CHECKING:
     from .. import _core
@@ -126,6 +126,7 @@ def _name_places(axes, shown: dict, reach: float) -> None:
 
     taken = []  # (leftmost, rightmost, height) in m of the names so far
     for name, (left, ahead) in sorted(shown.items(), key=lambda one: -one[1][1]):
+        name = short_name(name)
         length, aside, line = NAME_LETTER * reach * len(name), NAME_ASIDE * reach, NAME_LINE * reach
         tried = ((left + side * aside, side, ahead - row * line) for row in itertools.count(1) for side in (-1.0, 1.0))
         for begin, side, height in tried:

@@ -195,3 +195,23 @@ def test_lines_to_names_of_neighbours_cross_no_name(ranges):
                 end = (name.x0 if name.x0 > ring[0] else name.x1, 0.5 * (name.y0 + name.y1))
                 line = np.linspace(ring, end, 200)
                 assert not any(box.contains(*point) for point in line), (names, text.get_text())
+
+
+def test_long_names_keep_both_ends_and_stand_within_the_map():
+    """As of foreign files, whose names often differ at their end alone; one of 50 letters had reached over the colour bar."""
+    from echopath.plots.labels import _name_objects
+    from echopath.plots.style import LONGEST_NAME, new_figure, short_name
+
+    assert short_name("pedestrian") == "pedestrian"
+    long = [f"Building_of_the_western_block, storey {number}" for number in (11, 12)]
+    assert len({short_name(name) for name in long}) == 2
+    assert all(short_name(name).startswith("Building_of") and short_name(name).endswith(name[-9:]) for name in long)
+    with new_figure(6.0, 3.0) as figure:
+        axes = figure.subplots()
+        axes.set(xlim=(0.0, 20.0), ylim=(-4.0, 4.0))
+        objects = [SimpleNamespace(name=name, peak=(distance, 0.0)) for name, distance in zip(long, (10.0, 11.0))]
+        _name_objects(axes, SimpleNamespace(objects=objects, azimuth=None))
+        figure.canvas.draw()
+        frame, boxes = axes.get_window_extent(), [Text.get_window_extent(text) for text in axes.texts]
+        assert all(len(text.get_text()) <= LONGEST_NAME for text in axes.texts)
+        assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)

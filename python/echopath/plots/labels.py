@@ -141,13 +141,13 @@ def _draw_area(axes, distance, rows, is_inside, colour) -> None:
     v, r = np.nonzero(is_inside)
     corners = np.stack([[left[r], low[v]], [right[r], low[v]], [right[r], high[v]], [left[r], high[v]]], -1)  # [2, N, 4]
     axes.add_collection(PolyCollection(corners.transpose(1, 2, 0), facecolors=[colour], edgecolors="none", alpha=FILL,
-                                       rasterized=True))
+                                       rasterized=True), autolim=False)
     padded = np.pad(is_inside, 1)
     edges = []
     for side, (up, across) in enumerate(((-1, 0), (0, 1), (1, 0), (0, -1))):  # below, right, above, left: as the corners
         is_edge = ~padded[v + 1 + up, r + 1 + across]
         edges.append(corners[:, is_edge][:, :, [side, (side + 1) % 4]].transpose(1, 2, 0))
-    axes.add_collection(LineCollection(np.concatenate(edges), colors=[colour], linewidths=0.7))
+    axes.add_collection(LineCollection(np.concatenate(edges), colors=[colour], linewidths=0.7), autolim=False)
 
 
 def _legend_height(axes) -> float:

@@ -344,17 +344,18 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     columns = list(plane)
     depth = ({0, 1, 2} - set(plane)).pop()
     mirrors = [polygon[:, columns] for polygon in drawing.mirrors]
-    axes.add_collection(PolyCollection(mirrors, facecolors=(*MIRROR_COLOUR, 0.15), edgecolors="none"))
+    axes.add_collection(PolyCollection(mirrors, facecolors=(*MIRROR_COLOUR, 0.15), edgecolors="none"), autolim=False)
     for edges, style in ((drawing.mirror_edges, "-"), (drawing.mirror_cuts, DASHES)):
         axes.add_collection(LineCollection([edge[:, columns] for edge in edges], colors=MIRROR_COLOUR, linewidths=0.8,
-                                           linestyles=[style]))
+                                           linestyles=[style]), autolim=False)
     for count, segments in reversed(drawing.segments.items()):
         axes.add_collection(LineCollection(segments[:, :, columns], colors=_colour(count), linewidths=0.5,
-                                           alpha=_ray_opacity(segments)))
+                                           alpha=_ray_opacity(segments)), autolim=False)
     toward_viewer = 1.0 if depth == 2 else -1.0
     order = np.argsort(toward_viewer * _middles(drawing.bodies, depth), kind="stable")
     axes.add_collection(PolyCollection(_of_equal_length(drawing.bodies)[order][:, :, columns],
-                                       facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="none"))
+                                       facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="none"),
+                        autolim=False)
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])

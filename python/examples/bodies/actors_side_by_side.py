@@ -39,7 +39,7 @@ def draw(axes, name, actor, left, ground):
     order = np.argsort(-faces[:, :, 1].mean(axis=1))
     shift = left - faces[..., 0].min()
     axes.add_collection(PolyCollection(faces[order][:, :, [0, 2]] + [shift, ground], facecolors=shades[order],
-                                       edgecolors=shades[order], linewidths=0.1))
+                                       edgecolors=shades[order], linewidths=0.1), autolim=False)
     right = shift + faces[..., 0].max()
     axes.text(0.5 * (left + right), ground - 0.15, name, ha="center", va="top", fontsize=7.5)
     return max(right + 0.5, left + 2.3)

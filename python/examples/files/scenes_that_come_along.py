@@ -28,7 +28,8 @@ def draw(axes, scene, radar):
         lies = np.ptp(corners[..., 2]) < FLAT
         color = "0.9" if lies else plt.get_cmap("tab10")(index % 10)
         axes.add_collection(PolyCollection(corners[:, :, :2], facecolors=color, edgecolors=color, linewidths=0.6,
-                                           zorder=1 if lies else 2))
+                                           zorder=1 if lies else 2), autolim=False)
+        axes.update_datalim(corners[:, :, :2].reshape(-1, 2))
         if not lies:
             middle = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
             axes.plot(*middle[:2], ".", color=color, markersize=4, zorder=3)

@@ -240,8 +240,9 @@ def test_the_smoothest_is_that_of_the_dense_equations():
     np.testing.assert_allclose(residual, weight * force, atol=1e-9)
 
 
+PERSON_AT_0 = '<person id="a" x="0" y="0" angle="90"/>'
 WALK = '<timestep time="{0}">\n<person id="a" x="{0}" y="0" angle="90"/></timestep>\n'.format
-TWICE = "<fcd-export>\n" + WALK(0) + WALK(1) + WALK(2).replace("</", '\n<person id="a" x="0" y="0" angle="90"/></') + "</fcd-export>"
+TWICE = f'<fcd-export>\n{WALK(0)}{WALK(1)}{WALK(2).replace("</", chr(10) + PERSON_AT_0 + "</")}</fcd-export>'
 WRONG = {
     "a.csv": [("", "must name columns"), ("a,b\n1,2\n", "line 1: must name columns"), ("t,x,y\n", "holds no positions"),
               ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: x: must be a number"), ("t,x,y\n0,0,0\n1,5\n", "line 3: must have at least 3"),

@@ -71,8 +71,8 @@ void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSetting
                        paths.num_paths(), " paths; 'interpolated' is quick, with phases to phase_tolerance"));
 }
 
-// Binds call(paths, radar, settings, progress, extra...) with the settings of a signal behind its own arguments. A radar that
-// is None is that of the trace.
+// Binds call(paths, radar, settings, progress, extra...) with the settings of a signal behind its own arguments. A radar
+// that is None is that of the trace.
 template <class Result, class... Extra, class... Names>
 void def_signal(py::module_& m, const char* name, const char* doc,
                 Result (*call)(const Paths&, const Radar&, const CubeSettings&, const py::object&, Extra...),

@@ -11,8 +11,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from stub_types import IMPORTS as TYPE_IMPORTS
-from stub_types import with_known_types
+from stub_types import IMPORTS as TYPE_IMPORTS, with_known_types
 
 # The signatures that Python shows of the extension have no types: those of its docstrings have.
 RUN = """

@@ -15,11 +15,51 @@ from typing import TYPE_CHECKING
 
 from . import actors, plots
 from ._core import (
-    AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap,
-    CosinePower, Curve, CurveMotion, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint,
-    KeyframeMotion, Layer, LinearMotion, Material, Mesh, MorphTargets, Motion, ObjectValidity, Paths, Radar, RangeAzimuth,
-    RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame, TraceStatistics, Validity,
-    ValidityShares, VertexSequence, VirtualArray, __version__, boltzmann, speed_of_light,
+    AngleEstimates,
+    AngleSpectrum,
+    Antenna,
+    AntennaPattern,
+    BeamPower,
+    CfarResult,
+    ChirpSequence,
+    CoplanarOverlap,
+    CosinePower,
+    Curve,
+    CurveMotion,
+    Deformation,
+    DeviceError,
+    Family,
+    FileError,
+    GainTable,
+    Isotropic,
+    Joint,
+    KeyframeMotion,
+    Layer,
+    LinearMotion,
+    Material,
+    Mesh,
+    MorphTargets,
+    Motion,
+    ObjectValidity,
+    Paths,
+    Radar,
+    RangeAzimuth,
+    RangeDoppler,
+    ReceivedPower,
+    Renewal,
+    Selection,
+    SignalProbe,
+    Skin,
+    Stratum,
+    TraceFrame,
+    TraceStatistics,
+    Validity,
+    ValidityShares,
+    VertexSequence,
+    VirtualArray,
+    __version__,
+    boltzmann,
+    speed_of_light,
 )
 from .actors import Actor, Part
 from .arguments.settings import LabelSettings, SignalSettings, TraceSettings
@@ -35,11 +75,17 @@ from .frame.simulate import simulate
 from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .guard import Check, GuardWarning, check_rays, check_signal
 from .in_time import (
-    AngleTime, RangeTime, Spectrogram, SpectrogramLabels, angle_time, range_time, spectrogram, spectrogram_labels,
+    AngleTime,
+    RangeTime,
+    Spectrogram,
+    SpectrogramLabels,
+    angle_time,
+    range_time,
+    spectrogram,
+    spectrogram_labels,
 )
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, save_label_images
 from .live import Live, LiveView, Watch
-from .tracing.around_corners import AroundCorner, around_corners
 from .paths.cells import PathCells, path_cells
 from .paths.families import Families, families
 from .paths.powers import received_power, received_powers
@@ -49,8 +95,8 @@ from .paths.visibility import ObjectVisibility, VisibilityFromEnd, visibility
 from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
 from .scene.foreign import mesh_from
-from .scene.interferers import Interferer
 from .scene.found_objects import find_objects
+from .scene.interferers import Interferer
 from .scene.large_planes import mark_mirrors
 from .scene.materials import materials
 from .scene.meshes import load_mesh, load_meshes
@@ -72,6 +118,7 @@ from .spectra.angles import angle_fft, beamform, compensate_tdm, estimate_angles
 from .spectra.clutter_removal import remove_clutter
 from .spectra.music import music
 from .spectra.range_doppler import cfar, range_doppler
+from .tracing.around_corners import AroundCorner, around_corners
 from .tracing.tessellation import TessellationWarning
 from .tracing.traces import mie_rcs, rcs, trace
 from .tracing.validity import renew, validity
@@ -79,9 +126,11 @@ from .tracks import Tracks, track
 from .trajectories import Lane, Trajectory, read_trajectories
 from .transmit import demultiplex
 from .truth import Truth
-from .frame.truth import truth  # the function, which comes behind the package of its name: type checkers take the last one
 from .viewing.viewer import plot_rays, view
 from .weather import Weather
+
+# isort: split
+from .frame.truth import truth  # the function, which comes behind the package of its name: type checkers take the last one
 
 __all__ = [
     "Actor", "Adc", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "AroundCorner", "BeamPower",

@@ -24,8 +24,8 @@ from echopath.base.text.mesh_names import object_of
 from echopath.live.watch import FEWEST_PREVIEW_RAYS
 from echopath.paths.subset import strongest, subset
 from echopath_viewer.model import CellBox, Filters, from_file
-from echopath_viewer.model.maps.attribution import Attribution
 from echopath_viewer.model.frames.live_session import live_of, session_of_view
+from echopath_viewer.model.maps.attribution import Attribution
 from echopath_viewer.model.view_state import state_of
 from echopath_viewer.window import MainWindow
 from echopath_viewer.window.files.demo import NUM_RAYS, simulate_demo

@@ -1,8 +1,9 @@
 """Paths written by hand over a small street, and random expressions over it, for tests that know the answer."""
 import random
 
-import echopath as ep
 import numpy as np
+
+import echopath as ep
 
 GROUPS = ["street", "pedestrian", "pedestrian/arms"]
 MESHES = ["street/wall_left", "street/wall_right", "street/floor", "pedestrian/torso", "pedestrian/arms/left",

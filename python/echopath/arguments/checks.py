@@ -19,7 +19,18 @@ from .keywords import refuse_misplaced, refuse_unknown
 from .number_rules import LARGEST_COUNT, Rule, carrier, count, positive, real, seed
 from .shown import refused, shown
 from .word_rules import (
-    MapWindow, Window, choice, file, flag, flag_or_auto, is_writable, map_window, number_or_auto, one_of, path, text,
+    MapWindow,
+    Window,
+    choice,
+    file,
+    flag,
+    flag_or_auto,
+    is_writable,
+    map_window,
+    number_or_auto,
+    one_of,
+    path,
+    text,
     window,
 )
 

@@ -15,10 +15,21 @@ from typing import ClassVar, Literal, TypedDict, TypeVar, dataclass_transform
 
 from .. import _core
 from .checks import (
-    COMMON, LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, number_or_auto, one_of, optional, positive, real,
+    COMMON,
+    LARGEST_COUNT,
+    MapWindow,
+    Rule,
+    count,
+    flag,
+    flag_or_auto,
+    map_window as window_rule,
+    number_or_auto,
+    one_of,
+    optional,
+    positive,
+    real,
+    seed as seed_rule,
 )
-from .checks import map_window as window_rule
-from .checks import seed as seed_rule
 from .effects import Choices, effects_rule
 from .keywords import known_keywords, refuse_unknown
 from .objects import Objects, objects_rule

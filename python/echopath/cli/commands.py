@@ -9,8 +9,8 @@ from ..base.storage.files import require_writable
 
 
 def demo(options) -> None:
-    from .demo import run_demo
     from ..base.process.progress import progress_bars
+    from .demo import run_demo
 
     require_writable(options.out, "--out")
     if options.view:
@@ -35,15 +35,15 @@ def view(options) -> None:
 
 
 def run(options) -> None:
-    from . import report
     from ..base.process.progress import progress_bars
     from ..frame.unresolved import unresolved_of_frame
-    from .resumable import print_resumable
-    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
-    from .run_sequence import is_sequence, require_no_others, run_sequence
     from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
     from ..scene_file import load_scene
     from ..scene_file.lines import settings_told
+    from . import report
+    from .resumable import print_resumable
+    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
+    from .run_sequence import is_sequence, require_no_others, run_sequence
     from .typed_names import typed_arguments
 
     out = Path(options.out)
@@ -92,8 +92,8 @@ def info(options) -> None:
 
 
 def scene(options) -> None:
-    from .model_info import describe_model
     from ..scene_file.write import write_scene_file
+    from .model_info import describe_model
 
     out = Path(options.out)
     if out.suffix.lower() != ".toml":
@@ -104,8 +104,8 @@ def scene(options) -> None:
 
 def labels(options) -> None:
     from ..arguments.settings import LabelSettings
-    from .labels import label_file, objects_of_options
     from ..base.process.progress import progress_bars
+    from .labels import label_file, objects_of_options
 
     require_writable(options.out, "--out")
     settings = LabelSettings(objects=objects_of_options(options.object), plane=options.plane,
@@ -133,11 +133,36 @@ def dataset_report(options) -> None:
 
 
 def bench(options) -> None:
-    from ..bench import (actors, certificate, crowd, dataset, hard, labels, live, measured, published, receiver, replay,
-                         run_actors, run_certificate, run_crowd, run_dataset, run_labels, run_live, run_measured, run_physics,
-                         run_published, run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
-    from ..bench.physics import report
     from ..base.process.progress import progress_bars
+    from ..bench import (
+        actors,
+        certificate,
+        crowd,
+        dataset,
+        hard,
+        labels,
+        live,
+        measured,
+        published,
+        receiver,
+        replay,
+        run_actors,
+        run_certificate,
+        run_crowd,
+        run_dataset,
+        run_labels,
+        run_live,
+        run_measured,
+        run_physics,
+        run_published,
+        run_receiver,
+        run_replay,
+        run_speed,
+        run_worlds,
+        speed,
+        worlds,
+    )
+    from ..bench.physics import report
 
     works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
              "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),

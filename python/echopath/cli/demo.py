@@ -7,8 +7,8 @@ from pathlib import Path
 import echopath as ep
 
 from ..arguments.part_names import REST
-from ..base.storage.data_folder import data_folder
 from ..base.process.stages import StageClock
+from ..base.storage.data_folder import data_folder
 from ..frame.frame import Frame
 from ..scene_file import load_scene
 from ..signals.measures import EXTENT_BELOW_PEAK_DB, residual

@@ -9,8 +9,8 @@ import echopath as ep
 
 from .. import dataset
 from ..arguments.names import first_names
-from ..base.text.counts import counted
 from ..base.numerics.decibels import in_dbm
+from ..base.text.counts import counted
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
 from ..frame_file.container import FRAME, SEQUENCE, has_maps, has_paths, kind_of

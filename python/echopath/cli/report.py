@@ -6,8 +6,8 @@ import textwrap
 import numpy as np
 
 from ..arguments.names import first_names
-from ..base.text.counts import counted, named
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
+from ..base.text.counts import counted, named
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words

@@ -1,8 +1,8 @@
 """Simulates a scene file and writes the frame and its pictures."""
 from __future__ import annotations
 
-import itertools
 import dataclasses
+import itertools
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -11,8 +11,8 @@ import echopath as ep
 
 from .. import plots
 from ..arguments.part_names import LEAKAGE, REST
-from ..base.text.counts import counted
 from ..base.process.stages import StageClock
+from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .. import plots
-from ..base.text.counts import counted
 from ..base.process.progress import progress_bars
+from ..base.text.counts import counted
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame.unresolved import unresolved_of_frame
 from ..scene_file import SceneFile

@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 from ..base.process.callers import warn_user
-from ..base.text.counts import counted
 from ..base.process.work_at_hand import work_at_hand
-
+from ..base.text.counts import counted
 
 _QUOTED = re.compile(r"('[^']*')")
 _NUMBER = re.compile(r"\d[\d.,]*(?:e[-+]?\d+)?")

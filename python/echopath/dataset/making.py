@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import _core
-from ..arguments.checks import array, checked, count, flag, optional, refused, text
-from ..arguments.checks import path as file_or_folder
-from ..base.text.counts import counted
+from ..arguments.checks import array, checked, count, flag, optional, path as file_or_folder, refused, text
 from ..base.storage.files import require_writable
+from ..base.text.counts import counted
 from ..sequence.folder import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address
@@ -23,8 +22,7 @@ from .cluster import in_dask
 from .folder import SceneRecord, prepare_folder, read_or_nothing, read_record, scene_name, write_manifest
 from .scene_work import is_done, tidy
 from .template import Template
-from .unresolved import NAME as UNRESOLVED
-from .unresolved import UnresolvedEchoes, unresolved_in
+from .unresolved import NAME as UNRESOLVED, UnresolvedEchoes, unresolved_in
 from .workers import Done, forget, in_processes, in_this_process
 
 _LOOKED_AT, _BUILT = 1000, 8  # scenes at most that are drawn, and made ready to trace, before the first frame

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arguments.checks import anything, array, checked, optional, refused
-from ..arguments.checks import path as folder_rule
+from ..arguments.checks import anything, array, checked, optional, path as folder_rule, refused
 from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps

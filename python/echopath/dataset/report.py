@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import checked
-from ..arguments.checks import path as file_or_folder
+from ..arguments.checks import checked, path as file_or_folder
 from ..base.numerics.decibels import in_dbm
 from ..base.storage.files import write_texts
 from ..paths.resolution import RESOLVED_DB

@@ -14,15 +14,21 @@ from ..base.process.callers import warn_user
 from ..base.storage.files import write_texts
 from ..frame.frame import Frame
 from ..sequence import Sequence
-from ..sequence.folder import NAME as CONTENTS
-from ..sequence.folder import frame_path
+from ..sequence.folder import NAME as CONTENTS, frame_path
 from ..sequence.keep import Keep
 from .folder import (
-    DRAWN, RECORD, SceneRecord, checksum, damaged_files, read_or_nothing, read_record, scene_folder, write_record,
+    DRAWN,
+    RECORD,
+    SceneRecord,
+    checksum,
+    damaged_files,
+    read_or_nothing,
+    read_record,
+    scene_folder,
+    write_record,
 )
 from .template import Template
-from .unresolved import NAME as UNRESOLVED
-from .unresolved import unresolved_in, write_unresolved
+from .unresolved import NAME as UNRESOLVED, unresolved_in, write_unresolved
 
 _CLAIM, _BEGUN = ".claim", ".begun"
 _MOST_DEATHS = 2  # of workers of one run at one scene

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..arguments.names import first_names
-from ..base.text.counts import counted
 from ..base.storage.files import write_texts
+from ..base.text.counts import counted
 from ..frame.unresolved import unresolved_of_frame
 from ..paths.resolution import RESOLVED_DB
 

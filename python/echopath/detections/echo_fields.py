@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
+from ..base.process.progress import with_progress
 from ..base.radar.antennas import look_of
 from ..base.radar.chirps import chirps_duration
-from ..base.process.progress import with_progress
 from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of

@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..base.process.callers import warn_user
 from ..base.numerics.decibels import in_dbm
+from ..base.process.callers import warn_user
 
 # A quarter of the cells of thermal noise alone has less than .29 of its mean power, of several channels more; clutter adds to
 # it. Maps of the fewest cells keep far above this share.

@@ -5,8 +5,8 @@ import numpy as np
 
 from .._core import FileError
 from ..arguments.checks import file
-from ..base.storage.files import written_whole
 from ..base.process.libraries import needed_module
+from ..base.storage.files import written_whole
 
 # Of the detections, as PCD has them; LAS has them, and the ratio to the noise, as extra dimensions.
 _PLACE_AND_SPEED = ("velocity", "range", "azimuth", "elevation")

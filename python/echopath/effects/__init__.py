@@ -5,9 +5,19 @@ from .. import _core
 from ..arguments.checks import checked
 from ..arguments.effects import Choices
 from ..arguments.settings import (
-    Edges, Evaluate, FaintPower, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
+    Edges,
+    Evaluate,
+    FaintPower,
+    Footprint,
+    Polarization,
+    Replay,
+    Retrace,
+    Sampler,
+    Scatterers,
+    SignalSettings,
+    TraceSettings,
 )
-from . import surfaces, motion, weather, interference, radar, sampling  # each adds its rules, in this order
+from . import interference, motion, radar, sampling, surfaces, weather  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.

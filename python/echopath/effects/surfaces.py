@@ -7,8 +7,8 @@ import numpy as np
 
 from .. import _core
 from .._core import speed_of_light
-from ..base.text.counts import counted
 from ..base.numerics.decibels import in_dbm
+from ..base.text.counts import counted
 from ..scene.sheets import sheet_coefficients
 from ..tracing.edges import edges_matter, strongest_edge
 from ..tracing.lost_rays import unfollowed_frusta, unfollowed_sheets

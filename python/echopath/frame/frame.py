@@ -10,10 +10,10 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import SignalSettings
-from ..base.text.counts import counted
 from ..base.classes.known_attributes import known_attributes
 from ..base.classes.made_by import made_by
 from ..base.process.stages import Stage
+from ..base.text.counts import counted
 from ..effects import of_paths
 from ..paths.families import families as find_families
 from ..paths.resolution import mean_powers, unresolved_of

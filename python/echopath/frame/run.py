@@ -9,8 +9,7 @@ from ..arguments.checks import refused
 from ..arguments.part_names import REST, require_names
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.process.stages import StageClock
-from ..detections.checks import RULES as DETECTION_RULES
-from ..detections.checks import checked_keywords
+from ..detections.checks import RULES as DETECTION_RULES, checked_keywords
 from ..guard import check_planes, check_rays, check_signal, warn_of
 from ..labels.annotate import label_frame, owners_of_cubes
 from ..labels.family_pass import FamilyPass
@@ -24,6 +23,7 @@ from ..signals.beside import cubes_beside
 from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
 from ..signals.part_pass import takes_a_pass
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
+from ..signals.rain_echoes import has_rain_echoes, rain_cube
 from ..signals.silence import warn_of_silence
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..tracing.traces import keep_geometry
@@ -31,7 +31,6 @@ from ..transmit import coded_cube, is_coded, synthesize_slots
 from ..transmit.signals import has_steps
 from ..truth import truth_of_frame
 from ..truth.asked import truth_keywords
-from ..signals.rain_echoes import has_rain_echoes, rain_cube
 from .detections import detect_frame
 from .frame import Frame, with_spectra
 from .memory import require_memory

@@ -7,8 +7,20 @@ from .. import _core
 from ..arguments.checks import MapWindow, Progress, anything, checked, flag
 from ..arguments.effects import Choices
 from ..arguments.settings import (
-    Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
-    SignalSettings, TraceSettings, settings_among,
+    Edges,
+    Evaluate,
+    FaintPower,
+    Footprint,
+    LabelSettings,
+    Method,
+    Polarization,
+    Replay,
+    Retrace,
+    Sampler,
+    Scatterers,
+    SignalSettings,
+    TraceSettings,
+    settings_among,
 )
 from ..signals.interference_of_frame import warn_of_absent_interferers
 from ..signals.parts import Selections

@@ -22,8 +22,8 @@ from tokenize import TokenError
 import numpy as np
 
 from .. import _core
-from ..base.storage.files import flush, written_whole
 from ..base.process.interrupts import heed, interrupts_are_kept
+from ..base.storage.files import flush, written_whole
 from ..base.storage.locks import is_at, takes
 from .h5 import LAYOUT, SPARE_BYTES
 from .h5_items import library

@@ -9,9 +9,9 @@ from typing import get_args
 import numpy as np
 
 from .. import _core
-from ..arguments.part_names import REST
 from ..arguments.checks import an, anything, checked, real, refused
 from ..arguments.keywords import parameters_of
+from ..arguments.part_names import REST
 from ..arguments.settings import Evaluate, Replay, Retrace
 from ..base.process.interrupts import interrupts_are_kept
 from ..detections.uneven_fields import echo_fields
@@ -23,8 +23,19 @@ from ..transmit import is_coded, signal_shape
 from .checks import read_checks, write_checks
 from .container import file_with_paths, new_file
 from .detections import read_detections, write_detections
-from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
-                 write_attribute, write_stack, write_texts)
+from .h5 import (
+    blames_group,
+    blaming,
+    length_of,
+    read_array,
+    read_attribute,
+    read_group,
+    read_texts,
+    write_array,
+    write_attribute,
+    write_stack,
+    write_texts,
+)
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar

@@ -16,7 +16,17 @@ import numpy as np
 from .. import _core
 from ..base.process.interrupts import heed
 from .h5_items import (
-    BLOCK_BYTES, is_chunked, item_of, library, memory_type, name_of, new_dataset, read_blocks, scalar, shape_of, text_types,
+    BLOCK_BYTES,
+    is_chunked,
+    item_of,
+    library,
+    memory_type,
+    name_of,
+    new_dataset,
+    read_blocks,
+    scalar,
+    shape_of,
+    text_types,
     write_blocks,
 )
 

@@ -5,8 +5,17 @@ import numpy as np
 
 from .. import _core
 from ..paths.subset import HIT, HIT_FIELDS, subset
-from .h5 import (blames_group, length_of, read_array, read_attribute, read_group, read_texts, write_array, write_attribute,
-                 write_texts)
+from .h5 import (
+    blames_group,
+    length_of,
+    read_array,
+    read_attribute,
+    read_group,
+    read_texts,
+    write_array,
+    write_attribute,
+    write_texts,
+)
 from .seeds import read_seed, write_seed
 
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,

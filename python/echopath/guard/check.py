@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import dataclasses
 
-from ..base.process.callers import warn_user
 from ..base.classes.made_by import made_by
+from ..base.process.callers import warn_user
 
 
 class GuardWarning(UserWarning):

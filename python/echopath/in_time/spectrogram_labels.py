@@ -10,9 +10,9 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked, optional, refused
 from ..arguments.settings import LabelSettings
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields, is_same
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..labels.part_cells import PartCells, floor_over, masks_of
 from ..presentation.xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from ..arguments.checks import an, checked, path, refused, text
-from ..base.text.colours import colours_of
 from ..base.storage.files import written_whole
 from ..base.storage.origin import origin_texts, png_info
+from ..base.text.colours import colours_of
 from .ghost_names import ghost_name
 from .labels import Labels
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..arguments.checks import choice
 from ..arguments.part_names import BESIDE, REST
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..paths.resolution import Interval
 from ..paths.visibility import HIDDEN_SHARE
 from .dataset import dataset_of

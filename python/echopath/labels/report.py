@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.text.counts import counted, named
 from ..base.numerics.decibels import in_dbm
+from ..base.text.counts import counted, named
 from ..paths.visibility import occluder_words
 
 

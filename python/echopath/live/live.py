@@ -11,11 +11,21 @@ from typing import NoReturn
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, count, flag, positive, refused
 from ..arguments.settings import (
-    MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings,
+    MOST_RAYS,
+    Edges,
+    Evaluate,
+    FaintPower,
+    Footprint,
+    Method,
+    Polarization,
+    Replay,
+    Sampler,
+    Scatterers,
+    SignalSettings,
     TraceSettings,
 )
-from ..base.text.counts import counted
 from ..base.classes.known_attributes import known_attributes
+from ..base.text.counts import counted
 from ..scene.lifetimes import scene_in_frame
 from ..scene.scene import Scene
 from ..signals.parts import as_partition

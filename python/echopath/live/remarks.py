@@ -4,11 +4,11 @@ from __future__ import annotations
 from ..base.process.callers import warn_user
 from ..scene.bodies import warn_of_bodies
 from ..scene.scene import Scene
+from ..signals.rain_echoes import has_rain_echoes
 from ..signals.silence import warn_of_silence
 from ..tracing.edge_paths import warn_of_edge_paths
 from ..tracing.lost_rays import warn_of_record
 from ..tracing.tessellation import warn_of_coarse_meshes
-from ..signals.rain_echoes import has_rain_echoes
 from .kept_signal import KeptSignal, Update
 
 

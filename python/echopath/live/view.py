@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core
-from ..base.text.counts import counted
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..signals.parts import Parts
 
 

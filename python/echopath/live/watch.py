@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..arguments.checks import anything, checked, optional, positive
+from ..base.classes.made_by import made_by
+from ..base.process.callers import at_line_of_user
 from .changes import Changes
 from .view import LiveView
-from ..base.process.callers import at_line_of_user
-from ..base.classes.made_by import made_by
 
 if TYPE_CHECKING:
     from .live import Live

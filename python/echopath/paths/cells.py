@@ -7,11 +7,11 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
-from ..base.process.callers import warn_user
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
+from ..base.process.callers import warn_user
 from ..base.radar.velocities import ambiguity_of
+from ..base.text.counts import counted
 from ..transmit.signals import chirp_of, step_names
 
 TURNING_STEP = 0.125  # chirps, over which the phase of an amplitude is followed: by less than half a turn

@@ -10,9 +10,9 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked
 from ..arguments.objects import Objects, named_globs, objects_rule
-from ..base.text.counts import counted
 from ..base.classes.equality import is_same
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 
 NO_OBJECT = -1  # index of the object of a path that touches none
 

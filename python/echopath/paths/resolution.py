@@ -11,8 +11,8 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, real
 from ..arguments.objects import Objects, objects_rule
-from ..base.numerics.decibels import in_dbm
 from ..base.classes.made_by import made_by
+from ..base.numerics.decibels import in_dbm
 from ..scene.large_planes import large_planes
 from .families import families as families_of
 from .visibility import visibility_in_trace

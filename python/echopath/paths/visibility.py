@@ -8,8 +8,8 @@ from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
 from ..arguments.motions import require_motion
 from ..arguments.objects import Objects, named_globs, objects_rule
-from ..base.numerics.golden import golden_place
 from ..base.classes.made_by import made_by
+from ..base.numerics.golden import golden_place
 from ..scene.lifetimes import scene_at
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden

@@ -8,7 +8,13 @@ from .drive import Drive, Driving, film_pictures, plot_drive
 from .frames import draw_frame
 from .labels import draw_labels, plot_ghosts, plot_labels
 from .maps import (
-    colour_limits, draw_range_doppler, part_title, plot_overview, plot_partition, plot_range_doppler, power_dbm,
+    colour_limits,
+    draw_range_doppler,
+    part_title,
+    plot_overview,
+    plot_partition,
+    plot_range_doppler,
+    power_dbm,
 )
 from .part_powers import plot_part_powers
 from .points import draw_detections

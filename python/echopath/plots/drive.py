@@ -8,8 +8,19 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    CELLS_OF_MARGIN, MAP_SIZE, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits,
-    draw_level, half_step, limits_above, margin_of, noise_peak_db,
+    CELLS_OF_MARGIN,
+    MAP_SIZE,
+    RANGE_LABEL,
+    RANGE_MARGIN,
+    VELOCITY_LABEL,
+    VELOCITY_MARGIN,
+    cells_of_scene,
+    chosen_limits,
+    draw_level,
+    half_step,
+    limits_above,
+    margin_of,
+    noise_peak_db,
 )
 from .style import MAP_COLOURS, cell_edges, colour_bar, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time, show_within

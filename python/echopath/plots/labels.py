@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import choice, refused
-from ..base.text.counts import counted
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
+from ..base.text.counts import counted
 from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step

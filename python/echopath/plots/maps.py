@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.part_names import REST
 from ..arguments.checks import optional, real, refused
+from ..arguments.part_names import REST
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, require_drawable, set_title

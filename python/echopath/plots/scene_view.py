@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import LARGEST_COUNT, an, array
-from ..arguments.checks import count as whole
+from ..arguments.checks import LARGEST_COUNT, an, array, count as whole
 from ..arguments.objects import Objects, named_globs
 from ..base.text.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.text.colours import colours_of
 from ..base.storage.files import written_whole
 from ..base.storage.origin import origin_texts
+from ..base.text.colours import colours_of
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes, Figure, SubFigure

@@ -7,8 +7,15 @@ import numpy as np
 
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from .maps import (
-    DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
-    limits_above, margin_of,
+    DYNAMIC_RANGE_DB,
+    MARGIN_OVER_MEDIAN_DB,
+    RANGE_LABEL,
+    VELOCITY_LABEL,
+    VELOCITY_MARGIN,
+    chosen_limits,
+    half_step,
+    limits_above,
+    margin_of,
 )
 from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours, require_drawable
 

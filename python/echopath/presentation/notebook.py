@@ -9,8 +9,8 @@ import html
 
 import numpy as np
 
-from ..base.text.counts import counted
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
+from ..base.text.counts import counted
 from ..receiver.settings import receiver_text
 from ..scene.interferers import interferers_of, interferers_text
 from ..signals.same_radar import WAVEFORM_LISTS

@@ -7,8 +7,8 @@ import csv
 import numpy as np
 
 from ..arguments.checks import file
-from ..base.storage.files import written_whole
 from ..base.process.libraries import needed_module
+from ..base.storage.files import written_whole
 from ..paths.edge_hits import edge_hits
 from ..paths.families import families
 

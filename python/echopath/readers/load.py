@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import (
-    Rule, carrier, checked, choice, flag, optional, path as file_or_folder, real, refused, text)
+from ..arguments.checks import Rule, carrier, checked, choice, flag, optional, path as file_or_folder, real, refused, text
 from ..base.process.callers import warn_user
 from ..scene.meshes import UNIT
 from .material_names import Meaning, checked_materials, note_of_unused

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arguments.checks import anything, checked, real, vector
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
+from ..base.text.counts import counted
 
 if TYPE_CHECKING:
     from ..trajectories import Trajectory

@@ -6,9 +6,9 @@ import math
 import numpy as np
 
 from .. import _core
+from ..base.numerics.decibels import in_dbm
 from ..base.process.callers import warn_user
 from ..base.text.counts import at_least, counted
-from ..base.numerics.decibels import in_dbm
 from ..transmit import radar_of_noise
 from .filters import beat_frequencies, has_filters, response
 from .settings import Adc

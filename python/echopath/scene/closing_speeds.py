@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.radar.antennas import middle_of_antennas
 from ..base.numerics.golden import golden_place
 from ..base.numerics.rates import step_within
+from ..base.radar.antennas import middle_of_antennas
 
 NUM_TIMES = 8  # of a frame, at which what turns is looked at: no fractions of it, so that no turn repeats them
 

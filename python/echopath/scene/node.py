@@ -7,9 +7,9 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import flag, real, refused, vector
-from ..base.text.counts import counted
 from ..base.classes.known_attributes import known_attributes
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..trajectories.trajectory import Trajectory
 from . import placements
 from .materials import known_material

@@ -8,10 +8,10 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, anything, array, carrier, checked, flag, real
-from ..base.radar.antennas import polarization_across
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
+from ..base.radar.antennas import polarization_across
+from ..base.text.counts import counted
 
 
 @made_by("ep.sheet_coefficients")

@@ -12,13 +12,13 @@ from ..arguments.checks import an, anything, checked, optional, real, refused, t
 from ..arguments.names import first_names
 from ..arguments.objects import listed
 from ..arguments.shown import writable
-from ..base.text.counts import counted
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..base.text.node_names import fit_name, unique
 from ..readers.model import Model
 from ..trajectories.arguments import optional_span
-from ..trajectories.kinds import of_kind, usual_kind, warn_of_unused_kinds
 from ..trajectories.files.track_file import W, on_the_way, warn_of_nobody
+from ..trajectories.kinds import of_kind, usual_kind, warn_of_unused_kinds
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 

@@ -5,8 +5,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..arguments.checks import checked
-from ..arguments.checks import path as file_or_folder
+from ..arguments.checks import checked, path as file_or_folder
 from ..readers.load import READ_RULES
 from ..readers.material_names import Meaning
 from ..readers.options import ReadOptions

@@ -16,8 +16,8 @@ from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
 from ..receiver.channels import require_channels
-from ..scene.interferers import Interferer
 from ..scene.found_objects import find_objects
+from ..scene.interferers import Interferer
 from ..scene.large_planes import mark_mirrors
 from ..scene.scene import Scene
 from ..sensor_files import load_radar

@@ -9,13 +9,13 @@ from ..arguments.names import first_names
 from ..scene.scene import Scene
 from ..scene.traffic import MakerOfKinds, chosen_of, object_names, put_traffic
 from ..trajectories import Trajectory
-from ..trajectories.kinds import of_kind, usual_kind
 from ..trajectories.files.rows import KeptRows
 from ..trajectories.files.track_file import TrackFile, Way, warn_of_nobody
+from ..trajectories.kinds import of_kind, usual_kind
 from .errors import ToldValueError, blamed
-from .traffic_shapes import traffic_shape
 from .tables.table import yaw_of
 from .tables.traffic_tables import TrafficTable
+from .traffic_shapes import traffic_shape
 
 
 class TrafficFiles:

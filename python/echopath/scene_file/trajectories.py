@@ -12,8 +12,8 @@ from ..trajectories.files.track_file import TrackFile, Way
 from .errors import blamed
 from .tables.object_tables import ObjectTable
 from .tables.radar_tables import RadarTable
-from .traffic import TrafficFiles
 from .tables.traffic_tables import TrafficTable
+from .traffic import TrafficFiles
 
 
 class Trajectories:

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import _core
-from ..arguments.checks import checked, flag, optional, refused, text
-from ..arguments.checks import count as count_rule
-from ..base.process.callers import warn_user
+from ..arguments.checks import checked, count as count_rule, flag, optional, refused, text
 from ..base.classes.made_by import made_by
+from ..base.process.callers import warn_user
 from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
 from .cfg import Command, Lines, read_lines

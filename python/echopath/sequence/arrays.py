@@ -11,8 +11,7 @@ from ..frame_file.container import our_file
 from ..frame_file.truth import truth_in
 from ..presentation.xarray_maps import axis, words_of, xarray_module
 from ..truth import Truth, joined
-from ..truth.arrays import coordinates
-from ..truth.arrays import variables as truth_variables
+from ..truth.arrays import coordinates, variables as truth_variables
 from .lazy_maps import maps_of, over_time
 
 

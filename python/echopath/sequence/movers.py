@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.numerics.rates import step_within
 from ..base.radar.antennas import ahead_of, middle_of_antennas
 from ..base.text.mesh_names import object_of
-from ..base.numerics.rates import step_within
 from ..signals.measures import STATIC_SPEED
 from ..truth.boxes import boxes_at
 

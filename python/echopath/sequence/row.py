@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, SupportsIndex, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments.checks import Progress, anything, checked, count, optional, real, refused, text
-from ..arguments.checks import path as path_rule
+from ..arguments.checks import Progress, anything, checked, count, optional, path as path_rule, real, refused, text
 from ..base.process.progress import with_progress
 from .record import start_time_of
 

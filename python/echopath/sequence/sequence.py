@@ -13,17 +13,28 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
-from ..arguments.checks import path as path_rule
+from ..arguments.checks import MapWindow, Progress, anything, checked, count, flag, one_of, path as path_rule, real, refused
 from ..arguments.effects import Choices
 from ..arguments.motions import require_motion
 from ..arguments.settings import (
-    Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
-    SignalSettings, TraceSettings, settings_among,
+    Edges,
+    Evaluate,
+    FaintPower,
+    Footprint,
+    LabelSettings,
+    Method,
+    Polarization,
+    Replay,
+    Retrace,
+    Sampler,
+    Scatterers,
+    SignalSettings,
+    TraceSettings,
+    settings_among,
 )
-from ..base.text.counts import counted
 from ..base.process.progress import automatic_bars
 from ..base.process.work_at_hand import at_work_on
+from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.run import WITHIN, FrameRun, Recorded, check_receiver
 from ..scene.lifetimes import warn_of_absence, warn_of_the_unseen

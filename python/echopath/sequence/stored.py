@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arguments.checks import checked, count, real
-from ..arguments.checks import path as path_rule
+from ..arguments.checks import checked, count, path as path_rule, real
 from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps

@@ -8,8 +8,8 @@ from ..arguments.effects import INTERFERENCE, Choices, is_on
 from ..arguments.motions import require_motion
 from ..arguments.settings import TraceSettings
 from ..base.process.callers import warn_user
-from ..base.radar.chirps import start_with_middle
 from ..base.radar.antennas import polarization_of
+from ..base.radar.chirps import start_with_middle
 from ..scene.interferers import interferers_of, interferers_within
 from ..scene.node import ALWAYS
 from ..scene.sheets import passed_field
@@ -19,7 +19,6 @@ from ..weather.weather import attenuation_of
 from .interference import interference
 from .interference_paths import powers_over_looks
 from .interference_ways import antennas_see_each_other, interference_radar, require_apart, require_own_channels
-
 
 _ROUNDING = 1e-9  # relative, of a lifetime that is the duration of a frame by another sum
 

@@ -6,8 +6,8 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked, real, refused
 from ..arguments.motions import require_motion
-from ..base.radar.antennas import polarization_across
 from ..base.numerics.rotations import matrices, product, quaternions
+from ..base.radar.antennas import polarization_across
 from ..receiver.channels import require_channels
 from .interference_paths import few_paths
 

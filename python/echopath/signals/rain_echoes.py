@@ -8,8 +8,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.effects import RAIN_ECHOES, Choices, is_on
-from ..base.radar.antennas import one_of_each_look
 from ..base.numerics.rotations import matrices
+from ..base.radar.antennas import one_of_each_look
 from ..paths.absent import NO_BATCH, NO_STRATUM
 from ..paths.subset import HIT
 from ..transmit import signal_shape

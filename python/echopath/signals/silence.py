@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.numerics.rotations import matrices
 from ..base.process.callers import warn_user
 from ..base.text.counts import counted
-from ..base.numerics.rotations import matrices
 
 
 def warn_of_silence(paths, radar, cube: np.ndarray, told: set[str] | None = None) -> None:

@@ -4,8 +4,20 @@ from __future__ import annotations
 from typing import Literal
 
 from .. import _core
-from ..arguments.checks import LARGEST_COUNT, ArrayLike, Progress, Window, array, checked, count, flag, one_of, optional, real
-from ..arguments.checks import window as window_rule
+from ..arguments.checks import (
+    LARGEST_COUNT,
+    ArrayLike,
+    Progress,
+    Window,
+    array,
+    checked,
+    count,
+    flag,
+    one_of,
+    optional,
+    real,
+    window as window_rule,
+)
 from ..arguments.gates import gate
 from .one_polarisation import warn_of_mixed_polarisations
 

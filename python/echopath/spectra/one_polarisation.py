@@ -1,8 +1,8 @@
 """Arrays whose channels are of several polarisations, which are no one array."""
 from __future__ import annotations
 
-from ..base.radar.antennas import mixes_polarisations
 from ..base.process.callers import warn_user
+from ..base.radar.antennas import mixes_polarisations
 
 
 def warn_of_mixed_polarisations(radar, function: str) -> None:

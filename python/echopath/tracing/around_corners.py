@@ -9,12 +9,12 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import Progress, checked, count, real
-from ..base.radar.chirps import start_with_middle
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
-from ..base.text.mesh_names import object_of
 from ..base.numerics.rotations import matrices
 from ..base.radar.antennas import polarization_of
+from ..base.radar.chirps import start_with_middle
+from ..base.text.mesh_names import object_of
 from ..paths.absent import NO_MESH
 from ..paths.resolution import Interval
 from ..paths.surface_points import SurfacePoints, surface_points

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import refused
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:

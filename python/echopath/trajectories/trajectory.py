@@ -10,8 +10,18 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text, vector
 from .arguments import (
-    GOES_ON, LATEST, NEAREST, RATE, SPACING, Outside, checked_headings, checked_path, checked_points, checked_speed,
-    checked_stops, checked_times,
+    GOES_ON,
+    LATEST,
+    NEAREST,
+    RATE,
+    SPACING,
+    Outside,
+    checked_headings,
+    checked_path,
+    checked_points,
+    checked_speed,
+    checked_stops,
+    checked_times,
 )
 from .knots import curve_through
 from .limits import Limits, over_distance

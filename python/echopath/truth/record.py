@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import LARGEST_COUNT, count, refused
-from ..base.text.counts import counted
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.numerics.rotations import quaternions
+from ..base.text.counts import counted
 from ..presentation.tables import make_table, write_csv
 from .fields import FIELDS, UNITS
 

@@ -5,8 +5,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.objects import named_globs
-from ..base.radar.antennas import centre_of
 from ..base.numerics.rates import radar_rate
+from ..base.radar.antennas import centre_of
 from ..paths.families import families
 from ..paths.visibility import visibility_in_trace
 from .boxes import boxes_at

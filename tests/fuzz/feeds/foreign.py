@@ -9,8 +9,8 @@ from random import Random
 import numpy as np
 
 import echopath as ep
-from fuzz.folder import memory_folder
 from fuzz.feeds.foreign_seeds import frame_text, seeds_by_suffix
+from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
 from fuzz.usd_trials import fork_trials
 

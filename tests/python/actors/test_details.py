@@ -5,10 +5,10 @@ import pickle
 
 import numpy as np
 import pytest
-from support.drives import WALK
 
 import echopath as ep
 from echopath.actors.following import Repeated
+from support.drives import WALK
 
 DRIVE = ep.Trajectory([(0, 0), (25, 0), (25, 25)], turn_radius=8.0, speed=7.0, stops=[(0, 0.3), (10, 0.5), (math.inf, 0)])
 TIMES = np.arange(0.0, 8.0, 0.5)

@@ -8,11 +8,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from support.files.scene_text import ANTENNAS, WAVEFORM
 
 import echopath as ep
 from echopath.trajectories.files.geodesy import east_north_up
 from echopath.trajectories.files.smoothing import _solved, smoothed
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 # Written by hand after the description of the format (sumo.dlr.de, "FCDOutput"): positions are those of the middle of the front
 # bumper, angles go clockwise from north.

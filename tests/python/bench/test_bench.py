@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench.physics import closed_forms, targets
-from echopath.bench.physics import DEFAULT, Variant, _point, _slope, plate_pairs
+from echopath.bench.physics import DEFAULT, Variant, _point, _slope, closed_forms, plate_pairs, targets
 from echopath.bench.physics.report import BEST, describe, verdicts
 from echopath.cli import main
 

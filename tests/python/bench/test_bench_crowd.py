@@ -6,8 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.bench import crowd
-from echopath.bench.crowd import coverage as crowd_coverage
-from echopath.bench.crowd import scenes
+from echopath.bench.crowd import coverage as crowd_coverage, scenes
 from echopath.bench.physics.closed_forms import FREQUENCY
 from echopath.cli import main
 from echopath.paths.resolution import Interval

@@ -7,8 +7,12 @@ import pytest
 
 import echopath as ep
 from echopath.bench import speed
-from echopath.bench.speed import (frames as speed_frames, retrace as speed_retrace, synthesis as speed_synthesis,
-                                  tracer as speed_tracer)
+from echopath.bench.speed import (
+    frames as speed_frames,
+    retrace as speed_retrace,
+    synthesis as speed_synthesis,
+    tracer as speed_tracer,
+)
 from echopath.cli import main
 from support.radars import build_radar
 

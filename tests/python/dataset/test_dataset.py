@@ -9,9 +9,9 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
-from echopath.dataset.classes import classes_of
 from echopath.cli import main
 from echopath.cli.info import describe_file
+from echopath.dataset.classes import classes_of
 from echopath.dataset.folder import SceneRecord, damaged_files, scene_folder, write_manifest
 from echopath.dataset.unresolved import UnresolvedEchoes, summary, unresolved_in
 from echopath.trajectories.files import rows

@@ -11,8 +11,16 @@ from matplotlib.transforms import Bbox
 import echopath as ep
 from echopath import plots
 from echopath.cli import run
-from echopath.plots import (colour_limits, plot_overview, plot_partition, plot_range_azimuth, plot_range_doppler, plot_scene,
-                            power_dbm, save_png)
+from echopath.plots import (
+    colour_limits,
+    plot_overview,
+    plot_partition,
+    plot_range_azimuth,
+    plot_range_doppler,
+    plot_scene,
+    power_dbm,
+    save_png,
+)
 from echopath.plots.clip import clip_triangles, outline
 from support.radars import build_radar
 

@@ -1,9 +1,9 @@
 """Clutter removal, MUSIC, and detections as point clouds."""
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
+from support.radars import build_radar
 
 C = ep.speed_of_light
 HALF = 0.5 * C / 77.5e9

@@ -6,7 +6,18 @@ import pytest
 
 import echopath as ep
 from support.scenes.edge_scenes import (
-    FREQUENCY, HEIGHT, INCH, WAVENUMBER, WIDTH, box, fields, on_edges, radar_at, scene_of, sheet, trace,
+    FREQUENCY,
+    HEIGHT,
+    INCH,
+    WAVENUMBER,
+    WIDTH,
+    box,
+    fields,
+    on_edges,
+    radar_at,
+    scene_of,
+    sheet,
+    trace,
 )
 
 FEW_RAYS = 2 ** 12

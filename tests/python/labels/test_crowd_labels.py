@@ -9,10 +9,10 @@ import echopath as ep
 from echopath.actors import shapes
 from echopath.arguments.settings import LabelSettings
 from echopath.labels import family_pass
-from echopath.labels.request import make_request
-from echopath.labels.left_out import LeftOut
 from echopath.labels.cell_owners import ALIKE, SHARED
+from echopath.labels.left_out import LeftOut
 from echopath.labels.powers import parts_by_rival
+from echopath.labels.request import make_request
 from support.hand_made import diffuse_paths
 
 SUM = 1e-12  # relative, of parts that add up

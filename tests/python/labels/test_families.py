@@ -2,9 +2,10 @@
 import pickle
 import random
 
-import echopath as ep
 import numpy as np
 import pytest
+
+import echopath as ep
 from echopath import _core
 from support.hand_made import hand_made_paths, make_street, random_expression, random_routes
 from support.radars import build_radar

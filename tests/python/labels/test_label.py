@@ -1,9 +1,10 @@
 """Selections: path expressions and their algebra against a slow matcher written from the grammar."""
 import random
 
-import echopath as ep
 import numpy as np
 import pytest
+
+import echopath as ep
 from echopath import _core
 from support.hand_made import GLOBS, MESHES, hand_made_paths, make_street, random_expression, random_routes
 from support.references.slow_matcher import Words, glob_takes, slow_matches

@@ -1,9 +1,10 @@
 """Which objects a radar can see, against geometry."""
 import gc
 
-import echopath as ep
 import numpy as np
 import pytest
+
+import echopath as ep
 from echopath.paths.visibility import _KEPT, appearing_in_frame, visibility_in_trace
 from echopath.tracing.traces import keep_geometry
 from support.radars import build_radar

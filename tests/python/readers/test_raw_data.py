@@ -18,8 +18,8 @@ def frame_of(sensor, azimuth=0.0, distance=2.0, speed=0.0, **keywords):
 
 
 def read_by_openradar(path, num_slots=64):
-    from mmwave.dataloader import DCA1000
     import mmwave.dsp as dsp
+    from mmwave.dataloader import DCA1000
 
     raw = np.fromfile(path, np.int16)
     adc = DCA1000.organize(raw.astype(np.float64), num_slots, 4, COUNT)

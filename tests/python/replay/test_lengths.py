@@ -1,12 +1,12 @@
 """Lengths from replay against an independent evaluation in NumPy, for everything that moves."""
 import numpy as np
 import pytest
+
+import echopath as ep
 from support.arm import make_arm
 from support.radars import build_radar
 from support.references import slow_lengths
 from support.shapes import quad
-
-import echopath as ep
 
 LENGTH_TOLERANCE = 1e-12  # m
 ROUGH = ep.Material(reflectivity=0.5, scattering=0.7)

@@ -5,9 +5,16 @@ import pytest
 import echopath as ep
 from support.references.reference import Reference
 from support.references.reference_cells import blocked
-from support.references.reference_scenes import (array_deviation, coherent_deviation, curved_deviation, curved_diffuse_deviation,
-                                                 diffuse_deviation, polarized_deviation, two_mirror_deviation,
-                                                 two_mirror_diffuse_deviation)
+from support.references.reference_scenes import (
+    array_deviation,
+    coherent_deviation,
+    curved_deviation,
+    curved_diffuse_deviation,
+    diffuse_deviation,
+    polarized_deviation,
+    two_mirror_deviation,
+    two_mirror_diffuse_deviation,
+)
 from support.shapes import METAL, WAVELENGTH, fields, make_radar, rectangle, scene_of, sphere
 
 pytestmark = pytest.mark.hard

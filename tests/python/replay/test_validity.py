@@ -8,7 +8,7 @@ import echopath as ep
 from echopath.base.storage.data_folder import data_folder
 from support import shapes
 from support.radars import build_radar
-from support.slides import TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over
+from support.slides import ROUGH, TRANSMITTER, Ball, Plane, excess_by_search, frozen, mirrors_over
 from support.validity_scenes import BALL, radar_of, scene_of
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m

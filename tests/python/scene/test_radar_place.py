@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.base.radar.chirps import start_with_middle
 from echopath.base.numerics.rates import radar_rate
+from echopath.base.radar.chirps import start_with_middle
 from echopath.signals import same_radar
 from support.radars import build_radar
 from support.references import slow_lengths

@@ -3,12 +3,12 @@ import h5py
 import numpy as np
 import pytest
 from scipy.special import ellipj, ellipkm1
+
+import echopath as ep
 from support.arm import BEND, ELBOW, LENGTH, arm_weights, make_arm, tube
 from support.radars import build_radar
 from support.references.slow_lengths import deformed
 from support.shapes import METAL, lambert
-
-import echopath as ep
 
 BLEND_TOLERANCE = 1e-12        # m: a few dozen operations on numbers of order 1
 SPLINE_TOLERANCE = 1e-8        # m: keyframes 5 ms apart, 5/384 h^4 times the fourth derivative (below 100 m/s^4)

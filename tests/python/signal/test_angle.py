@@ -8,10 +8,20 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from support.signals.arrays import (
-    C, DEGREE, HALF, LINE, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform,
-)
 from support.references import slow_beams
+from support.signals.arrays import (
+    DEGREE,
+    HALF,
+    LINE,
+    TARGET_RADIUS,
+    C,
+    at,
+    mimo,
+    scene_of_spheres,
+    spectrum_of,
+    three_by_four,
+    waveform,
+)
 
 # A sphere's echo comes from its point nearest to the antennas, within the footprint's error; beams of 7 to 30 degrees.
 DIRECTION_TOLERANCE = 0.15 * DEGREE

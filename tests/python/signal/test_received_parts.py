@@ -1,9 +1,9 @@
 """What a receiver makes of each part of a signal: the parts add up to what it gives, and each has its own faults."""
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
+from support.radars import build_radar
 
 RATE, COUNT, CHIRPS = 20e6, 128, 16
 SUM = 1e-12  # of the largest sample: rounding of a sum of parts

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
 from echopath.receiver.oscillator import Oscillator
 from echopath.receiver.slots import SlotTimes
 from echopath.transmit import code_signal
+from support.radars import build_radar
 from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 C = ep.speed_of_light

@@ -1,10 +1,10 @@
 """Codes of transmitters that send at once, and what undoes them."""
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
 from echopath.base.radar.chirps import chirp_period, chirps_duration
+from support.radars import build_radar
 
 C = ep.speed_of_light
 ROUNDING = 1e-12      # of sums of a few hundred terms, relative to the largest

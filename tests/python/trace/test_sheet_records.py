@@ -7,7 +7,6 @@ import pytest
 import echopath as ep
 from support.behind_sheets import GLASS, echo_of_ball, make_radar, make_scene, over_free
 
-
 # --- expressions, tables, files ---
 
 def test_expressions_see_passes_only_where_they_name_them():

@@ -7,10 +7,27 @@ import pytest
 
 import echopath as ep
 from support.behind_sheets import (
-    FORMULA, FREQUENCY, GLASS, INSTANT, LEVEL, LEVEL_E, PHASE, RAYS, SAME_RAYS, SLANTED, THICKNESS, UPRIGHT, airy,
-    echo_of_ball, field, make_radar, make_scene, over_free, power_db, square,
+    FORMULA,
+    FREQUENCY,
+    GLASS,
+    INSTANT,
+    LEVEL,
+    LEVEL_E,
+    PHASE,
+    RAYS,
+    SAME_RAYS,
+    SLANTED,
+    THICKNESS,
+    UPRIGHT,
+    airy,
+    echo_of_ball,
+    field,
+    make_radar,
+    make_scene,
+    over_free,
+    power_db,
+    square,
 )
-
 
 # --- coefficients ---
 

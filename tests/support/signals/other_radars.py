@@ -1,8 +1,8 @@
 """A radar and others that it hears."""
 import numpy as np
-from support.radars import build_radar
 
 import echopath as ep
+from support.radars import build_radar
 
 C = ep.speed_of_light
 RATE, COUNT, BANDWIDTH = 20e6, 512, 1e9

@@ -1,9 +1,9 @@
 """Tones through a receiver with faults."""
 
 import numpy as np
-from support.radars import build_radar
 
 import echopath as ep
+from support.radars import build_radar
 
 LEVEL = 0.2      # dB, promised for levels
 RATE, COUNT = 20e6, 512

@@ -17,11 +17,11 @@ from PIL import Image
 import echopath as ep
 from echopath_viewer.model import CellBox, Session, from_frame
 from echopath_viewer.model.antennas import world_from_antenna
+from echopath_viewer.off_screen import renderer
+from echopath_viewer.plot import _new_plotter
 from echopath_viewer.scene_builder import VIEWS, SceneBuilder
 from echopath_viewer.scene_builder.antenna_layer import AXIS_COLOURS
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
-from echopath_viewer.off_screen import renderer
-from echopath_viewer.plot import _new_plotter
 from echopath_viewer.scene_builder.ray_layer import RayLayer
 
 BASELINES = Path(__file__).parent / "baselines"

@@ -8,11 +8,11 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, Filters, Legend, from_paths
+from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from echopath_viewer.window.scene.filter_box import ErrorLabel
 from echopath_viewer.window.scene.legend_box import LegendBox
 from echopath_viewer.window.scene.name_box import NameBox
 from echopath_viewer.window.scene.pace import Smoothing
-from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import PATIENCE_MS, panel_of, settle
 
 SLOW_PICTURE = 0.12  # s: longer than a step of the film

@@ -7,9 +7,9 @@ import pytest
 import echopath as ep
 from echopath_viewer.model import WHOLE, CellBox, from_frame, from_paths
 from echopath_viewer.model.maps import signals
-from echopath_viewer.window.scene.filter_box import UNKNOWN_PATHS, around_caret
 from echopath_viewer.window.main_window import SIGNAL_PAUSE_MS
 from echopath_viewer.window.qt import Qt
+from echopath_viewer.window.scene.filter_box import UNKNOWN_PATHS, around_caret
 from support.window import LEFT, PATIENCE_MS, click_cell, settle
 
 

@@ -9,8 +9,8 @@ from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.history import MOST_STATES, History
 from echopath_viewer.window import MainWindow
 from echopath_viewer.window.command_palette import CommandPalette
-from echopath_viewer.window.qt import Qt, QtWidgets
 from echopath_viewer.window.files.remembered import recent_files, settings
+from echopath_viewer.window.qt import Qt, QtWidgets
 from support.window import PATIENCE_MS, project, settle
 
 CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier

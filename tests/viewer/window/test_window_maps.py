@@ -11,7 +11,6 @@ from echopath_viewer.window.maps.ticks import axis_ticks
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
 
-
 # --- maps ---
 
 def test_all_maps_share_one_colour_scale(qtbot, window):

@@ -14,14 +14,14 @@ from echopath.signals.beside import leakage_map
 from echopath.transmit.signals import chirp_of
 
 from .antennas import world_from_antenna
+from .colours import COLOUR_MODES, colour_rays
+from .frames.kept_orders import KEPT_CHANNEL
 from .maps.beams import beam_values, beam_weights, paths_in_beam
 from .maps.cell_index import CellBox, CellIndex
-from .colours import COLOUR_MODES, colour_rays
+from .maps.part_set import WHOLE, Part, level_text
+from .palette import mesh_palette
 from .rays.columns import Columns, read_columns
 from .rays.filters import Filters
-from .frames.kept_orders import KEPT_CHANNEL
-from .palette import mesh_palette
-from .maps.part_set import WHOLE, Part, level_text
 from .rays.ray_sample import SAMPLINGS
 from .rays.segments import RayBundle
 from .session_layers import SessionLayers

@@ -5,9 +5,9 @@ import numpy as np
 
 from echopath.paths.subset import paths_on, strongest
 
-from .rays.filters import Filters
 from .frames.kept_orders import KEPT_CHANNEL
 from .maps.part_set import WHOLE, Part
+from .rays.filters import Filters
 from .rays.ray_sample import SAMPLINGS, RaySampler, coherent_powers
 from .rays.touch_groups import TouchGroups
 

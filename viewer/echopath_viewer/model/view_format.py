@@ -5,8 +5,8 @@ import dataclasses
 import math
 
 from .colours import COLOUR_MODES
-from .rays.filters import MAX_BOUNCES, Filters
 from .maps.layers import LAYERS
+from .rays.filters import MAX_BOUNCES, Filters
 from .rays.ray_sample import SAMPLINGS
 
 FORMAT = "echopath view"

@@ -6,11 +6,11 @@ import json
 
 import echopath as ep
 
-from .maps.cell_index import CellBox
 from .colours import COLOUR_MODES
-from .rays.filters import Filters
+from .maps.cell_index import CellBox
 from .maps.layers import LAYERS
 from .maps.part_set import MESH_GROUP, OWN_GROUP, WHOLE
+from .rays.filters import Filters
 from .view_format import FORMAT, VERSION, check_state
 
 

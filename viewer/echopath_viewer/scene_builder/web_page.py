@@ -6,8 +6,8 @@ from html import escape
 
 import numpy as np
 
-from echopath.base.storage.files import written_whole
 from echopath.base.process.libraries import needed_module
+from echopath.base.storage.files import written_whole
 from echopath.base.storage.origin import origin_texts
 
 from ..model.palette import objects_of

@@ -15,29 +15,29 @@ from .banner import Banner, ThinBar
 from .busy import run_with_progress
 from .choices import Choices
 from .collector import Collector
-from .maps.contributions import ContributionsPanel
 from .empty_page import EmptyPage
 from .files.file_actions import FileActions
 from .files.file_watch import FileWatch
-from .scene.filter_box import FilterBox
-from .timeline.frame_bar import FrameBar
+from .files.opening import Opening
+from .files.remembered import remember_layout, restore_layout
 from .keys import uses_key
 from .live.live_control import LiveControl
 from .live.live_panel import LivePanel
+from .maps.contributions import ContributionsPanel
 from .maps.map_area import MapArea
 from .menus import Menus
-from .files.opening import Opening
 from .panels import Panels
 from .qt import QtCore, QtWidgets
-from .scene.ray_table import RayTable
-from .files.remembered import remember_layout, restore_layout
+from .scene.filter_box import FilterBox
 from .scene.own_window import give_own_window
+from .scene.ray_table import RayTable
 from .scene.scene_box import SceneBox
 from .scene.scene_tree import SceneTree
+from .scene.view3d import View3D
 from .settling import settle
+from .timeline.frame_bar import FrameBar
 from .timeline.time_bar import TimeBar
 from .timeline.time_control import TimeControl
-from .scene.view3d import View3D
 from .view_actions import ViewActions
 
 TITLE = "Echopath"

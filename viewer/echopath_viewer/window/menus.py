@@ -3,9 +3,9 @@ from __future__ import annotations
 
 from ..model.maps.layers import DETECTIONS, LABELS, LAYERS, NAMES, OBJECTS, TRUTH, TWINS
 from ..scene_builder import VIEWS
+from .files.remembered import recent_files
 from .keys import KEYS, MENUS, NEEDS_NO_FRAME
 from .qt import QtCore, QtGui
-from .files.remembered import recent_files
 
 VIEW_TITLES = {"radar": "Radar's eye", "top": "Top", "side": "Side", "fit": "Fit"}
 BAR_TITLES = {"open_dialog": "Open", "save_view_dialog": "Save view", "load_view_dialog": "Load view",

@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 from .maps.compare_panel import ComparePanel
-from .qt import Qt, QtCore, QtWidgets
 from .maps.side_panels import AzimuthPanel, BeatPanel, ElevationPanel, SpectrogramPanel
+from .qt import Qt, QtCore, QtWidgets
 
 LEFT, RIGHT = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea
 CONTENT_PAGE, EMPTY_PAGE = 0, 1

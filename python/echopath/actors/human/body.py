@@ -9,8 +9,7 @@ import numpy as np
 
 from ..curves import monotone_cubic
 from ..surfaces import swept, table_section
-from .anthropometry import ANKLE_HEIGHT, CHEST_BREADTH, FOOT_BREADTH, FOREARM, HIP_BREADTH, KNEE_HEIGHT, UPPER_ARM
-from .anthropometry import HIP_HEIGHT
+from .anthropometry import ANKLE_HEIGHT, CHEST_BREADTH, FOOT_BREADTH, FOREARM, HIP_BREADTH, HIP_HEIGHT, KNEE_HEIGHT, UPPER_ARM
 from .foot import Sole
 
 SHANK, THIGH = KNEE_HEIGHT - ANKLE_HEIGHT, HIP_HEIGHT - KNEE_HEIGHT

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .anthropometry import FOOT_LENGTH
 from ..curves import quintic
+from .anthropometry import FOOT_LENGTH
 
 HEEL_SHARE = 0.27                    # of the foot's length lies behind the ankle
 MAX_TOE_PITCH = np.radians(75.0)     # angle of the toe arc, which ends at the tip of the foot

@@ -8,9 +8,9 @@ from functools import lru_cache
 import numpy as np
 
 from ... import _core
+from .. import solids
 from ..actor import Part
 from ..surfaces import joined
-from .. import solids
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,12 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap as Colormap
     from matplotlib.figure import Figure as Figure, SubFigure as SubFigure
     from pandas import DataFrame as DataFrame  # type: ignore[import-untyped,import-not-found,unused-ignore]
-    from pyvista import Plotter as Plotter  # type: ignore[import-not-found,unused-ignore]
     from PySide6.QtWidgets import QMainWindow as QMainWindow  # type: ignore[import-not-found,unused-ignore]
-    from xarray import DataArray as DataArray  # type: ignore[import-not-found,unused-ignore]
-    from xarray import Dataset as Dataset  # type: ignore[import-not-found,unused-ignore]
+    from pyvista import Plotter as Plotter  # type: ignore[import-not-found,unused-ignore]
+    from xarray import (
+        DataArray as DataArray,  # type: ignore[import-not-found,unused-ignore]
+        Dataset as Dataset,  # type: ignore[import-not-found,unused-ignore]
+    )
 
 
 class Page(Protocol):

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .files import written_whole
 from ..process.libraries import needed_module
+from .files import written_whole
 
 KINDS = (".gif", ".mp4")
 

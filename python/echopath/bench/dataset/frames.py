@@ -8,8 +8,8 @@ from collections import Counter
 from importlib.resources import as_file
 from pathlib import Path
 
-from ...base.storage.data_folder import data_folder
 from ...base.process.threads import num_threads, set_num_threads
+from ...base.storage.data_folder import data_folder
 from ...dataset.folder import checksum
 from ...dataset.template import Template
 from ...sequence.keep import write_frame

@@ -13,8 +13,8 @@ import uuid
 from importlib.resources import as_file
 from pathlib import Path
 
-from ...base.storage.data_folder import data_folder
 from ...base.process.threads import set_num_threads
+from ...base.storage.data_folder import data_folder
 from ...dataset.folder import prepare_folder
 from ...dataset.template import Template
 from ...dataset.workers import in_this_process, turned

@@ -12,8 +12,22 @@ from ...actors import shapes
 from ...paths.absent import NO_MESH
 from ..physics import closed_forms as exact
 from .case import Cases
-from .scenes import (METAL, POWER, ROUGH, UTM, broadside_rcs, decibels, edge_points, field, make_radar, misses,
-                     plate_at, rcs_of, scene_of, traced)
+from .scenes import (
+    METAL,
+    POWER,
+    ROUGH,
+    UTM,
+    broadside_rcs,
+    decibels,
+    edge_points,
+    field,
+    make_radar,
+    misses,
+    plate_at,
+    rcs_of,
+    scene_of,
+    traced,
+)
 
 cases = Cases("Geometry")
 MOST_PATHS_AT_EDGES = 1e-3  # that corners rounded to other single precision numbers may take or give

@@ -8,8 +8,20 @@ import echopath as ep
 from ...actors import shapes
 from ..physics import closed_forms as exact
 from .case import Cases
-from .scenes import (METAL, POWER, ROUGH, broadside_rcs, decibels, field, make_radar, plate_at, rcs_of, scene_of, traced,
-                     traced_quietly)
+from .scenes import (
+    METAL,
+    POWER,
+    ROUGH,
+    broadside_rcs,
+    decibels,
+    field,
+    make_radar,
+    plate_at,
+    rcs_of,
+    scene_of,
+    traced,
+    traced_quietly,
+)
 
 cases = Cases("Places")
 

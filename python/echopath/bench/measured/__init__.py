@@ -19,8 +19,20 @@ from ...base.storage.data_folder import data_folder
 from ...base.storage.files import write_texts
 from ..steps import csv_text, told
 from .figure import draw_patterns
-from .targets import INCH, Target, almond, camera_box, cavity_of_cobra_duct, cobra_duct, cylindrical_duct, fan_in_a_duct
-from .targets import lying_sheet, prime_aircraft, sheet, slab
+from .targets import (
+    INCH,
+    Target,
+    almond,
+    camera_box,
+    cavity_of_cobra_duct,
+    cobra_duct,
+    cylindrical_duct,
+    fan_in_a_duct,
+    lying_sheet,
+    prime_aircraft,
+    sheet,
+    slab,
+)
 
 NUM_RAYS, QUICK_NUM_RAYS = 2 ** 15, 2 ** 13
 RAYS_OF_DUCTS = 2                          # as many: neighbouring rays grow apart from bounce to bounce in a round duct

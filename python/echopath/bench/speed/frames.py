@@ -7,8 +7,8 @@ import numpy as np
 
 import echopath as ep
 
-from ...base.storage.data_folder import data_folder
 from ...base.process.stages import StageClock
+from ...base.storage.data_folder import data_folder
 from ...scene_file import load_scene
 from ..timing import processor_time, wall_time
 from .tracer import bare_share

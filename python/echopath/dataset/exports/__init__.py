@@ -13,8 +13,8 @@ from ..._core import Radar
 from ...arguments import part_names
 from ...arguments.checks import refused
 from ...base.storage.files import folder_written_whole, require_writable
-from ...frame.detections import detect_frame
 from ...detections.detections import Detections
+from ...frame.detections import detect_frame
 from ...frame.frame import Frame
 from ...truth.cross_section import cross_section_dbsm
 from ..opened import Dataset, DatasetFrame

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arguments.checks import checked, refused
-from ...arguments.checks import path as folder_rule
+from ...arguments.checks import checked, path as folder_rule, refused
 from ...arguments.settings import LabelSettings
 from ...base.storage.files import write_texts, written_whole
 from ...frame.frame import Frame

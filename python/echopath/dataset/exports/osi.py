@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ...arguments.checks import checked
-from ...arguments.checks import path as folder_rule
+from ...arguments.checks import checked, path as folder_rule
+from ...base.process.libraries import needed_module
 from ...base.radar.antennas import middle_of_antennas
 from ...base.storage.files import written_whole
-from ...base.process.libraries import needed_module
 from ...detections.detections import Detections
 from ..opened import Dataset, dataset_rule
 from . import are_echoes, cross_sections_dbsm, detections_of, exported

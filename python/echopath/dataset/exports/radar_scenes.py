@@ -14,12 +14,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arguments.checks import checked, one_of, refused
-from ...arguments.checks import path as folder_rule
-from ...base.radar.antennas import centre_of
-from ...base.storage.files import write_texts, written_whole
+from ...arguments.checks import checked, one_of, path as folder_rule, refused
 from ...base.numerics.rates import radar_rate
+from ...base.radar.antennas import centre_of
 from ...base.radar.velocities import ambiguity_of, folded
+from ...base.storage.files import write_texts, written_whole
 from ...detections.detections import Detections
 from ...detections.directions import toward
 from ...frame_file.h5 import writing

@@ -10,8 +10,8 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from ...arguments.objects import NamedGlobs, objects_rule
-from ...base.text.counts import counted
 from ...base.numerics.golden import golden_place
+from ...base.text.counts import counted
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
@@ -20,9 +20,9 @@ from ...scene_file.tables.schema import SceneTable
 from ...scene_file.tables.table import Positive, Table
 from ...scene_file.traffic import TrafficFiles
 from ...scene_file.trajectories import Trajectories
-from ...trajectories.files.rows import KeptRows
 from ...sequence import Sequence
 from ...sequence.keep import Keep
+from ...trajectories.files.rows import KeptRows
 from ..classes import ClassName, classes_of, warn_of_unused_globs
 from .distributions import is_distribution
 from .drawing import Drawing, DrawnObjects, possible_names, random_at

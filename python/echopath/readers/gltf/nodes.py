@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.text.node_names import fit_name
 from ...base.numerics.rotations import matrices, quaternions
+from ...base.text.node_names import fit_name
 from ..axes import Axes
 from .document import Document
 from .item import Item

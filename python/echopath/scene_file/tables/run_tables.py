@@ -9,8 +9,20 @@ from ...arguments.checks import MOST_NEIGHBOURS, map_window, window
 from ...arguments.effects import effects_rule
 from ...arguments.gates import gate
 from ...arguments.settings import (
-    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay,
-    Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
+    MOST_BATCHES,
+    MOST_BOUNCES,
+    MOST_RAYS,
+    Evaluate,
+    Footprint,
+    LabelSettings,
+    Plane,
+    Polarization,
+    Replay,
+    Retrace,
+    Sampler,
+    Scatterers,
+    SignalSettings,
+    TraceSettings,
 )
 from ...spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from ...weather import Weather

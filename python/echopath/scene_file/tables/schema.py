@@ -13,7 +13,15 @@ from ...signals.parts import are_tables
 from .object_tables import ObjectTable
 from .radar_tables import InterfererTable, RadarTable
 from .run_tables import (
-    AngleTable, DetectionsTable, LabelsTable, NoiseTable, ReplayTable, SequenceTable, SpectrumTable, TraceTable, TruthTable,
+    AngleTable,
+    DetectionsTable,
+    LabelsTable,
+    NoiseTable,
+    ReplayTable,
+    SequenceTable,
+    SpectrumTable,
+    TraceTable,
+    TruthTable,
     WeatherTable,
 )
 from .table import Name, Table, by_check

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from ...arguments.checks import checked
 from ..arguments import Outside, optional_span
-from .track_file import RULES, TrackFile, on_the_way, warn_of_nobody
 from ..trajectory import Trajectory
+from .track_file import RULES, TrackFile, on_the_way, warn_of_nobody
 
 
 @checked(during=optional_span, **RULES)

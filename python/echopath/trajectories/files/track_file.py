@@ -11,18 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ... import _core
-from ...arguments.checks import Rule, anything, array, checked, is_writable, one_of, real, refused, vector
-from ...arguments.checks import file as file_rule
+from ...arguments.checks import Rule, anything, array, checked, file as file_rule, is_writable, one_of, real, refused, vector
 from ...base.process.callers import warn_user
 from ...base.text.counts import counted
 from ..arguments import FARTHEST, GOES_ON, NEAREST, Outside
+from ..kinds import of_kind, usual_kind, warn_of_unused_kinds
+from ..trajectory import Trajectory
 from .doubts import doubt_of_turns, doubts_of
 from .geodesy import east_north_up
-from ..kinds import of_kind, usual_kind, warn_of_unused_kinds
 from .rows import Rows, read_rows
 from .samples import Samples, refuse
 from .smoothing import smoothed
-from ..trajectory import Trajectory
 
 
 def _origin_rule(argument: str, value):

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from support.files.scene_text import ANTENNAS, WAVEFORM
 
 import echopath as ep
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 HALF = {"passenger": 4.3 / 2, "truck_heavy": 16.6 / 2, "bus_city": 5.95 / 2, "pt_van": 4.95 / 2, "motorcycle": 1.0,
         "DEFAULT_BIKETYPE": 1.95 / 2}  # m, from the middle of the usual body to its front

@@ -3,9 +3,9 @@ import math
 
 import numpy as np
 import pytest
-from support.files.scene_text import ANTENNAS, WAVEFORM
 
 import echopath as ep
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 STEP = 0.5  # s
 SPEED = 8.0  # m/s

@@ -1,10 +1,10 @@
 """Other FMCW radars in the receivers of a radar."""
 import numpy as np
 import pytest
-from support.radars import build_radar
-from support.signals.other_radars import C, COUNT, RATE, SLOPE, TONE, other, victim
 
 import echopath as ep
+from support.radars import build_radar
+from support.signals.other_radars import COUNT, RATE, SLOPE, TONE, C, other, victim
 
 LEVEL, SHARE = 0.2, 0.01  # dB and relative: promised
 

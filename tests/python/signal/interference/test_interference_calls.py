@@ -1,10 +1,10 @@
 """Names, places and motions of other radars that a call must refuse or keep apart."""
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
 from echopath.cli import main
+from support.radars import build_radar
 
 SLOW = {"num_samples": 256, "num_chirps": 16, "transmit_power": 1.0}
 RADAR = build_radar(**SLOW)

@@ -4,10 +4,10 @@ import pickle
 
 import numpy as np
 import pytest
-from support.radars import build_radar
-from support.signals.other_radars import TONE, victim
 
 import echopath as ep
+from support.radars import build_radar
+from support.signals.other_radars import TONE, victim
 
 LEVEL, SHARE = 0.2, 0.01  # dB and relative: promised
 

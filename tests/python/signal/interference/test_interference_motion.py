@@ -1,10 +1,10 @@
 """Other radars that move, over walls that move, into receivers that move: phases chirp by chirp against images."""
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
 from echopath.signals.interference_crossing import EDGE, Chirps, add_crossing
+from support.radars import build_radar
 
 C = ep.speed_of_light
 RATE, COUNT, BANDWIDTH, NUM_CHIRPS, INTERVAL = 20e6, 128, 250e6, 64, 60e-6

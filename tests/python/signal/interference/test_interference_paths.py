@@ -1,10 +1,10 @@
 """A few paths that stand for all of those from another radar."""
 import numpy as np
 import pytest
-from support.radars import build_radar
 
 import echopath as ep
 from echopath.signals.interference_paths import few_paths
+from support.radars import build_radar
 
 C = ep.speed_of_light
 COUNT, RATE = 256, 20e6

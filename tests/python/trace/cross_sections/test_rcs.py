@@ -6,7 +6,14 @@ import pytest
 
 import echopath as ep
 from support.rcs_targets import (
-    PLATE_ANGLE_TOLERANCE_DB, RADIUS, RIGHT_ANGLE_HALF, SMOOTH_TOLERANCE_DB, dihedral, in_plane, plate_scene, smooth_sphere,
+    PLATE_ANGLE_TOLERANCE_DB,
+    RADIUS,
+    RIGHT_ANGLE_HALF,
+    SMOOTH_TOLERANCE_DB,
+    dihedral,
+    in_plane,
+    plate_scene,
+    smooth_sphere,
 )
 from support.shapes import FREQUENCY, METAL, decibel, lambert, rectangle, scene_of
 

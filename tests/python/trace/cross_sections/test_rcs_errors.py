@@ -7,7 +7,13 @@ import pytest
 
 import echopath as ep
 from support.rcs_targets import (
-    PLATE_ANGLE_TOLERANCE_DB, RADIUS, SMOOTH_TOLERANCE_DB, dihedral, in_plane, plate_scene, smooth_sphere,
+    PLATE_ANGLE_TOLERANCE_DB,
+    RADIUS,
+    SMOOTH_TOLERANCE_DB,
+    dihedral,
+    in_plane,
+    plate_scene,
+    smooth_sphere,
 )
 from support.shapes import FREQUENCY, METAL, decibel, lambert, scene_of, sphere
 

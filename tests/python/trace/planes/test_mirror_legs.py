@@ -6,8 +6,19 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.shapes import (METAL, WAVELENGTH, decibel, fields, lambert, make_radar, plate, power_by_hit, rectangle,
-                            scene_of, sphere)
+from support.shapes import (
+    METAL,
+    WAVELENGTH,
+    decibel,
+    fields,
+    lambert,
+    make_radar,
+    plate,
+    power_by_hit,
+    rectangle,
+    scene_of,
+    sphere,
+)
 
 IMAGE_TOLERANCE_DB = 0.1     # promised; what is left is the quadrature over the target
 PO_TOLERANCE_DB = 0.3        # physical optics with the footprint filter against its bare quadrature

@@ -1,9 +1,9 @@
 """A view that goes on from one frame to the next."""
 from __future__ import annotations
 
-from .inputs import from_file
 from ..session import Session
 from ..view_state import apply_state
+from .inputs import from_file
 
 
 def make_ready(session: Session, is_passing: bool = False) -> Session:

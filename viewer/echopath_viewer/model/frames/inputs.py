@@ -14,11 +14,11 @@ from echopath.scene.lifetimes import scene_in_frame
 from echopath.signals.same_radar import difference
 from echopath.weather.weather import weather_of
 
-from .kept_orders import KeptOrders, read_kept
-from .told_objects import told_objects
 from ..maps.layers import Known, are_of_map
 from ..maps.part_set import WHOLE, Part, PartSet
 from ..maps.signals import Signals, all_paths, selections_of
+from .kept_orders import KeptOrders, read_kept
+from .told_objects import told_objects
 
 
 @dataclasses.dataclass

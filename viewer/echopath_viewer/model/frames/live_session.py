@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import echopath as ep
 
-from .carried import make_ready, session_like
-from .inputs import ViewInput, whole_part
 from ..maps.part_set import PartSet
 from ..maps.signals import Signals
 from ..view_state import apply_state
+from .carried import make_ready, session_like
+from .inputs import ViewInput, whole_part
 
 DEFAULT_RAYS, TITLE = 50_000, "live"
 # of the record that a live scene goes on from; rays are shot anew, in one batch

@@ -8,10 +8,10 @@ from echopath import _core
 from echopath.frame_file.frame import without_lists
 from echopath.scene.lifetimes import scene_in_frame
 
-from .inputs import ViewInput, whole_part
 from ..maps.layers import Known, are_of_map
 from ..maps.part_set import PartSet
 from ..maps.signals import Signals
+from .inputs import ViewInput, whole_part
 
 NO_PATHS = "this file keeps maps and labels alone, no rays: made with keep=\"all\" it would have them"
 NO_MAP = "this file keeps labels alone, no map and no rays: made with keep=\"maps\" or \"all\" it would have them"

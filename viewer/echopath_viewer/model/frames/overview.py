@@ -6,9 +6,9 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.base.radar.antennas import middle_of_antennas, velocity_of_antennas
 from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.base.numerics.rotations import quaternions
+from echopath.base.radar.antennas import middle_of_antennas, velocity_of_antennas
 from echopath.frame_file.container import our_file
 from echopath.frame_file.detections import read_detections
 from echopath.frame_file.h5 import read_group

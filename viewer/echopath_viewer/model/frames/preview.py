@@ -11,10 +11,10 @@ from echopath.frame_file.h5 import read_array, read_attribute, read_group
 from echopath.frame_file.radar import read_radar
 from echopath.frame_file.scene import read_scene
 
-from .inputs import ViewInput, whole_part
-from .maps_input import no_paths, with_values
 from ..maps.part_set import PartSet
 from ..maps.signals import Signals
+from .inputs import ViewInput, whole_part
+from .maps_input import no_paths, with_values
 
 LARGE = 32 << 20  # bytes of a file: what is smaller is read in about a second
 READING = "the rays of this file are being read"

@@ -13,8 +13,7 @@ from echopath.frame_file import KeptMeshes
 from echopath.frame_file.container import SEQUENCE, kind_of, our_file
 from echopath.frame_file.h5 import read_attribute, read_group
 from echopath.frame_file.maps import load_maps
-from echopath.sequence.folder import NAME as SEQUENCE_NAME
-from echopath.sequence.folder import frame_path
+from echopath.sequence.folder import NAME as SEQUENCE_NAME, frame_path
 
 from .inputs import ViewInput, from_file, from_frame
 from .maps_input import from_maps

@@ -7,8 +7,8 @@ import numpy as np
 
 import echopath as ep
 from echopath.arguments.objects import named_globs
-from echopath.plots.labels import CLASSES
 from echopath.paths.subset import strongest, subset
+from echopath.plots.labels import CLASSES
 
 from ..palette import rgb_of
 from .attribution import name_of

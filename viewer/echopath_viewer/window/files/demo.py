@@ -3,9 +3,9 @@ from __future__ import annotations
 
 from importlib.resources import as_file
 
+from echopath.base.storage.data_folder import data_folder
 from echopath.cli.demo import limb_partitions
 from echopath.cli.run import simulate_file
-from echopath.base.storage.data_folder import data_folder
 from echopath.scene_file import load_scene
 
 NUM_RAYS = 20_000

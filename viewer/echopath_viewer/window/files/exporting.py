@@ -6,13 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from echopath.base.storage.files import written_whole
-from echopath.base.storage.film import KINDS as FILMS
-from echopath.base.storage.film import write_film
+from echopath.base.storage.film import KINDS as FILMS, write_film
 from echopath.base.storage.origin import origin_texts
 
 from ...scene_builder.web_page import ScenePage
-from .pictures import drawing_of, picture_of, png_of
 from ..qt import QtGui
+from .pictures import drawing_of, picture_of, png_of
 
 DRAWINGS, PAGES = (".svg", ".pdf"), (".html", ".htm")
 FILM_PICTURES = 64     # of the chirps of a frame

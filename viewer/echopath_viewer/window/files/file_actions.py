@@ -8,8 +8,8 @@ import echopath as ep
 from ...model.view_state import apply_state, load_state, save_state, state_of
 from ...scene_builder import export_meshes, export_rays
 from ..busy import run_with_progress, waiting_cursor
-from .exporting import export
 from ..qt import QtCore, QtWidgets
+from .exporting import export
 
 FRAMES, VIEWS = "Frames (*.h5 *.hdf5)", "Views (*.json)"
 # What the dialog offers: suffix, and how many times the pixels of the screen.

@@ -13,8 +13,8 @@ from ...model.frames.preview import preview_of
 from ...model.frames.time_line import time_line_of
 from ...model.view_state import apply_state, state_of
 from ..busy import run_with_progress, waiting_cursor
-from .demo import simulate_demo
 from ..qt import QtCore
+from .demo import simulate_demo
 from .remembered import remember_file
 
 REST_MS = 1000  # after a file was read, until lists and signals are made of it

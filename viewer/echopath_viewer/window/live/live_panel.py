@@ -6,9 +6,9 @@ import numpy as np
 import echopath as ep
 
 from ...model.frames.live_session import DEFAULT_RAYS
+from ..qt import Qt, QtCore, QtWidgets
 from .live_control import RADAR
 from .typed_box import TypedBox
-from ..qt import Qt, QtCore, QtWidgets
 
 STEP, FARTHEST = 0.1, 1e4    # m
 ROUGHEST, NUM_STEPS = 5e-3, 100  # m, of the slider, and its steps

@@ -11,10 +11,10 @@ from echopath.signals.measures import for_pictures
 from ...model import CellBox, Session, from_file
 from ...model.maps.comparison import difference, kept_map
 from ...model.maps.part_set import level_text
+from ..qt import QtCore, QtWidgets
 from .colour_bar import ColourBar
 from .map_area import title_of
 from .map_panel import MapPanel
-from ..qt import QtCore, QtWidgets
 from .side_panels import SeenPanel
 from .ticks import step_of
 

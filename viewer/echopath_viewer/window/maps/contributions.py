@@ -12,8 +12,8 @@ from ...model.maps.attribution import Attribution
 from ...model.maps.part_set import level_text
 from ..background_work import BackgroundWork
 from ..banner import ThinBar
-from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 from ..qt import Qt, QtGui, QtWidgets
+from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 
 HINT = "Click a cell of the map: which echoes make it?"
 PLAYING_HINT = "Pause the frames to see what makes the cell."

@@ -10,9 +10,9 @@ from ...model import CellBox
 from ...model.maps.layers import TWINS
 from ...model.maps.part_set import WHOLE, level_text
 from ..busy import waiting_cursor
+from ..qt import Qt, QtCore, QtGui, QtWidgets
 from .colour_bar import ColourBar
 from .map_panel import MapPanel
-from ..qt import Qt, QtCore, QtGui, QtWidgets
 from .ticks import step_of
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140

@@ -5,10 +5,10 @@ import numpy as np
 
 from echopath.plots.style import MAP_COLOURS
 
-from ...model.maps.cell_index import CellBox
 from ...model.colours import colour_table, levels_of
-from .map_mouse import MapMouse
+from ...model.maps.cell_index import CellBox
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
+from .map_mouse import MapMouse
 from .ticks import axis_ticks, step_of, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 8, 20, 32  # pixels around the map

@@ -10,16 +10,22 @@ from echopath.base.radar.antennas import mixes_polarisations
 from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
-from ...model.maps.angle_maps import (beat_signal, kept_azimuth_map, range_azimuth_map, range_elevation_map, require_signals,
-                                      spectrogram_map)
+from ...model.maps.angle_maps import (
+    beat_signal,
+    kept_azimuth_map,
+    range_azimuth_map,
+    range_elevation_map,
+    require_signals,
+    spectrogram_map,
+)
 from ...model.maps.part_set import level_text, upper_end
 from ..background_work import BackgroundWork
 from ..banner import ThinBar
+from ..qt import QtCore, QtWidgets
 from .colour_bar import ColourBar
 from .curve import CurveView
 from .map_area import title_of
 from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index
-from ..qt import QtCore, QtWidgets
 from .ticks import step_of
 
 SEVERAL_PAIRS = ("The channels have several pairs of polarisations, which beams add as if they had one: echoes may cancel, as VV "

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..qt import Qt, QtCore, QtGui, QtWidgets
 from ..maps.ticks import nice_below
+from ..qt import Qt, QtCore, QtGui, QtWidgets
 
 EDGE, SIZE, ARM = 10, QtCore.QSize(150, 84), 24.0  # pixels
 BAR = 110.0  # pixels, at most

@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 from ...model.colours import colour_table
-from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 from ..maps.ticks import nice_ticks, tick_text
+from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 EDGE, MARGIN, SWATCH = 10, 8, 12   # pixels
 SCALE_WIDTH, BAR_HEIGHT = 240, 12

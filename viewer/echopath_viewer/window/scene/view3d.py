@@ -8,6 +8,7 @@ import pyvista as pv
 from pyvistaqt import QtInteractor
 
 from ...scene_builder import SceneBuilder
+from ..qt import Qt, QtCore, Signal
 from .coarse_pixels import coarse_pixels
 from .compass import Compass
 from .legend_box import LegendBox
@@ -15,7 +16,6 @@ from .name_box import NameBox
 from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
 from .picks import CLICK_REACH, Picks
 from .pixel_size import pixel_at, pixels_per_radian
-from ..qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
 LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it

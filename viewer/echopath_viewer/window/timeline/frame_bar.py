@@ -7,8 +7,8 @@ from echopath.plots.style import CURVE_COLOURS, MAP_COLOURS
 
 from ...model.colours import colour_table, levels_of
 from ...model.frames.overview import AXES, has_map, level_image, track_values, tracks_of
-from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 from ..maps.ticks import nice_ticks, tick_text
+from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 104, 46, 8, 4, 18  # pixels
 OVER_NOISE_DB = 5.0  # over the middle level of all columns, which is noise: where there is signal

@@ -77,6 +77,17 @@ def test_a_dragged_rectangle_lights_its_rays(qtbot, window):
 
 # --- ray -> hits and cell ---
 
+def spot_beside_others(window, segments, ray: int, leg: int):
+    """(pixels, place): where the picture of a leg of a ray is farthest from those of other rays, and how far."""
+    def points_of(row, count):
+        begin, end = segments.points[segments.ends[row]].astype(float)
+        return [project(window, begin + share * (end - begin)) for share in np.linspace(0.2, 0.8, count)]
+
+    others = [point for row in np.flatnonzero(segments.ray != ray) for point in points_of(row, 60)]
+    own = points_of(np.flatnonzero((segments.ray == ray) & (segments.bounce == leg))[0], 13)
+    return max(((min((at - other).manhattanLength() for other in others), at) for at in own), key=lambda found: found[0])
+
+
 @pytest.mark.parametrize("leg", [0, 1])
 def test_a_click_on_a_projected_ray_selects_it(qtbot, window, leg):
     window.session.set_part(("route", "ghost"))
@@ -84,16 +95,13 @@ def test_a_click_on_a_projected_ray_selects_it(qtbot, window, leg):
     window.session.set_max_rays(3)
     settle(qtbot)
     segments = window.view3d.builder.rays.segments
-    row = np.flatnonzero((segments.ray == 1) & (segments.bounce == leg))[0]
-    begin, end = segments.points[segments.ends[row]].astype(float)
-    # where the pictures of the other rays are farthest away
-    spots = [project(window, begin + share * (end - begin)) for share in np.linspace(0.2, 0.8, 13)]
-    others = [project(window, point) for other in np.flatnonzero(segments.ray != 1)
-              for point in np.linspace(*segments.points[segments.ends[other]].astype(float), 60)]
-    spot = max(spots, key=lambda at: min((at - other).manhattanLength() for other in others))
+    clear = [spot_beside_others(window, segments, ray, leg) for ray in range(len(segments.rays))]
+    ray = int(np.argmax([distance for distance, _ in clear]))
+    distance, spot = clear[ray]
+    assert distance > 2  # pixels, or the click could not tell them apart
     qtbot.mouseClick(window.view3d, LEFT, pos=spot)
     settle(qtbot)
-    path = int(segments.rays[1])
+    path = int(segments.rays[ray])
     assert window.session.ray == path
     assert window.view3d.builder.chosen.segments.rays.tolist() == [path]
     for mesh in window.session.columns.meshes_of(path):

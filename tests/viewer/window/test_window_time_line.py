@@ -230,8 +230,9 @@ def test_the_newest_frame_is_shown_once_it_is_copied_to_the_end(qtbot, shared_wi
     wait_for(qtbot, window, 2)
     window.settle()
     assert window.banner.isHidden()
-    level, _ = level_image(window.frame_bar.strip._glances, "range")
-    assert np.isfinite(level).all(axis=0).tolist() == [True, True, True]  # nor does its column stay empty
+    strip = window.frame_bar.strip  # nor does its column stay empty
+    qtbot.waitUntil(lambda: np.isfinite(level_image(strip._glances, "range")[0]).all(axis=0).tolist() == [True, True, True],
+                    timeout=PATIENCE_MS)
     window.frame_bar.follow_check.setChecked(False)
     control.show(None)
 

@@ -38,6 +38,8 @@ void bind_base(py::module_& m) {
   m.attr("boltzmann") = kBoltzmann;
   m.attr("reference_temperature") = kReferenceTemperature;
   m.attr("vacuum_permittivity") = kVacuumPermittivity;
+  m.attr("LOWEST_FREQUENCY") = kLowestFrequency;  // Hz, of carriers
+  m.attr("HIGHEST_FREQUENCY") = kHighestFrequency;
 
   m.def("looks_for_signals", &looks_for_signals,
         "Whether work of the core is looking for signals right now: an exception that a handler raises then ends it.");

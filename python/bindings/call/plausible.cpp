@@ -10,8 +10,6 @@
 namespace echopath::bindings {
 namespace {
 
-constexpr double kLowestFrequency = 1e6;        // Hz, of radars that look over the horizon
-constexpr double kHighestFrequency = 1e14;      // Hz, of infrared light
 constexpr double kNarrowest = 5e3;              // Hz, cells of 30 km: less than radars beyond the horizon have
 constexpr double kLeastBandwidth = 1e-3;        // Hz, below which ranges overflow
 constexpr double kLargestInterval = 1e6;        // s, between chirps

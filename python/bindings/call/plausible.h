@@ -4,6 +4,9 @@
 
 namespace echopath::bindings {
 
+constexpr double kLowestFrequency = 1e6;    // Hz, of radars that look over the horizon
+constexpr double kHighestFrequency = 1e14;  // Hz, of infrared light
+
 void require_plausible(const ChirpSequence& waveform);
 void require_plausible(const Radar& radar);
 // rad: more than a turn is more likely degrees.

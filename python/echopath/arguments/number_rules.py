@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .._core import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
 from .shown import refused
 
 Rule = Callable[[str, Any], Any]  # (argument, value) -> value as the work takes it
@@ -15,7 +16,6 @@ Rule = Callable[[str, Any], Any]  # (argument, value) -> value as the work takes
 LARGEST_SEED = 2**64 - 1
 LARGEST_COUNT = 2**31 - 1  # of what the core keeps in an int
 LONGEST_TIME = 1e9         # s, from time 0: microseconds are still told apart
-LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 1e6, 1e15  # Hz, of radars that look over the horizon, and of visible light
 
 
 def _scalar(value):

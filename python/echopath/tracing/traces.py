@@ -173,7 +173,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
     the mean over realisations of the roughness.
     scene: the target
-    frequency: Hz, 1e6 to 1e15
+    frequency: Hz, 1e6 to 1e14
     incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
     observation: toward the receiver, likewise; None: monostatic
     polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"

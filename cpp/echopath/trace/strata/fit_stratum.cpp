@@ -28,13 +28,10 @@ constexpr double kWithinCircle = 1.0 - 1e-6;  // of its radius: nearer to its ri
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-// Returns nearly the axis of the smallest cone (Badoiu and Clarkson 2003): it steps toward the farthest of some directions.
-Vec3 middle_of(const std::vector<Vec3>& directions) {
+// Returns nearly the axis of the smallest cone (Badoiu and Clarkson 2003): it steps from one toward the farthest of some
+// directions, again and again.
+Vec3 middle_of(const std::vector<Vec3>& directions, Vec3 axis) {
   const size_t step = directions.size() / kSampledVertices + 1;
-  Vec3 axis = Vec3::Zero();
-  for (size_t i = 0; i < directions.size(); i += step) axis += directions[i];
-  if (axis.norm() < 1e-9) axis = directions.front();
-  axis.normalize();
   for (int n = 0; n < kAxisSteps; ++n) {
     size_t farthest = 0;
     for (size_t i = 0; i < directions.size(); i += step) {
@@ -50,13 +47,13 @@ bool all_within(const std::vector<Vec3>& directions, const Vec3& axis) {
 }
 
 // Points toward the middle of the box of the vertices, which does not hang on any one of them, or where that is too far
-// aside toward the middle of their directions.
+// aside toward the middle of their directions. Neither hangs on vertices inside of others.
 std::optional<Vec3> axis_toward(const std::vector<Vec3>& vertices, const Vec3& apex, const std::vector<Vec3>& directions) {
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : vertices) box.extend(vertex);
-  const Vec3 line = box.center() - apex;
-  if (line.norm() > 0 && all_within(directions, line.normalized())) return line.normalized();
-  const Vec3 middle = middle_of(directions);
+  const Vec3 line = box.center() - apex, toward_box = line.norm() > 0 ? Vec3(line.normalized()) : directions.front();
+  if (all_within(directions, toward_box)) return toward_box;
+  const Vec3 middle = middle_of(directions, toward_box);
   return all_within(directions, middle) ? std::optional<Vec3>(middle) : std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "echopath/base/bit_sum.h"
+#include "echopath/trace/geometry/outer_points.h"
 #include "echopath/trace/strata/fit_stratum.h"
 
 namespace echopath {
@@ -43,6 +44,11 @@ const std::vector<Vec3>& TargetMeshes::vertices() {
   return vertices_;
 }
 
+const std::vector<Vec3>& TargetMeshes::outer_vertices() {
+  if (outer_vertices_.empty()) outer_vertices_ = outer_points_of_hull(vertices());
+  return outer_vertices_;
+}
+
 std::optional<RayTarget> RayTargetFinder::at_object(TargetMeshes& target) const {
   return target_at(target, input_of(target, {}), target.name, 0,
                    [&]() -> const std::vector<Vec3>& { return target.vertices(); });
@@ -67,10 +73,9 @@ void RayTargetFinder::add_images(TargetMeshes& target, int num_mirrors, std::vec
   for (const MirrorFrustum& frustum : frusta_over(num_mirrors)) {
     if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
     const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
-      vertices.resize(target.vertices().size());
+      vertices.clear();
       const auto chain = chain_of(mirrors_, frustum.mirrors);
-      std::transform(target.vertices().begin(), target.vertices().end(), vertices.begin(),
-                     [&](const Vec3& vertex) { return image_over_reversed(chain, vertex); });
+      for (const Vec3& vertex : target.outer_vertices()) vertices.push_back(image_over_reversed(chain, vertex));
       return vertices;
     };
     std::optional<RayTarget> made =

@@ -19,6 +19,8 @@ class TargetMeshes {
 
   // Returns the vertices of all its meshes, which are put together when they are first asked for.
   const std::vector<Vec3>& vertices();
+  // Returns those that its outline may hang on, from wherever it is seen; they are looked for when they are first asked for.
+  const std::vector<Vec3>& outer_vertices();
 
   int object, node;
   std::string name;
@@ -31,6 +33,7 @@ class TargetMeshes {
   std::vector<uint32_t> mesh_ids_;
   std::vector<Vec3> vertices_;  // of the first meshes
   size_t num_together_ = 0;
+  std::vector<Vec3> outer_vertices_;
 };
 
 // All arguments must outlive it.

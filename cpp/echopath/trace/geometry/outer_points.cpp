@@ -1,0 +1,94 @@
+#include "echopath/trace/geometry/outer_points.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+
+namespace echopath {
+namespace {
+
+constexpr double kOnFace = 1e-6;  // of the distance from the middle of the polytope
+constexpr double kFlat = 1e-12;   // of the cube of the longest edge: volume of a tetrahedron whose sides cannot be told
+constexpr size_t kFewPoints = 32;
+
+// The directions are those to the faces, edges and corners of a cube, numbered by their components -1, 0, 1 as digits.
+constexpr int kDirections = 27, kNowhere = 13;
+constexpr std::array<int, 3> kSteps{1, 3, 9};
+
+// By the number of the direction: index of the outermost point, the first of equals; nowhere, another's.
+using Outermost = std::array<size_t, kDirections>;
+
+Outermost outermost_of(const std::vector<Vec3>& points) {
+  Outermost found{};
+  for (int at = 0; at < kDirections; ++at) {
+    const Vec3 outward(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
+    double farthest = outward.dot(points.front());
+    for (size_t i = 1; i < points.size(); ++i) {
+      const double distance = outward.dot(points[i]);
+      if (distance <= farthest) continue;
+      farthest = distance;
+      found[at] = i;
+    }
+  }
+  found[kNowhere] = found[kNowhere - 1];
+  return found;
+}
+
+// Holds the polytope of the outermost points as tetrahedra from its middle. Their outer faces are those into which the
+// directions divide the sphere, drawn between the outermost points along them.
+class InnerPolytope {
+ public:
+  InnerPolytope(const std::vector<Vec3>& points, const Outermost& outermost) {
+    for (int at = 0; at < kDirections; ++at) {
+      corners_[at] = points[outermost[at]];
+      middle_ += corners_[at] / kDirections;
+    }
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        if (a != b) add_tetrahedra(kSteps[a], kSteps[b], kSteps[3 - a - b]);
+  }
+
+  bool holds(const Vec3& point) const {
+    const Vec3 offset = point - middle_;
+    return std::ranges::any_of(inverses_, [&](const Mat3& inverse) {
+      const Vec3 shares = inverse * offset;
+      return shares.minCoeff() >= -kOnFace && shares.sum() <= 1.0 + kOnFace;
+    });
+  }
+
+ private:
+  // Adds those between the middle of a face of the cube, of an edge of that face and a corner of that edge.
+  void add_tetrahedra(int to_face, int to_edge, int to_corner) {
+    for (const int face : {-to_face, to_face})
+      for (const int edge : {-to_edge, to_edge})
+        for (const int corner : {-to_corner, to_corner})
+          add_tetrahedron(kNowhere + face, kNowhere + face + edge, kNowhere + face + edge + corner);
+  }
+
+  void add_tetrahedron(int a, int b, int c) {
+    Mat3 edges;
+    edges << corners_[a] - middle_, corners_[b] - middle_, corners_[c] - middle_;
+    const double longest = edges.colwise().norm().maxCoeff();
+    if (std::abs(edges.determinant()) > kFlat * longest * longest * longest) inverses_.push_back(edges.inverse());
+  }
+
+  std::array<Vec3, kDirections> corners_;
+  Vec3 middle_ = Vec3::Zero();
+  std::vector<Mat3> inverses_;  // offset from the middle -> shares of the three corners
+};
+
+}  // namespace
+
+std::vector<Vec3> outer_points_of_hull(const std::vector<Vec3>& points) {
+  if (points.size() <= kFewPoints) return points;
+  const Outermost outermost = outermost_of(points);
+  const InnerPolytope inner(points, outermost);
+  std::vector<Vec3> outer;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const bool is_corner = std::ranges::find(outermost, i) != outermost.end();
+    if (is_corner || !inner.holds(points[i])) outer.push_back(points[i]);
+  }
+  return outer;
+}
+
+}  // namespace echopath

@@ -72,7 +72,7 @@ class RimOfPlane {
   Slopes slopes(const Line& line, double at) const {
     Slopes sum{0.0, 0.0};
     for (const Side& side : {line.from, line.to}) {
-      const double ahead = at - side.next, distance = std::hypot(ahead, side.distance);
+      const double ahead = at - side.next, distance = std::sqrt(ahead * ahead + side.distance * side.distance);
       sum.first += wavenumber_ * ahead / distance;
       sum.second += wavenumber_ * side.distance * side.distance / (distance * distance * distance);
     }

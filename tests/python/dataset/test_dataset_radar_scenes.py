@@ -1,13 +1,16 @@
 """Datasets in the layouts of RadarScenes and ASAM OSI, read by their own tools as they are."""
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from radar_scenes.coordinate_transformation import transform_detections_sequence_to_car
 from radar_scenes.labels import ClassificationLabel, Label
 from radar_scenes.sequence import Sequence, get_training_sequences, get_validation_sequences
+from scipy.spatial.transform import Rotation
 
 from echopath import dataset
+from echopath.dataset.exports import osi_ground_truth
 
 RADIUS, EGO, SPEED = 0.5, 4.0, 3.0  # m of the sphere at rest, m/s of the radar, m/s of the walker's stand-in
 PLACE = np.array([12.0, 3.0, 1.0])  # m, of the sphere
@@ -57,6 +60,7 @@ speed = {SPEED}
 num_rays = 3000
 [detections]
 [labels]
+[truth]
 [spectrum]
 window = "hann"
 """
@@ -221,10 +225,40 @@ def test_antennas_at_the_bumper_of_a_turning_car_are_told(tmp_path):
     dataset.write_osi(made, tmp_path / "osi")
     trace, = (tmp_path / "osi" / "traces").iterdir()
     for message in reader.OSITrace(str(trace), "SensorData"):
-        radar, = message.feature_data.radar_sensor
-        pose, ball = radar.header.mounting_position, max(radar.detection, key=lambda one: one.rcs).position
-        place = pose.position.x + 1j * pose.position.y + ball.distance * np.exp(1j * (ball.azimuth + pose.orientation.yaw))
+        (radar,), (view,) = message.feature_data.radar_sensor, message.sensor_view
+        mount, (host, _) = radar.header.mounting_position, view.global_ground_truth.moving_object
+        assert host.id.value == view.host_vehicle_id.value and mount == message.mounting_position == view.mounting_position
+        assert [mount.position.x, mount.position.y] == pytest.approx([AHEAD, LEFT + 0.0136 / 4], abs=1e-4)
+        assert mount.orientation.yaw == mount.orientation.pitch == mount.orientation.roll == 0.0
+        assert [host.base.velocity.x, host.base.velocity.y] == pytest.approx([EGO, 0.0], abs=1e-5)
+        assert host.base.orientation_rate.yaw == pytest.approx(TURN, abs=1e-5)
+        ball, turn = max(radar.detection, key=lambda one: one.rcs), host.base.orientation.yaw
+        own = mount.position.x + 1j * mount.position.y
+        way = ball.position.distance * np.exp(1j * (ball.position.azimuth + turn))
+        place = host.base.position.x + 1j * host.base.position.y + own * np.exp(1j * turn) + way
         assert abs(place - (PLACE[0] + 1j * PLACE[1])) == pytest.approx(RADIUS, abs=0.4)
+        velocity = EGO + 1j * TURN * own * np.exp(1j * turn)  # of the antennas, towards the ball: approaching is positive
+        nearing = (velocity * np.conj(way)).real / abs(way)
+        assert nearing > 1.0 and ball.radial_velocity == pytest.approx(nearing, abs=0.5 * VELOCITY_CELL)
+
+
+def test_angles_of_osi_turn_as_they_are_told():
+    """Rates of yaw, pitch and roll of a body that turns about an inclined axis, against differences of its angles."""
+    messages = pytest.importorskip("osi3.osi_object_pb2")
+    axis, step = np.array([0.3, -0.5, 0.7]), 1e-5  # rad/s, s
+
+    def told(time: float):
+        host = messages.MovingObject()
+        start = Rotation.from_euler("ZYX", [0.4, -0.6, 0.2])
+        turned = lambda at: np.pad((Rotation.from_rotvec(axis * at) * start).as_matrix(), (0, 1))
+        radar = SimpleNamespace(world_from_radar=turned, motion=None, frame_duration=1e-2)
+        osi_ground_truth.set_host(host, radar, time)
+        angles, rates = host.base.orientation, host.base.orientation_rate
+        return (np.array([one.yaw, one.pitch, one.roll]) for one in (angles, rates))
+
+    (before, _), (angles, rates), (after, _) = (told(at) for at in (-step, 0.0, step))
+    np.testing.assert_allclose(angles, [0.4, -0.6, 0.2], atol=1e-12)
+    np.testing.assert_allclose(rates, (after - before) / (2.0 * step), atol=1e-6)
 
 
 def test_sensors_are_as_many_as_places_of_antennas(tmp_path):
@@ -291,16 +325,25 @@ def _check_message(place: int, message) -> None:
     """The balls are where they are, and echoes of the walker's stand-in name it."""
     radar, = message.feature_data.radar_sensor
     time = 0.05 * place + MIDDLE
-    assert radar.header.cycle_counter == place and radar.header.number_of_valid_detections == len(radar.detection) > 1
-    pose = radar.header.mounting_position
-    assert [pose.position.x, pose.position.y, pose.position.z] == pytest.approx([1.0 + EGO * time, 0.0136 / 4, 1.0], abs=2e-5)
-    assert [pose.orientation.yaw, pose.orientation.pitch, pose.orientation.roll] == pytest.approx([0.0] * 3, abs=1e-9)
+    is_valid = [one.classification != 2 for one in radar.detection]  # CLASSIFICATION_INVALID
+    assert radar.header.cycle_counter == place and radar.header.number_of_valid_detections == sum(is_valid) > 1
+    mount = radar.header.mounting_position.position
+    assert [mount.x, mount.y, mount.z] == pytest.approx([0.0, 0.0136 / 4, 0.0], abs=2e-5)
     ball = max((one for one in radar.detection if one.object_id.value == 2 ** 64 - 1), key=lambda one: one.rcs)
     way = PLACE[:2] - [1.0 + EGO * time, 0.0136 / 4]
     assert ball.position.distance == pytest.approx(np.hypot(*way) - RADIUS, abs=0.5 * RANGE_CELL)
     assert ball.position.azimuth == pytest.approx(np.arctan2(way[1], way[0]), abs=0.03)
-    assert ball.radial_velocity == pytest.approx(-EGO * np.cos(ball.position.azimuth), abs=0.5 * VELOCITY_CELL)
+    assert ball.radial_velocity == pytest.approx(EGO * np.cos(ball.position.azimuth), abs=0.5 * VELOCITY_CELL)
     assert ball.rcs == pytest.approx(10.0 * np.log10(np.pi * RADIUS**2), abs=1.5) and ball.snr > 10.0
     walker = [one for one in radar.detection if one.object_id.value == 1]  # the second object of the template
     assert walker and all(one.existence_probability == 1.0 for one in walker)
     assert {one.classification for one in walker} <= {1, 2}  # other, invalid: a ghost
+    host, told = message.sensor_view[0].global_ground_truth.moving_object
+    assert list(told.source_reference[0].identifier) == ["walker"] and told.id.value == 1
+    assert host.id.value != 1 and told.type == told.TYPE_PEDESTRIAN
+    for base, place, velocity in ((host.base, [1.0 + EGO * time, 0.0, 1.0], EGO),
+                                  (told.base, [9.0 + SPEED * time, -2.5, 1.0], SPEED)):
+        assert [base.position.x, base.position.y, base.position.z] == pytest.approx(place, abs=1e-5)
+        assert [base.velocity.x, base.velocity.y, base.velocity.z] == pytest.approx([velocity, 0.0, 0.0], abs=1e-5)
+        assert [base.orientation.yaw, base.orientation.pitch, base.orientation.roll] == pytest.approx([0.0] * 3, abs=1e-9)
+    assert [told.base.dimension.length, told.base.dimension.height] == pytest.approx([0.6, 0.6], abs=0.01)

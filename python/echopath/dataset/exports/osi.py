@@ -10,11 +10,12 @@ import numpy as np
 
 from ...arguments.checks import checked, path as folder_rule
 from ...base.process.libraries import needed_module
-from ...base.radar.antennas import middle_of_antennas
+from ...base.radar.antennas import centre_of
 from ...base.storage.files import written_whole
 from ...detections.detections import Detections
 from ..opened import Dataset, dataset_rule
 from . import are_echoes, cross_sections_dbsm, detections_of, exported
+from .osi_ground_truth import set_host, set_pose, set_road_user
 
 FOLDER = "traces"
 SENSOR = 1
@@ -32,13 +33,20 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
         its `remade()`: then detections are those of `ep.detect_frame`
     folder: new or empty; it gets the folder traces, whole or not at all: after a kill, the same call writes it anew. Names of
         files are those of the interface, with time 0 of the scene.
-    feature_data.radar_sensor has one sensor: header (measurement_time in the middle of the frame, cycle_counter the place of
-    the frame, mounting_position in the world at that time: between transmitters and receivers, from where detections count
-    (`Detections.centre`), with the radar's axes) and detections: position (distance m, azimuth and elevation rad, in the
-    sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains of
-    the first antennas, not finite for leakage at 0 m), snr (dB), object_id (place in `Dataset.classes`; 2^64 - 1: the
-    surroundings or noise), existence_probability 0 of noise and of what comes in beside the echoes (interference, rain,
-    leakage, residue), 1 of echoes; classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
+    The host vehicle's frame is that of the radar. Each message has
+    mounting_position, also in the header of the sensor: in the host vehicle's frame, between transmitters and receivers, from
+        where detections count (`Detections.centre`), with the radar's axes
+    feature_data.radar_sensor: one, with measurement_time in the middle of the frame, cycle_counter the place of the frame, and
+        detections: position (distance m, azimuth and elevation rad, left and up positive, in the sensor's frame),
+        radial_velocity (m/s, as measured, approaching positive, as OSI has it), rcs (dBsm, by the radar equation with the gains
+        of the first antennas, not finite for leakage at 0 m), snr (dB), object_id (of a road user of the ground truth, the same
+        in all frames of a scene; 2^64 - 1: the surroundings or noise), existence_probability 0 of noise and of what comes in
+        beside the echoes (interference, rain, leakage, residue), 1 of echoes; classification OTHER of real echoes, INVALID of
+        ghosts, CLUTTER of what has probability 0. number_of_valid_detections: those that are not INVALID
+    sensor_view.global_ground_truth: the host vehicle (host_vehicle_id; place, angles and their rates in the world, a point)
+        and all road users of the scene: id (place in `Dataset.classes`), type and vehicle_classification by their classes,
+        source_reference.identifier with the name of the object, and where the template has [truth], base with the box, its
+        place, angles and motion in the world, for those that are there in the frame
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
     a folder traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.
     """
@@ -78,21 +86,40 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any, numbers: dict[
     """The SensorData of one frame. numbers: of the road users of its scene"""
     found, stored = detections_of(dataset, one), dataset.sequence(scene)
     time = stored.radar.middle_of_frame(float(stored.times[one.place]))
+    mount = np.eye(4)
+    mount[:3, 3] = centre_of(stored.radar)
     message = messages.SensorData()
-    _set_version(message.version)
-    _set_time(message.timestamp, time)
-    message.sensor_id.value = SENSOR
-    radar = message.feature_data.radar_sensor.add()
-    world = np.array(stored.radar.world_from_radar(time))
-    world[:3, 3] = middle_of_antennas(stored.radar, time)
-    for header in (message, radar.header):
-        _set_pose(header.mounting_position, world)
+    radar, view = message.feature_data.radar_sensor.add(), message.sensor_view.add()
+    for own in (message, view):
+        _set_version(own.version)
+        _set_time(own.timestamp, time)
+        own.sensor_id.value = SENSOR
+    for mounted in (message, view, radar.header):
+        set_pose(mounted.mounting_position, mount)
+    _set_time(message.last_measurement_time, time)
     _set_time(radar.header.measurement_time, time)
-    radar.header.cycle_counter, radar.header.number_of_valid_detections = one.place, len(found)
-    radar.header.sensor_id.value = SENSOR
+    radar.header.cycle_counter, radar.header.sensor_id.value = one.place, SENSOR
     radar.header.data_qualifier = 2  # available
     _add_detections(radar, found, cross_sections_dbsm(found, stored.radar, time), numbers)
+    radar.header.number_of_valid_detections = sum(each.classification != _INVALID for each in radar.detection)
+    _set_ground_truth(view, dataset, scene, one, numbers, time)
     return message
+
+
+def _set_ground_truth(view: Any, dataset: Dataset, scene: int, one: Any, numbers: dict[str, int], time: float) -> None:
+    """Fills global_ground_truth of a SensorView, whose version and time are set."""
+    classes, truth, known = dataset.classes(scene), one.frame.kept_truth, view.global_ground_truth
+    known.version.CopyFrom(view.version)
+    known.timestamp.CopyFrom(view.timestamp)
+    host = known.moving_object.add()
+    set_host(host, dataset.sequence(scene).radar, time)
+    for identifier in (view.host_vehicle_id, known.host_vehicle_id, host.id):
+        identifier.value = len(classes)  # the first number that no object has
+    for name, number in numbers.items():
+        user = known.moving_object.add()
+        user.id.value = number
+        is_told = truth is not None and name in truth.name
+        set_road_user(user, name, classes[name], truth.of_object(name) if is_told else None)
 
 
 def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
@@ -107,7 +134,7 @@ def _add_detections(radar: Any, found: Detections, cross_sections: np.ndarray, n
         one = radar.detection.add()
         one.position.distance, one.position.azimuth = float(found.range[index]), float(found.azimuth[index])
         one.position.elevation = float(np.nan_to_num(found.elevation[index]))
-        one.radial_velocity, one.rcs = float(found.velocity[index]), float(cross_sections[index])
+        one.radial_velocity, one.rcs = -float(found.velocity[index]), float(cross_sections[index])
         one.snr = float(found.snr_db[index])
         one.object_id.value = numbers.get(str(found.object[index]), NO_OBJECT)
         one.existence_probability = 1.0 if is_echo else 0.0
@@ -122,11 +149,3 @@ def _set_version(version: Any) -> None:
 def _set_time(timestamp: Any, time: float) -> None:
     nanoseconds = round(time * 1e9)
     timestamp.seconds, timestamp.nanos = divmod(nanoseconds, 10 ** 9)
-
-
-def _set_pose(position: Any, world: np.ndarray) -> None:
-    """Sets a MountingPosition: origin in m, and the angles of R = Rz(yaw) Ry(pitch) Rx(roll) in rad."""
-    position.position.x, position.position.y, position.position.z = (float(value) for value in world[:3, 3])
-    position.orientation.yaw = float(np.arctan2(world[1, 0], world[0, 0]))
-    position.orientation.pitch = float(np.arcsin(np.clip(-world[2, 0], -1.0, 1.0)))
-    position.orientation.roll = float(np.arctan2(world[2, 1], world[2, 2]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..presentation.xarray_maps import axis, words_of, xarray_module
+from ..presentation.xarray_maps import axis, index_of, words_of, xarray_module
 from .classes import CODES
 
 if TYPE_CHECKING:
@@ -46,8 +46,8 @@ def lazy_arrays(dataset: Dataset) -> XarrayDataset:
             variables["azimuth_power"] = maps(_azimuth_power, row, "f4", _POWER | {"long_name": "power with noise"})
     if labels is not None:
         kinds = _Kinds(dataset)
-        variables["cell"] = maps(_cells, row, "i1", {})
-        variables["kind"] = maps(kinds.of, row, "i1", {})
+        variables["cell"] = maps(_cells, row, "i1", {"long_name": "index into cell_names"})
+        variables["kind"] = maps(kinds.of, row, "i1", index_of("kind") | {"comment": "class of whose cell it is"})
         words = words_of("cell", CELLS) | words_of("kind", KINDS)
     per_scene = dataset.template.settings.frames
     scenes = np.array([number // per_scene for number in dataset.numbers])

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..presentation.xarray_maps import attributes_of, axis, words_of, xarray_module
+from ..presentation.xarray_maps import attributes_of, axis, index_of, words_of, xarray_module
 from .ghost_names import ghost_name
 
 _OF_CELLS = {  # attribute of Labels: name, unit
@@ -20,7 +20,8 @@ def dataset_of(labels):
     variables = {}
     for field, (name, unit) in _OF_CELLS.items():
         if getattr(labels, field) is not None:
-            variables[name] = ((row, "range"), getattr(labels, field), {"units": unit} if unit else {})
+            variables[name] = ((row, "range"), getattr(labels, field),
+                               {"units": unit} if unit else index_of(name) if name in names else {})
     for field, unit in _OF_PARTS.items():
         if getattr(labels, field) is not None:
             variables[field] = (("part", row, "range"), getattr(labels, field), {"units": unit})

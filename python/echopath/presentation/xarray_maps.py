@@ -33,6 +33,11 @@ def words_of(variable: str, words) -> dict:
     return {f"{variable}_names": (f"{variable}_number", np.array(words, dtype=str))}
 
 
+def index_of(variable: str) -> dict:
+    """Attributes of a variable whose values are indices of `words_of`."""
+    return {"long_name": f"index into {variable}_names, -1: none"}
+
+
 def attributes_of(result, *names: str) -> dict:
     """Fields of a result as attributes of files: without those that are not known, large whole numbers as text."""
     values = {name: getattr(result, name) for name in names}
@@ -69,7 +74,7 @@ def time_map_array(map):
 
 def spectrogram_labels_dataset(labels):
     """SpectrogramLabels as a Dataset; see SpectrogramLabels.to_xarray."""
-    cells = {"whole": {"units": "W"}, "mask": {}, "above_noise": {}, "dominant": {}}
+    cells = {"whole": {"units": "W"}, "mask": {}, "above_noise": {}, "dominant": index_of("dominant")}
     variables = {name: (("time", "velocity"), getattr(labels, name), attrs) for name, attrs in cells.items()}
     for name, unit in (("power", "W"), ("share", "1")):
         variables[name] = ("part", "time", "velocity"), getattr(labels, name), {"units": unit}

@@ -16,7 +16,7 @@ from ..frame_file.labels import CELL_FIELDS, PLANES, read_names
 from ..frame_file.maps import axes_in_file, has_power, power_in_file
 from ..labels.ghost_names import ghost_name
 from ..labels.labels import NONE
-from ..presentation.xarray_maps import xarray_module
+from ..presentation.xarray_maps import index_of, xarray_module
 
 _INDICES = {"dominant": "dominant", "object": "object_map", "ghost": "ghost_map"}  # variable: field of Labels
 
@@ -65,7 +65,7 @@ def maps_of(paths: list[Path]) -> dict[str, Map]:
                 dtype = known[0].dtype
             variable = name if len(planes) == 1 or name != "dominant" else f"{name}_{partition}"
             read = functools.partial(_read_labels, f"labels/{group}", field, known)
-            found[variable] = Map(dims, axes, dtype, {}, read, names)
+            found[variable] = Map(dims, axes, dtype, index_of(variable) if names is not None else {}, read, names)
     return found
 
 

@@ -34,9 +34,9 @@ def variables(truth, places, num_frames: int, prefix: str = "") -> dict:
     columns = np.array([names.index(name) for name in truth.name.tolist()], int)
     found = {}
     for field in (one for one in truth.__dataclass_fields__ if one not in _OF_ROWS):
-        given, (_, unit, dims) = getattr(truth, field), FIELDS[field]
+        given, (_, unit, dims, meaning) = getattr(truth, field), FIELDS[field]
         values = np.full((num_frames, len(names), *given.shape[1:]), np.nan)
         values[places, columns] = given
         named = ("time", *(prefix + dim for dim in ("object", *dims)))
-        found[prefix + field] = named, values, {"units": unit or "1"}
+        found[prefix + field] = named, values, {"units": unit or "1", "long_name": meaning}
     return found

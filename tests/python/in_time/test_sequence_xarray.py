@@ -59,6 +59,10 @@ def test_datasets_become_netcdf(drive, engine, tmp_path):
         made.to_netcdf(tmp_path / f"{name}.nc", engine=engine)
         with xarray.open_dataset(tmp_path / f"{name}.nc", engine=engine) as read:
             assert read.equals(made) and read.attrs.keys() == made.attrs.keys()
+            for variable in read.data_vars:  # whoever has the file alone knows what its values are
+                assert read[variable].attrs or read[variable].dtype == bool, variable
+                if f"{variable}_names" in read:
+                    assert read[variable].attrs["long_name"] == f"index into {variable}_names, -1: none"
 
 
 KEYS = [0, -1, slice(None), slice(None, None, -2), slice(2, 2), np.array([3, 0]), np.array([], int)]

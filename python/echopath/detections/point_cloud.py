@@ -12,6 +12,9 @@ from ..base.storage.files import written_whole
 _PLACE_AND_SPEED = ("velocity", "range", "azimuth", "elevation")
 _EXTRA = (*_PLACE_AND_SPEED, "snr_db")
 _LAS_STEP = 1e-4  # m
+_MEANINGS = ("radar detections: x ahead, y left, z up in m in the frame of the radar, NaN where no azimuth is known",
+             "intensity in dB over the noise, velocity in m/s (receding positive), range in m from between the antennas,",
+             "azimuth and elevation in rad (left and up positive)")
 
 
 def write_pcd(detections, path) -> None:
@@ -19,7 +22,8 @@ def write_pcd(detections, path) -> None:
     columns = {**dict(zip("xyz", detections.points.T)), "intensity": detections.snr_db}
     columns |= {name: getattr(detections, name) for name in _PLACE_AND_SPEED}
     table = np.stack([np.asarray(column, "<f4") for column in columns.values()], axis=-1).astype("<f4")
-    head = ["# .PCD v0.7 - Point Cloud Data file format", "VERSION 0.7", "FIELDS " + " ".join(columns),
+    head = ["# .PCD v0.7 - Point Cloud Data file format", *(f"# {line}" for line in _MEANINGS), "VERSION 0.7",
+            "FIELDS " + " ".join(columns),
             *(f"{word} " + " ".join([value] * len(columns)) for word, value in (("SIZE", "4"), ("TYPE", "F"), ("COUNT", "1"))),
             f"WIDTH {len(table)}", "HEIGHT 1", "VIEWPOINT 0 0 0 1 0 0 0", f"POINTS {len(table)}", "DATA binary"]
     with written_whole(file("path", path)) as temporary:

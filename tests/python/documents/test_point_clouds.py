@@ -133,6 +133,8 @@ def test_pcd_files_hold_the_points_as_their_head_says(detections, tmp_path):
     assert lines["WIDTH"] == lines["POINTS"] == str(len(detections)) and lines["VERSION"] == "0.7"
     np.testing.assert_allclose(table[:, :3], detections.points, rtol=1e-6)
     np.testing.assert_allclose(table[:, fields.index("velocity")], detections.velocity, rtol=1e-6)
+    remarks = " ".join(line for line in head.decode("ascii").splitlines() if line.startswith("#"))
+    assert all(word in remarks for word in ("receding positive", "left and up positive", "frame of the radar", *fields))
     assert set(lines["SIZE"].split()) == {"4"} and set(lines["TYPE"].split()) == {"F"}
 
 

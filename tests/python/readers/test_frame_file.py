@@ -262,6 +262,17 @@ def test_a_record_alone_is_shown_and_saved_as_paths_alone(saved, tmp_path):
     assert not (tmp_path / "other.h5").exists()
 
 
+def test_a_link_stays_a_link_to_the_file_that_is_written(frame, tmp_path):
+    """As where results are to lie on a larger disk."""
+    (tmp_path / "large").mkdir()
+    link = tmp_path / "frame.h5"
+    link.symlink_to("large/frame.h5")
+    for _ in range(2):  # the file is not there at first
+        frame.paths.save(link)
+        assert link.is_symlink() and [one.name for one in (tmp_path / "large").iterdir()] == ["frame.h5"]
+    assert ep.Paths.load(link).num_paths == frame.paths.num_paths
+
+
 def test_no_file_takes_the_place_of_a_pipe(frame, tmp_path):
     pipe = tmp_path / "here.h5"
     os.mkfifo(pipe)

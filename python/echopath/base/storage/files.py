@@ -14,7 +14,8 @@ from ..process.interrupts import heed, interrupts_are_kept
 
 @contextmanager
 def written_whole(path, suffix: str | None = None):
-    """Yields the path of a temporary file beside `path` that takes its place when the block ends well.
+    """Yields the path of a temporary file beside `path` that takes its place when the block ends well. A link stays one: the file
+    that it names is written.
 
     Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Only what ends the
     process at once leaves it there.
@@ -30,15 +31,16 @@ def _written(path: Path, suffix: str | None):
     if path.exists() and not path.is_file() and not path.is_dir():  # nothing but folders refuses to be replaced
         raise _core.FileError(f"{path}: cannot be written (a device or a pipe, not a file)")
     ending = path.suffix if suffix is None else suffix
-    temporary = path.parent / f".{path.stem}-{secrets.token_hex(8)}{ending}"  # named before it is there: Ctrl-C may come between
+    place = Path(os.path.realpath(path)) if path.is_symlink() else path
+    temporary = place.parent / f".{place.stem}-{secrets.token_hex(8)}{ending}"  # named before it is there: Ctrl-C may come
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        place.parent.mkdir(parents=True, exist_ok=True)
         temporary.touch(exist_ok=False)
         yield temporary
         heed()
         flush(temporary)
-        os.replace(temporary, path)
-        flush(path.parent)
+        os.replace(temporary, place)
+        flush(place.parent)
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
     finally:

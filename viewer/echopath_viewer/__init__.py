@@ -1,6 +1,6 @@
 """Desktop viewer of Echopath: which rays made which cell.
 
-It needs the packages of `pip install 'PySide6-Essentials<6.12' pyvista pyvistaqt vtk`.
+It needs the packages of `pip install 'echopath[viewer]'`.
 
 model: what is shown, in NumPy; scene_builder: fills any pyvista.Plotter; window: Qt. Each works without the next.
 """
@@ -9,7 +9,6 @@ from __future__ import annotations
 import importlib
 from contextlib import contextmanager
 
-PACKAGES = "'PySide6-Essentials<6.12' pyvista pyvistaqt vtk"  # the extra "viewer" of pyproject.toml
 LIBRARIES = ("libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 "
              "libxcb-keysyms1 libxcb-shape0")  # Debian's packages of what Qt's window is linked with
 _EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
@@ -69,7 +68,7 @@ def _told_what_to_install():
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in _EXTRA:
             raise
-        text = f"the viewer needs {error.name}, which is not installed: pip install {PACKAGES}"
+        text = f"the viewer needs {error.name}, which is not installed: pip install 'echopath[viewer]'"
         raise ModuleNotFoundError(text, name=error.name) from None
 
 

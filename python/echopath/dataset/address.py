@@ -44,7 +44,7 @@ class Address:
 
     def __init__(self, address: str):
         try:
-            self._files, self._root = needed_module("fsspec.core", "an address as folder").url_to_fs(address)
+            self._files, self._root = needed_module("fsspec.core", "an address as folder", extra="cluster").url_to_fs(address)
         except (ValueError, ImportError) as error:
             if isinstance(error, ModuleNotFoundError) and error.name == "fsspec":
                 raise

@@ -28,7 +28,7 @@ def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run:
     Raises ModuleNotFoundError without distributed, ConnectionError naming `scheduler` where that cannot be reached or goes away,
     ep.FileError where a worker cannot write.
     """
-    distributed = needed_module("distributed", "scheduler")
+    distributed = needed_module("distributed", "scheduler", extra="cluster")
     try:
         client = distributed.Client(scheduler, set_as_default=False, timeout=_WAIT)
     except (OSError, ValueError) as error:

@@ -33,7 +33,7 @@ def write_pcd(detections, path) -> None:
 def write_las(detections, path) -> int:
     """What stands somewhere, with the fields of _EXTRA as extra dimensions; returns how many detections have no azimuth and are
     left out."""
-    laspy = needed_module("laspy", "Detections.to_las")
+    laspy = needed_module("laspy", "Detections.to_las", extra="las")
     is_placed = np.isfinite(detections.points).all(axis=1)
     points = detections.points[is_placed]
     header = laspy.LasHeader(point_format=6, version="1.4")

@@ -21,7 +21,7 @@ _UNIT_IN_NAME = {"m": "m", "s": "s", "rad": "rad", "m/s": "m_per_s", "rad/s": "r
 
 def make_table(columns: dict, units: dict):
     """A pandas.DataFrame of {name: values} with the units {name: unit} of those that have one."""
-    table = needed_module("pandas", "to_dataframe").DataFrame(columns)
+    table = needed_module("pandas", "to_dataframe", extra="pandas").DataFrame(columns)
     table.attrs["units"] = {name: unit for name, unit in units.items() if name in columns}
     return table
 
@@ -49,7 +49,7 @@ def _as_text(value) -> str:
 
 def paths_table(paths):
     """Paths as a table; see Paths.to_dataframe."""
-    pandas = needed_module("pandas", "to_dataframe")
+    pandas = needed_module("pandas", "to_dataframe", extra="pandas")
     meshes, events = _chains(paths)
     found = families(paths)
     names = np.array([*(stratum.name for stratum in paths.frame.strata), ""], dtype=object)

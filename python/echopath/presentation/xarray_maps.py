@@ -19,7 +19,7 @@ _HITS = ("mesh_id", "triangle_id", "u", "v")
 
 
 def xarray_module():
-    return needed_module("xarray", "to_xarray")
+    return needed_module("xarray", "to_xarray", extra="xarray")
 
 
 def axis(name: str, values):

@@ -66,7 +66,7 @@ def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = N
          picture: str | os.PathLike[str] | None = None, scale: int = 1, block: bool = True) -> QMainWindow | None:
     """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5"); view() is an empty window.
 
-    It needs the packages of `pip install 'PySide6-Essentials<6.12' pyvista pyvistaqt vtk`.
+    It needs the packages of `pip install 'echopath[viewer]'`.
     what: a frame file, a Frame, or the scene of the paths (None: theirs); or frames in time, which open as one time line: a
         Sequence (frames appear as they are simulated), a StoredSequence, a Dataset, a folder of one of these or of frame files,
         a pattern such as "out/frame_*.h5", or a list of files; or a Live, whose objects are then dragged (Shift)
@@ -118,7 +118,7 @@ def plot_rays(scene: _core.Scene | None, paths: _core.Paths, *, selection: str |
               window_size: tuple[int, int] = (1200, 800), return_plotter: bool = False) -> Plotter | None:
     """Draws a scene with its strongest rays: plot_rays(scene, paths, off_screen=True, screenshot="rays.png").
 
-    Needs no screen, but the packages of `pip install 'PySide6-Essentials<6.12' pyvista pyvistaqt vtk`.
+    Needs no screen, but the packages of `pip install 'echopath[viewer]'`.
     scene: that of the paths, or None; paths: of `trace`
     selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, the strongest
     color_by: "bounces", "mesh", "power", "range" or "speed"; cmap, clim: colour map and (low, high) of the last three, in

@@ -89,5 +89,5 @@ def test_detections_are_the_rows_of_their_csv(paths, tmp_path):
 
 def test_without_pandas_the_message_says_what_to_install(labels, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ModuleNotFoundError, match="to_dataframe needs pandas, .*: pip install pandas"):
+    with pytest.raises(ModuleNotFoundError, match=r"to_dataframe needs pandas, .*: pip install 'echopath\[pandas\]'"):
         labels.to_dataframe()

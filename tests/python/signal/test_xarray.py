@@ -56,7 +56,7 @@ def test_values_axes_and_units_are_those_of_the_map(spectrum, radar):
 
 def test_without_xarray_the_message_says_what_to_install(spectrum, monkeypatch):
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(ModuleNotFoundError, match="to_xarray needs xarray, .*: pip install xarray"):
+    with pytest.raises(ModuleNotFoundError, match=r"to_xarray needs xarray, .*: pip install 'echopath\[xarray\]'"):
         spectrum.to_xarray()
 
 

@@ -77,7 +77,7 @@ def test_without_a_screen_it_says_so_at_once(tmp_path, monkeypatch, capsys):
 def test_without_the_extra_it_says_what_to_install():
     script = "import sys; sys.modules['pyvistaqt'] = None; from echopath.cli import main; sys.exit(main(['view']))"
     done = run([sys.executable, "-c", script])
-    assert done.returncode == 2 and "pip install 'PySide6-Essentials<6.12' pyvista pyvistaqt vtk" in done.stderr
+    assert done.returncode == 2 and "pip install 'echopath[viewer]'" in done.stderr
 
 
 @pytest.mark.hard

@@ -31,6 +31,6 @@ def test_a_missing_library_of_the_system_is_named_with_the_packages_that_bring_i
 
 def test_a_missing_qt_is_named_with_what_to_install(monkeypatch):
     _without(monkeypatch, ModuleNotFoundError("No module named 'PySide6'", name="PySide6"))
-    with pytest.raises(ModuleNotFoundError, match="the viewer needs PySide6, which is not installed: pip install 'PySide6-Ess"):
+    with pytest.raises(ModuleNotFoundError, match=r"the viewer needs PySide6, which .*: pip install 'echopath\[viewer\]'"):
         with echopath_viewer._told_what_to_install():
             raise qtpy.QtBindingsNotFoundError

@@ -38,7 +38,7 @@ class ScenePage:
 
     def __init__(self, session):
         """session: model.Session, of which what is drawn is taken. Raises ModuleNotFoundError without plotly."""
-        self._plotly = needed_module("plotly.graph_objects", "the scene as HTML")
+        self._plotly = needed_module("plotly.graph_objects", "the scene as HTML", extra="html")
         self._session, self._seed = session, session.paths.frame.seed
         self._traces = [*self._bodies(), self._antennas(), *self._ray_colours()]
         self._rays = len(self._traces)

@@ -16,11 +16,11 @@ def load_whole(name: str) -> ModuleType:
         return importlib.import_module(name)
 
 
-def needed_module(name: str, user: str, *, library: str = "", extra: str = "") -> ModuleType:
+def needed_module(name: str, user: str, *, extra: str, library: str = "") -> ModuleType:
     """The module `name` of a library that is not always installed.
 
-    user: what needs it, for the message; library: its name where packages are installed from, if not that of the module;
-    extra: that of echopath which brings it, if any. Raises ModuleNotFoundError that says what to install.
+    user: what needs it, for the message; extra: that of echopath which brings it; library: its name where packages are installed
+    from, if not that of the module. Raises ModuleNotFoundError that says what to install.
     """
     package = name.partition(".")[0]
     try:
@@ -28,7 +28,5 @@ def needed_module(name: str, user: str, *, library: str = "", extra: str = "") -
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] != package:
             raise
-        library = library or package
-        wanted = f"'echopath[{extra}]'" if extra else library
-        text = f"{user} needs {library}, which is not installed: pip install {wanted}"
+        text = f"{user} needs {library or package}, which is not installed: pip install 'echopath[{extra}]'"
         raise ModuleNotFoundError(text, name=library) from None

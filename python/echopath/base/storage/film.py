@@ -57,7 +57,7 @@ class _Counted:
 
 
 def _write_mp4(path, pictures, frames_per_second: float) -> int:
-    ffmpeg = needed_module("imageio_ffmpeg", "a film in MP4 (GIF needs nothing)")
+    ffmpeg = needed_module("imageio_ffmpeg", "a film in MP4 (GIF needs nothing)", extra="film")
     first = next(pictures, None)
     if first is None:
         raise ValueError("pictures: must be at least one, got none")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...arguments.checks import checked, path as folder_rule
-from ...base.process.libraries import needed_module
+from ...base.process.libraries import load_whole, needed_module
 from ...base.radar.antennas import centre_of
 from ...base.storage.files import written_whole
 from ...detections.detections import Detections
@@ -67,15 +67,11 @@ def _write_trace(written: list[Any], scene: int, folder: Path) -> None:
 
 def _module(name: str) -> Any:
     """A module of messages. Raises ModuleNotFoundError that says what to install."""
-    try:
-        return needed_module(f"osi3.osi_{name}_pb2", "write_osi")
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError("write_osi needs the messages of OSI, which are not installed: pip install osi-python",
-                                  name=error.name) from None
+    return needed_module(f"osi3.osi_{name}_pb2", "write_osi", library="osi-python", extra="osi")
 
 
 def _protobuf() -> str:
-    return "".join(needed_module("google.protobuf", "write_osi").__version__.split("."))
+    return "".join(load_whole("google.protobuf").__version__.split("."))
 
 
 def _version_text(version: Any) -> str:

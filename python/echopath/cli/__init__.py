@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import suppress
+from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout, suppress
 
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
-from ..base.process.interrupts import interrupts_are_kept
+from ..base.process.interrupts import ends_as_by_ctrl_c, interrupts_are_kept
 from .parser import command_parser
 from .resumable import Unread
 from .typed_names import with_typed_name
@@ -15,11 +15,18 @@ from .warned import warnings_in_lines
 
 EXIT_BAD_INPUT = 2
 EXIT_UNREAD = 141  # what a shell reports of other programs that write to a closed pipe
+SHELL_OF_SIGNAL = 128  # and of those that a signal ended, with its number
 
 
 def main(arguments=None) -> int:
-    """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C, 141 where nobody reads its output before
-    its work is done."""
+    """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C, 143 after SIGTERM, 129 after SIGHUP, 141
+    where nobody reads its output before its work is done."""
+    with _outputs_that_are_there(), ends_as_by_ctrl_c() as ended_by:
+        code = _run(arguments)
+    return SHELL_OF_SIGNAL + ended_by[0] if ended_by and code == EXIT_INTERRUPTED else code
+
+
+def _run(arguments) -> int:
     _print_what_the_output_lacks()
     try:
         options = command_parser().parse_args(arguments)
@@ -45,6 +52,17 @@ def main(arguments=None) -> int:
     finally:
         _let_go_of_unread_outputs()
     return 0
+
+
+@contextmanager
+def _outputs_that_are_there():
+    """What is printed within the block goes nowhere where the program was started without outputs (`>&-`)."""
+    with ExitStack() as stack:
+        if sys.stdout is None:
+            stack.enter_context(redirect_stdout(stack.enter_context(open(os.devnull, "w"))))
+        if sys.stderr is None:
+            stack.enter_context(redirect_stderr(stack.enter_context(open(os.devnull, "w"))))
+        yield
 
 
 def _print_what_the_output_lacks() -> None:

@@ -98,6 +98,9 @@ def scene(options) -> None:
     out = Path(options.out)
     if out.suffix.lower() != ".toml":
         raise ValueError(f"--out: must be a file .toml, got '{options.out}'")
+    if out.exists() and not options.overwrite:
+        raise ValueError("--out: must be a new file, as there may be edits in one that is there (--overwrite takes its place), "
+                         f"got '{options.out}'")
     model = write_scene_file(options.file, out, unit=options.unit, up=options.up)
     print("\n".join([*describe_model(Path(options.file), model), f"wrote {out}: echopath run {quote(str(out))} --out DIR"]))
 

@@ -119,6 +119,7 @@ def _add_scene(commands) -> None:
     scene = commands.add_parser("scene", help="write a scene file for a foreign scene, ready to run and to be edited")
     scene.add_argument("file", metavar="FILE", help="what load_model reads (.usd, .xml, .obj ...)")
     scene.add_argument("--out", type=named, required=True, metavar="SCENE.toml", help="scene file to be written")
+    scene.add_argument("--overwrite", action="store_true", help="also in the place of a file that is there")
     _add_unit_and_up(scene)
     scene.set_defaults(command=work.scene)
 
@@ -173,7 +174,8 @@ def _add_dataset_report(commands) -> None:
 
 def _add_bench(commands) -> None:
     bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=list(BENCHES), help="; ".join(f"{what}: {measured}" for what, measured in BENCHES.items()))
+    bench.add_argument("what", choices=list(BENCHES), metavar="WHAT",
+                       help="; ".join(f"{what}: {measured}" for what, measured in BENCHES.items()))
     bench.add_argument("--out", type=named, required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",

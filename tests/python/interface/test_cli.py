@@ -440,6 +440,64 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path,
     assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
 
 
+def ignore_ctrl_c() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@pytest.mark.parametrize("number, ignored", [(signal.SIGTERM, False), (signal.SIGHUP, False), (signal.SIGTERM, True)],
+                         ids=["SIGTERM", "SIGHUP", "SIGTERM in the background"])
+def test_signals_of_batch_systems_and_terminals_leave_nothing_half_written(tmp_path, number, ignored):
+    """The signal comes in the middle of a file; a shell lets programs in the background of scripts ignore Ctrl-C."""
+    code = f"""
+import os, sys
+from pathlib import Path
+import echopath.cli as cli
+from echopath.base.storage.files import written_whole
+
+def write(options):
+    with written_whole(Path({str(tmp_path / "out" / "frame.h5")!r})) as temporary:
+        temporary.write_bytes(b"half")
+        os.kill(os.getpid(), {int(number)})
+        while True:
+            pass
+
+cli.parser.work.info = write
+sys.exit(cli.main(["info", "any"]))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60,
+                          preexec_fn=ignore_ctrl_c if ignored else heed_ctrl_c)
+    assert (done.returncode, done.stderr.strip()) == (128 + number, "echopath: stopped; no file was left half written")
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_signals_that_the_program_was_started_to_ignore_are_ignored():
+    """As `nohup` has it."""
+    code = """
+import os, signal, sys
+import echopath.cli as cli
+signal.signal(signal.SIGHUP, signal.SIG_IGN)
+cli.parser.work.info = lambda options: os.kill(os.getpid(), signal.SIGHUP)
+sys.exit(cli.main(["info", "any"]))
+"""
+    done = subprocess.run([sys.executable, "-c", code], timeout=60)
+    assert done.returncode == 0
+
+
+def test_a_program_without_outputs_runs(finished_run, monkeypatch):
+    """As a shell starts it with `>&- 2>&-`."""
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(sys, "stderr", None)
+    assert main(["info", str(finished_run[0])]) == 0
+    assert main(["info", "missing.h5"]) == 2
+    assert sys.stdout is None and sys.stderr is None
+
+
+def test_help_fits_a_terminal_of_80_columns(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    for verb in ("demo", "run", "view", "info", "scene", "labels", "dataset", "dataset-report", "bench"):
+        assert max(map(len, call(verb, "--help").stdout.splitlines())) <= 80, verb
+
+
 @pytest.mark.parametrize("there, arguments, kind", [
     ("sequence.h5", (), "frames in time (sequence.h5)"), ("dataset.toml", (), "a dataset (dataset.toml)"),
     ("frame.h5", ("--frames", "2", "--interval", "0.1"), "one frame (frame.h5)"),

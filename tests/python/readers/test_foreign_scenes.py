@@ -296,6 +296,17 @@ def test_commands_that_are_told_can_be_pasted(tmp_path, capsys):
     assert shlex.split(told) == ["echopath", "scene", str(tmp_path / "a b.obj"), "--out", "SCENE.toml"]
 
 
+def test_a_scene_file_that_may_have_been_edited_is_kept(tmp_path, capsys):
+    (tmp_path / "plate.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    out = tmp_path / "plate.toml"
+    out.write_text("edited")
+    assert main(["scene", str(tmp_path / "plate.obj"), "--out", str(out)]) == 2
+    assert "--out: must be a new file, as there may be edits in one that is there (--overwrite " in capsys.readouterr().err
+    assert out.read_text() == "edited"
+    assert main(["scene", str(tmp_path / "plate.obj"), "--out", str(out), "--overwrite"]) == 0
+    assert len(ep.load_scene(out).scene.meshes) == 1
+
+
 def test_scene_writes_a_file_that_runs_with_the_radar_in_the_street(town, tmp_path, capsys):
     out = tmp_path / "run" / "town.toml"
     assert main(["scene", str(town), "--out", str(out)]) == 0

@@ -71,6 +71,34 @@ def interrupts_wait():
             signal.raise_signal(signal.SIGINT)
 
 
+@contextmanager
+def ends_as_by_ctrl_c():
+    """SIGTERM and SIGHUP, by which batch systems and closed terminals end a program, act as Ctrl-C does within the block: what is
+    half written is removed. Yields a list, which then has the number of the signal.
+
+    Those that the program was started to ignore are ignored.
+    """
+    came: list[int] = []
+    if not _is_main_thread():
+        yield came
+        return
+
+    def end(number, frame):
+        came.append(number)
+        if not callable(signal.getsignal(signal.SIGINT)):  # ignored: a script of a shell started it in the background
+            raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)
+
+    answered = [number for number in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(number) == signal.SIG_DFL]
+    for number in answered:
+        signal.signal(number, end)
+    try:
+        yield came
+    finally:
+        for number in answered:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def heed() -> None:
     """Raises KeyboardInterrupt where Ctrl-C was pressed in the block around and got lost; not where what it ends cleans up."""
     if _heard and _is_main_thread() and not isinstance(sys.exc_info()[1], KeyboardInterrupt):

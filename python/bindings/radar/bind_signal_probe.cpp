@@ -8,6 +8,7 @@
 #include "call/define.h"
 #include "echopath/sim/stream/signal_probe.h"
 #include "values/array.h"
+#include "values/travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -53,9 +54,25 @@ py::array share_powers(const SignalProbe& self) {
   return numpy_take(std::move(values));
 }
 
+// Probes travel with all that they hold, also with what they do not show.
+void bind_probed_chirps(py::module_& m) {
+  py::class_<RayShare> share(m, "_RayShare");
+  def_travel(share, field("field", &RayShare::field), field("power", &RayShare::power));
+  py::class_<ProbedChirp> chirp(m, "_ProbedChirp");
+  def_travel(chirp, field("tx", &ProbedChirp::tx), field("rx", &ProbedChirp::rx), field("chirp", &ProbedChirp::chirp),
+             field("sample", &ProbedChirp::sample), field("value", &ProbedChirp::value),
+             field("amplitude_sum", &ProbedChirp::amplitude_sum), field("num_echoes", &ProbedChirp::num_echoes),
+             field("phase_error", &ProbedChirp::phase_error),
+             field("largest_phase_error", &ProbedChirp::largest_phase_error),
+             field("amplitude_error", &ProbedChirp::amplitude_error), field("compared_power", &ProbedChirp::compared_power),
+             field("shares", &ProbedChirp::shares), field("power_sum", &ProbedChirp::power_sum),
+             field("strongest", &ProbedChirp::strongest));
+}
+
 }  // namespace
 
 void bind_signal_probe(py::module_& m) {
+  bind_probed_chirps(m);
   py::class_<SignalProbe> type(m, "SignalProbe",
                                R"(Spot checks of a signal, which `synthesize` and `decompose` fill: SignalProbe(seed=1).
 
@@ -63,8 +80,9 @@ A chirp of the frame, or two of an array's (of each stretch, where it is traced 
 as direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly
 there. Raises TypeError or ValueError naming the argument.)");
   define_init(type, [](Arg<"seed", Seed> seed) { return SignalProbe{*seed, 0, {}}; }, py::kw_only(), py::arg("seed") = 1);
-  type.def_readonly("seed", &SignalProbe::seed, "of the chirps and samples that are drawn")
-      .def_property_readonly("tx", column(&ProbedChirp::tx), "[N] index of the transmitter")
+  def_travel(type, attribute("seed", &SignalProbe::seed, "of the chirps and samples that are drawn"),
+             field("first_chirp", &SignalProbe::first_chirp), field("chirps", &SignalProbe::chirps));
+  type.def_property_readonly("tx", column(&ProbedChirp::tx), "[N] index of the transmitter")
       .def_property_readonly("rx", column(&ProbedChirp::rx), "[N] index of the receiver")
       .def_property_readonly("chirp", column(&ProbedChirp::chirp), "[N] index of the chirp in the frame")
       .def_property_readonly("sample", rows(&ProbedChirp::sample), "[N, 8] indices of samples")

@@ -71,20 +71,14 @@ std::optional<Ends> lifetime_of(const Node& node) {
 
 // What scene.meshes lists.
 struct MeshEntry {
-  uint32_t id;
-  int node_index;
+  uint32_t id = 0;
+  int node_index = 0;
   Node node;
 };
 
-py::dict state_of(const MeshEntry& self) {
-  return py::dict(py::arg("id") = self.id, py::arg("node_index") = self.node_index, py::arg("node") = self.node);
-}
-
-MeshEntry entry_of_state(const py::dict& state) {
-  require_fields(state, {"id", "node_index", "node"});
-  const Node node = Instance<Node>::from(state["node"], "node");
-  require(node.mesh != nullptr && node.material != nullptr, "node", "must have a mesh and a material", node.name);
-  return {Codec<uint32_t>::value(state["id"], "id"), Codec<int>::value(state["node_index"], "node_index"), node};
+void require_mesh(const MeshEntry& entry) {
+  require(entry.node.mesh != nullptr && entry.node.material != nullptr, "node", "must have a mesh and a material",
+          entry.node.name);
 }
 
 uint32_t checked_mesh_id(const Scene& scene, int mesh_id) {
@@ -182,6 +176,7 @@ void bind_nodes(py::module_& m) {
               py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
               py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
               py::arg("visible") = true, py::arg("lifetime") = py::none());
+  define_value(type);
   define_replace(type);
   type.def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
@@ -195,13 +190,13 @@ void bind_nodes(py::module_& m) {
       .def_readonly("visible", &Node::visible, "False: neither it nor what is below it takes part in anything")
       .def_property_readonly("lifetime", &lifetime_of,
                              "(begin, end) in s: it is part of the frames that this covers wholly; None: of all")
-      .def(py::pickle(&keywords_by_attribute<Node>,
-                      [](const py::dict& fields) { return py::type::of<Node>()(**fields).cast<Node>(); }))
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
 
   py::class_<MeshEntry> entry(m, "SceneMesh", "A mesh of a scene with its mesh ID.");
   define_no_init(entry, "scene.meshes");
-  entry.def_readonly("id", &MeshEntry::id, "mesh ID")
+  def_travel_checked(entry, &require_mesh, attribute("id", &MeshEntry::id, "mesh ID"),
+                     field("node_index", &MeshEntry::node_index), field("node", &MeshEntry::node));
+  entry.def("__hash__", [](const MeshEntry& self) { return py::hash(py::make_tuple(self.id, self.node.name)); })
       .def_readonly("node", &MeshEntry::node_index, "index into scene.nodes")
       .def_property_readonly(
           "name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
@@ -216,12 +211,10 @@ void bind_nodes(py::module_& m) {
       .def_property_readonly(
           "material_name", [](const MeshEntry& self) { return self.node.material_name; },
           "as given, \"\" for a material without a name")
-      .def("__repr__",
-           [](const MeshEntry& self) {
-             const std::string count = counted(self.node.mesh->triangles().size(), "triangle");
-             return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + ")";
-           })
-      .def(py::pickle(&state_of, &entry_of_state));
+      .def("__repr__", [](const MeshEntry& self) {
+        const std::string count = counted(self.node.mesh->triangles().size(), "triangle");
+        return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + ")";
+      });
 }
 
 void bind_tree(py::module_& m) {

@@ -267,8 +267,32 @@ def test_meshes_of_a_scene_travel(copied):
         other = copied(mesh)
         assert (other.id, other.node, other.name, other.material) == (mesh.id, mesh.node, mesh.name, mesh.material)
         assert other.mesh == mesh.mesh and np.array_equal(other.triangles, mesh.triangles)
+        assert other == mesh and hash(other) == hash(mesh)
     with pytest.raises(ValueError, match="state: must have the field 'node'"):
         type(mesh).__new__(type(mesh)).__setstate__({"id": 0, "node_index": 0})
+
+
+def test_meshes_of_a_scene_are_found_in_its_list_and_in_that_of_a_copy():
+    scene = overlapping_scene()
+    first, second = scene.meshes
+    changed = scene.copy()
+    assert changed.meshes == scene.meshes and first != second and first != 0
+    assert scene.meshes.index(second) == 1 and {first, second} == set(changed.meshes)
+    changed["small"].material = "metal"
+    assert [mesh.name for mesh in scene.meshes if mesh not in changed.meshes] == ["small"]
+    assert scene.nodes == scene.nodes and scene.nodes != changed.nodes
+
+
+@pytest.mark.parametrize("copied", [there_and_back, copy.copy, copy.deepcopy], ids=["pickle", "copy", "deepcopy"])
+def test_probes_of_signals_travel_with_what_they_found(paths, copied):
+    probe = ep.SignalProbe(seed=3)
+    cube = ep.synthesize(paths, probe=probe)
+    other = copied(probe)
+    assert other == probe and other != ep.SignalProbe(seed=3)
+    assert_same_bits([np.asarray(value).tobytes() for value in properties(other).values()],
+                     [np.asarray(value).tobytes() for value in properties(probe).values()])
+    assert ep.check_signal(cube, other) == ep.check_signal(cube, probe)
+    assert ep.check_rays(other, paths.frame) == ep.check_rays(probe, paths.frame)
 
 
 @pytest.mark.parametrize("name", ["power", "num_bounces"])

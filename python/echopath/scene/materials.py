@@ -25,6 +25,10 @@ class MaterialLibrary(Mapping[str, _core.Material]):
     def __len__(self) -> int:
         return len(self._entries)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        """What the tab key offers behind `ep.materials["`."""
+        return list(self)
+
     def source(self, name: str) -> str:
         """Where the values of a material come from. Raises KeyError."""
         return self._entry(name)[1]

@@ -168,6 +168,10 @@ class Scene(_core.Scene):
         self._index_of(name)
         return SceneNode(self, name)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        """What the tab key offers behind `scene["`."""
+        return list(self)
+
     def _edit(self) -> AbstractContextManager:
         """What an edit is made within, from what it reads of the scene on: that of a live scene keeps other threads away."""
         return nullcontext()

@@ -79,3 +79,11 @@ def test_datasets_tell_of_their_scenes_in_short_lines():
     assert repr(failed) == "MadeScene(1 of 4: scene 0 (train) failed, ValueError: no rays)"
     assert repr(done.record) == "SceneRecord(done: 9 files)"
     assert repr(dataset.Forecast(8, 1.4962, 3024925)) == "Forecast(8 frames in about 1.5 s, 2.9 MiB)"
+
+
+def test_the_tab_key_offers_names_of_a_scene_and_of_materials():
+    """By the method that IPython asks for, as Jupyter does."""
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(), name="walker")
+    assert scene._ipython_key_completions_() == list(scene) and "walker" in list(scene)
+    assert "concrete" in ep.materials._ipython_key_completions_()

@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
+from echopath_viewer.window.background_work import BackgroundWork
 from echopath_viewer.window.qt import QtCore
 from support import shapes
 from support.window import LEFT, PATIENCE_MS
@@ -36,6 +37,19 @@ def test_a_click_in_a_map_of_angles_selects_its_beam(qtbot, window, panels, name
     assert window.session.lit.any() and panel.panel.box.first_range == window.session.cell[0]
     window.session.select_cells(None)
     assert window.session.beam is None and panel.panel.box is None
+
+
+def test_cells_of_another_frame_are_not_marked_in_the_map_of_the_one_before(qtbot, window, panels, frame, monkeypatch):
+    """Until its own is made: cells that the map before does not have had ended the program."""
+    panel = opened(qtbot, window, "Range-azimuth")
+    monkeypatch.setattr(BackgroundWork, "start", lambda self, work: None)
+    longer = frame.radar.replace(waveform=frame.radar.waveform.replace(num_samples=4 * len(panel.map.x)))
+    window.show_input(from_frame(ep.simulate(frame.scene, longer, num_rays=500)))
+    window.session.select_cells(CellBox.around(2 * len(panel.map.x), 3))
+    panel.grab()
+    assert panel.panel.box is None
+    qtbot.mouseClick(panel.panel, LEFT, pos=panel.panel.plot_rect().center().toPoint())
+    assert window.session.beam is None
 
 
 @pytest.mark.filterwarnings("ignore:.*several pairs of polarisations")

@@ -190,14 +190,21 @@ class _AnglePanel(SidePanel):
 
     def marks(self) -> tuple:
         session = self.session
-        if session.box is None:
+        if session.box is None or not self._has_ranges_of(session):
             return None, None
         box = CellBox(session.box.first_range, session.box.last_range, 0, len(self.map.y) - 1)
         angle = None if session.beam is None else np.degrees(session.beam[self.axis])
         cell = None if angle is None else (session.cell[0], nearest_index(self.map.y, angle))
         return box, cell
 
+    def _has_ranges_of(self, session) -> bool:
+        """Whether indices of ranges mean the same: the map may still be that of the frame before."""
+        ranges = np.asarray(session.parts.whole.spectrum.range)
+        return len(self.map.x) == len(ranges) and bool(np.allclose(self.map.x, ranges))
+
     def pick(self, x_index: int, y_index: int) -> None:
+        if not self._has_ranges_of(self.session):
+            return
         angles = [ep.virtual_array(self.session.radar).boresight, 0.0]
         angles[self.axis] = float(np.radians(self.map.y[y_index]))
         self.session.select_beam(x_index, *angles)

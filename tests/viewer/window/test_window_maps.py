@@ -1,13 +1,15 @@
 """Maps and the time bar by real clicks."""
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from echopath.signals.measures import for_pictures
 from echopath_viewer.model import WHOLE, CellBox, from_paths
 from echopath_viewer.window.maps.map_area import HINT
-from echopath_viewer.window.maps.ticks import axis_ticks
+from echopath_viewer.window.maps.ticks import axis_ticks, place_text
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
 
@@ -47,6 +49,31 @@ def test_the_cursor_reads_metres_and_speed_and_power(qtbot, window):
     for word in (f"{whole.spectrum.range[distance]:.2f} m", f"{whole.spectrum.velocity[velocity]:+.2f} m/s",
                  f"{whole.level(0, 0)[velocity, distance]:.1f} dBm"):
         assert for_pictures(word) in text
+
+
+def test_maps_of_many_rules_scroll_and_leave_the_window_its_height(qtbot, window, frame):
+    parts = {f"rule {number} of a long list of rules": "T 'walker' R" for number in range(40)}
+    before, needed = window.height(), window.minimumSizeHint().height()
+    window.show_input(from_paths(frame.paths.scene, frame.paths, parts))
+    settle(qtbot)
+    assert len(window.map_area.panels) > 40 and window.height() == before
+    assert window.minimumSizeHint().height() < needed + 400
+    panels = list(window.map_area.panels.values())
+    assert min(panel.height() for panel in panels) >= 110 and min(panel.width() for panel in panels) >= 140
+    last = window.map_area.part_box.count() - 1
+    assert panels[-1].visibleRegion().isEmpty() and not panels[0].visibleRegion().isEmpty()
+    window.map_area.part_box.setCurrentIndex(last)
+    window.map_area.part_box.activated.emit(last)
+    settle(qtbot)
+    assert not panel_of(window, *window.session.part_key).visibleRegion().isEmpty()
+
+
+@pytest.mark.parametrize("cell, speed, texts", [(0.15, 0.08, ("9.89 m, -1.05 m/s", "9.9 m, -1.1 m/s")),
+                                                (0.0214, 0.24, ("9.888 m, -1.05 m/s", "9.89 m, -1.1 m/s")),
+                                                (15.0, 0.004, ("9.89 m, -1.055 m/s", "9.9 m, -1.05 m/s"))])
+def test_places_in_maps_of_fine_cells_have_more_digits(cell, speed, texts):
+    axes = SimpleNamespace(range=cell * np.arange(4), velocity=speed * np.arange(-2, 2))
+    assert tuple(place_text(axes, 9.8881, -1.0549, is_rough=rough) for rough in (False, True)) == texts
 
 
 def test_a_channel_is_chosen(qtbot, window, frame):

@@ -16,7 +16,7 @@ from .colour_bar import ColourBar
 from .map_area import title_of
 from .map_panel import MapPanel
 from .side_panels import SeenPanel
-from .ticks import step_of
+from .ticks import place_text, step_of
 
 DIFFERENCE_COLOURS, DIFFERENCE_SPAN_DB = "coolwarm", 20.0
 NO_CHANGE = 127  # the colour of it
@@ -147,7 +147,8 @@ class ComparePanel(SeenPanel):
 
     def _read(self, distance: float, velocity: float, level: float) -> None:
         told = f"{level:+z.1f} dB" if self.sender() is self.panels["difference"] else level_text(level)
-        self.note.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {told}"))
+        place = place_text(self.session.parts.whole.spectrum, distance, velocity).replace(", ", "   ")
+        self.note.setText(for_pictures(f"{place}   {told}"))
 
     def stop(self) -> None:
         """There is nothing to end."""

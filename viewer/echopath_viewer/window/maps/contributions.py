@@ -14,6 +14,7 @@ from ..background_work import BackgroundWork
 from ..banner import ThinBar
 from ..qt import Qt, QtGui, QtWidgets
 from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
+from .ticks import place_text
 
 HINT = "Click a cell of the map: which echoes make it?"
 PLAYING_HINT = "Pause the frames to see what makes the cell."
@@ -164,7 +165,7 @@ class ContributionsPanel(QtWidgets.QWidget):
     def _show(self, cell) -> None:
         """cell: CellAttribution."""
         spectrum, (distance, velocity) = self.session.parts.whole.spectrum, self.session.cell
-        place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+z.2f} m/s"
+        place = place_text(spectrum, spectrum.range[distance], spectrum.velocity[velocity])
         if self.session.beam is not None:
             place += ", beam at {:+z.1f}\u00b0, {:+z.1f}\u00b0".format(*np.degrees(self.session.beam))
         level = level_text(cell.level_dbm)
@@ -190,9 +191,10 @@ class ContributionsPanel(QtWidgets.QWidget):
         self._rows = [one for one, _ in rows]
         self.table.clearSelection()
         self.table.setRowCount(len(rows))
+        spectrum = None if self.session is None else self.session.parts.whole.spectrum
         for number, (one, phase) in enumerate(rows):
             level = float(in_dbm(abs(one.value) ** 2, SMALLEST_POWER))
-            peak = "" if one.group is None else f"{one.group.peak_range:.1f} m, {one.group.peak_velocity:+z.1f} m/s"
+            peak = "" if one.group is None else place_text(spectrum, one.group.peak_range, one.group.peak_velocity, is_rough=True)
             texts = (one.name, f"{level:.1f}", change_text(one.without_db), peak)
             for column, text in enumerate(texts):
                 item = QtWidgets.QTableWidgetItem(text if column == 0 else for_pictures(text))

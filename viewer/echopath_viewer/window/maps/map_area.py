@@ -12,8 +12,9 @@ from ...model.maps.part_set import WHOLE, level_text
 from ..busy import waiting_cursor
 from ..qt import Qt, QtCore, QtGui, QtWidgets
 from .colour_bar import ColourBar
+from .map_grid import MapGrid
 from .map_panel import MapPanel
-from .ticks import step_of
+from .ticks import place_text, step_of
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
 MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",
@@ -28,7 +29,7 @@ class MapArea(QtWidgets.QWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session = self._before_pick = None
+        self.session = self._before_pick = self._brought = None
         self.panels: dict[tuple, MapPanel] = {}
         self.view, self.near_view, self.whole_view = (QtCore.QRectF() for _ in range(3))
         self.layout_box, self.part_box, self.partition_box = (QtWidgets.QComboBox() for _ in range(3))
@@ -47,7 +48,7 @@ class MapArea(QtWidgets.QWidget):
         self.by_label = QtWidgets.QLabel("by")
         self.range_label, self.read_out = QtWidgets.QLabel(), QtWidgets.QLabel(HINT)
         self.layer_legend = QtWidgets.QLabel(wordWrap=True, visible=False, textFormat=Qt.TextFormat.RichText)
-        self.colour_bar = ColourBar()
+        self.grid, self.colour_bar = MapGrid(), ColourBar()
         self._arrange()
         self._connect()
 
@@ -63,10 +64,8 @@ class MapArea(QtWidgets.QWidget):
             for item in items:
                 row.addWidget(QtWidgets.QLabel(item) if isinstance(item, str) else item)
         first.addStretch()
-        self.grid = QtWidgets.QGridLayout()
-        self.grid.setSpacing(2)
         maps = QtWidgets.QHBoxLayout()
-        maps.addLayout(self.grid, 1)
+        maps.addWidget(self.grid, 1)
         maps.addWidget(self.colour_bar)
         self.read_out.setWordWrap(True)
         self.read_out.setFixedHeight(2 * self.fontMetrics().lineSpacing() + 4)  # the maps must not move with the text
@@ -154,8 +153,16 @@ class MapArea(QtWidgets.QWidget):
                                            is_current=part.key == self.session.part_key)
         self.colour_bar.show_limits(*limits)
         self.colour_bar.setVisible(self.session.has_map)
+        self._bring_current()
         self._show_layers()
         self._show_marks()
+
+    def _bring_current(self) -> None:
+        """Scrolls to the part that was chosen last, once: what scrolls on stays."""
+        key = self.session.part_key
+        if key != self._brought and key in self.panels:
+            self.grid.bring(self.panels[key])
+        self._brought = key
 
     def _show_layers(self) -> None:
         """Over the map of everything, or over the only one there is; the legend stands below."""
@@ -187,14 +194,9 @@ class MapArea(QtWidgets.QWidget):
         self.range_label.setText(f"{session.dynamic_range_db:.0f} dB")
 
     def _place_panels(self, parts) -> None:
-        for panel in self.panels.values():
-            self.grid.removeWidget(panel)
-            panel.hide()
-            panel.deleteLater()
         self.panels = {part.key: self._new_panel(part.key) for part in parts}
-        columns = 1 if len(parts) == 1 else 2 if len(parts) <= 6 else 3
-        for number, panel in enumerate(self.panels.values()):
-            self.grid.addWidget(panel, number // columns, number % columns)
+        self.grid.place(list(self.panels.values()))
+        self._brought = None
 
     def _new_panel(self, key: tuple) -> MapPanel:
         panel = MapPanel()
@@ -229,7 +231,8 @@ class MapArea(QtWidgets.QWidget):
 
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
         title = title_of(self.session.parts[key]) if self.session.has_map else NO_MAP
-        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+z.2f} m/s   {level_text(level)}   ({title})"))
+        place = place_text(self.session.parts[key].spectrum, distance, velocity).replace(", ", "   ")
+        self.read_out.setText(for_pictures(f"{place}   {level_text(level)}   ({title})"))
 
     def set_view(self, view: QtCore.QRectF) -> None:
         """What all maps show: a rectangle of range in m and velocity in m/s."""

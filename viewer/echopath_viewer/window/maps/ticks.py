@@ -44,5 +44,16 @@ def tick_text(value: float) -> str:
     return for_pictures(f"{round(value, 9) + 0.0:g}")
 
 
+def place_text(spectrum, distance: float, velocity: float, *, is_rough: bool = False) -> str:
+    """Range in m and velocity in m/s with the decimals that the cells of a map have; is_rough: one less."""
+    ranges, velocities = (_decimals(axis) - is_rough for axis in (spectrum.range, spectrum.velocity))
+    return f"{distance:.{ranges}f} m, {velocity:+z.{velocities}f} m/s"
+
+
+def _decimals(axis) -> int:
+    """So that rounding takes no more than a sixth of a cell, two at least."""
+    return max(2, math.ceil(0.5 - math.log10(step_of(axis)) - 1e-9))
+
+
 def step_of(axis) -> float:
     return float(axis[1] - axis[0]) if len(axis) > 1 else 1.0

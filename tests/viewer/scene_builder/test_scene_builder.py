@@ -15,7 +15,7 @@ import pyvista as pv
 from PIL import Image
 
 import echopath as ep
-from echopath_viewer.model import CellBox, Session, from_frame
+from echopath_viewer.model import CellBox, Session, from_frame, from_paths
 from echopath_viewer.model.antennas import world_from_antenna
 from echopath_viewer.off_screen import renderer
 from echopath_viewer.plot import _new_plotter
@@ -23,6 +23,7 @@ from echopath_viewer.scene_builder import VIEWS, SceneBuilder
 from echopath_viewer.scene_builder.antenna_layer import AXIS_COLOURS
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
 from echopath_viewer.scene_builder.ray_layer import RayLayer
+from support import shapes
 
 BASELINES = Path(__file__).parent / "baselines"
 SIZE = (240, 180)
@@ -104,6 +105,22 @@ def test_every_view_shows_what_matters(session, plotter, view):
     seen = project(plotter, corners)
     assert np.abs(seen).max() <= INSIDE
     assert view == "radar" or np.abs(seen).max() > 0.85  # as near as it fits
+
+
+@pytest.mark.parametrize("size", [1.0, 0.01])
+def test_the_picture_holds_objects_and_rays_and_not_all_of_the_ground(plotter, size):
+    """Boxes 6 m and 6 cm ahead of a radar over an unflagged ground that is a thousand times as wide."""
+    scene = ep.Scene()
+    ground = shapes.plate((0.0, 0.0, -size), (0.0, 0.0, 1.0), 1000.0 * size, up=(1.0, 0.0, 0.0))
+    scene.add(ground, name="ground", material="asphalt")
+    scene.add(ep.actors.box(size=(size, size, size)), name="box", position=(6.0 * size, 0, -0.5 * size), material="metal")
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=1e7, num_chirps=2,
+                              chirp_interval=1e-4)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.1 * size, 0))])
+    builder = SceneBuilder(plotter, Session(from_paths(scene, ep.trace(scene, radar, num_rays=500, max_bounces=1))))
+    low, high = builder.corners()
+    assert (low < [0.0, 0.0, -0.5 * size]).all() and high[0] > 6.5 * size
+    assert np.linalg.norm(high - low) < 40.0 * size
 
 
 def test_moving_scenes_keep_their_triangles(session, plotter):

@@ -4,6 +4,7 @@ from __future__ import annotations
 import dataclasses
 
 import echopath as ep
+from echopath import _core
 
 from .maps.part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
 from .maps.signals import both
@@ -74,6 +75,14 @@ class SessionNodes:
         if self.node is None:
             return set()
         return {mesh for mesh, name in enumerate(self.mesh_names) if f"{name}/".startswith(f"{self.node}/")}
+
+    def meshes_of_objects(self) -> list:
+        """IDs of the meshes of what labels take for objects, which leaves out the ground and the walls around the radar; of all
+        that is no mirror where there are none, as in a town that was read as one, or of everything."""
+        objects = _core.meshes_of_usual_objects(self.scene, self.radar, self.time)
+        meshes = sorted(mesh for ids in objects.values() for mesh in ids)
+        return (meshes or [mesh.id for mesh in self.scene.meshes if not mesh.material.mirror]
+                or list(range(len(self.mesh_names))))
 
     def add_part(self, name: str, progress=None) -> Part:
         """Names the visible paths, filters and part together, and adds their map.

@@ -25,6 +25,7 @@ MAX_UNLIT_RAYS = 400     # around lit ones: they only show where those are
 UNLIT_COLOURS, CHOSEN_COLOURS = ((208, 208, 208), (72, 74, 78)), ((20, 20, 20), (245, 245, 245))
 CHOSEN_HIT_COLOUR = (230, 159, 0)
 ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
+MARGIN = 0.1         # m, around what the picture must hold; less around what is smaller than 2 m
 
 
 class SceneBuilder:
@@ -134,14 +135,15 @@ class SceneBuilder:
         look(self.plotter, view, self.corners(), world_from_antenna(radar, antenna, time))
 
     def corners(self):
-        """[N, 3] m: what the picture must hold: rays, antennas and the objects that are no mirrors."""
+        """[2, 3] m: the ends of what the picture must hold: rays, antennas and objects, not the ground and the walls around."""
         session = self.session
-        objects = [mesh.id for mesh in session.scene.meshes if not mesh.material.mirror] or range(len(session.mesh_names))
         rays = self.rays.segments.points
         around_rays = [rays.min(axis=0), rays.max(axis=0)] if len(rays) else []
-        boxes = [*self.meshes.bounds_of(objects), around_rays, session.antennas_at(session.time)]
+        boxes = [*self.meshes.bounds_of(session.meshes_of_objects()), around_rays, session.antennas_at(session.time)]
         corners = np.concatenate([np.reshape(box, (-1, 3)) for box in boxes])
-        return np.stack([corners.min(axis=0) - 0.1, corners.max(axis=0) + 0.1])
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        margin = min(MARGIN, 0.05 * float(np.linalg.norm(high - low))) or MARGIN
+        return np.stack([low - margin, high + margin])
 
     def drawn_layers(self) -> list:
         """The layers that a click may pick a ray of, foremost first."""

@@ -9,6 +9,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, CellIndex, FilterError, Filters, Session, from_paths
+from support.behind_sheets import make_radar, make_scene
 from support.scenes.session_hits import hit_names
 
 
@@ -107,6 +108,17 @@ def test_a_chosen_ray_that_is_hidden_is_chosen_no_more(session, hide):
     assert session.ray == single
     hide(session)
     assert not session.visible[single] and session.ray is None
+
+
+def test_a_ray_tells_the_sheets_that_it_goes_through_on_its_way():
+    scene = make_scene()
+    session = Session(from_paths(scene, ep.trace(scene, make_radar(), num_rays=500, max_bounces=2)))
+    for text, told in (("T P'pane' 'ball' P'pane' R", ["through", "hit 1", "through"]),
+                       ("T 'pane' R & ~(T .* P .* R)", ["hit 1"])):
+        ray = int(np.flatnonzero(session.matches(Filters(expression=text).selection()))[0])
+        lines = [line for line in session.explain(ray) if line[0] in ("through", "hit 1", "hit 2")]
+        assert [label for label, _ in lines] == told
+        assert {text for label, text in lines if label == "through"} <= {"pane"}
 
 
 def test_a_cell_shows_its_power_from_chirp_to_chirp(session, frame):

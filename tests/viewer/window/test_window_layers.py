@@ -104,7 +104,7 @@ def test_every_layer_comes_and_goes(qtbot, layered):
 def test_paths_alone_know_no_detections(frame):
     from echopath_viewer.model import Session, from_paths
     session = Session(from_paths(None, frame.paths))
-    with pytest.raises(ValueError, match="detections: only frames have them, got paths alone"):
+    with pytest.raises(ValueError, match="detections: only frames have them, not paths alone or live views"):
         session.set_layer("detections", True)
     with pytest.raises(ValueError, match="layer: must be one of labels, .*, detections, truth, ghost twins, names, got 'x'"):
         session.set_layer("x", True)

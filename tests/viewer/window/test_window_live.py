@@ -145,6 +145,16 @@ def test_an_object_is_dragged_with_shift(qtbot, live_window):
     settled(qtbot, window)
 
 
+def test_names_stay_while_objects_move(qtbot, live_window):
+    window = live_window
+    settled(qtbot, window)
+    window.layer_actions["names"].trigger()
+    window.live.move("plate", (5.0, 0.5, 0.0))
+    settled(qtbot, window)
+    assert window.layer_actions["names"].isChecked() and window.session.layers == {"names"}
+    window.layer_actions["names"].trigger()
+
+
 def test_radar_material_and_turns_follow(qtbot, live_window):
     window, panel = live_window, live_window.live_panel
     settled(qtbot, window)

@@ -9,6 +9,7 @@ import pytest
 from echopath.signals.measures import for_pictures
 from echopath_viewer.model import WHOLE, CellBox, from_paths
 from echopath_viewer.window.maps.map_area import HINT
+from echopath_viewer.window.maps.map_panel import VELOCITY_LABEL
 from echopath_viewer.window.maps.ticks import axis_ticks, place_text
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
@@ -30,6 +31,8 @@ def test_all_maps_share_one_colour_scale(qtbot, window):
 
 def test_one_large_map_or_all(qtbot, window):
     qtbot.keyClick(window, Qt.Key.Key_M)
+    settle(qtbot)
+    assert panel_of(window, WHOLE, WHOLE).y_text(window.fontMetrics()) == VELOCITY_LABEL
     assert list(window.map_area.panels) == [(WHOLE, WHOLE)]
     window.map_area.partition_box.setCurrentText("count")
     window.map_area.partition_box.activated.emit(1)
@@ -60,6 +63,7 @@ def test_maps_of_many_rules_scroll_and_leave_the_window_its_height(qtbot, window
     assert window.minimumSizeHint().height() < needed + 400
     panels = list(window.map_area.panels.values())
     assert min(panel.height() for panel in panels) >= 110 and min(panel.width() for panel in panels) >= 140
+    assert panels[-1].y_text(window.fontMetrics()) == "m/s"  # there is no room for more
     last = window.map_area.part_box.count() - 1
     assert panels[-1].visibleRegion().isEmpty() and not panels[0].visibleRegion().isEmpty()
     window.map_area.part_box.setCurrentIndex(last)

@@ -8,8 +8,6 @@ import numpy as np
 
 import echopath as ep
 from echopath.arguments.part_names import LEAKAGE
-from echopath.paths.edge_hits import edge_hits
-from echopath.presentation.tables import event
 from echopath.signals.beside import leakage_map
 from echopath.transmit.signals import chirp_of
 
@@ -18,7 +16,7 @@ from .colours import COLOUR_MODES, colour_rays
 from .frames.kept_orders import KEPT_CHANNEL
 from .maps.beams import beam_values, beam_weights, paths_in_beam
 from .maps.cell_index import CellBox, CellIndex
-from .maps.part_set import WHOLE, Part, level_text
+from .maps.part_set import WHOLE, Part
 from .palette import mesh_palette
 from .rays.columns import Columns, read_columns
 from .rays.filters import Filters
@@ -30,7 +28,6 @@ from .session_paths import SessionPaths
 
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
 DYNAMIC_RANGE_DB = 60.0
-_EVENTS = {"S": "specular", "D": "diffuse", "E": "on an edge"}
 ALL_VELOCITIES = "the chirps of the transmitter differ: echoes are in cells of all velocities, and detections tell their rays"
 NOT_DRAWN = "{} go over hidden meshes or have no power"
 MAX_KEPT_BUNDLES = 3     # of rays: those that are shown, lit and chosen
@@ -288,13 +285,3 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         cube = self.cube if self.box is None else self.signals.cube(self.lit, progress=progress)
         tx, rx = self.channel
         return ep.power_by_chirp(cube, tx=tx, rx=rx)
-
-    def explain(self, path: int) -> list[tuple]:
-        """What a path is, in (label, text) lines."""
-        columns = self.columns
-        diffuse, edges = int(self.paths.diffuse[path]), int(edge_hits(self.paths, slice(path, path + 1))[0])
-        events = [_EVENTS[event(diffuse, edges, hit)] for hit in range(int(columns.num_bounces[path]))]
-        hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
-                for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]
-        return [("path", f"{path:,}"), *hits, ("range", f"{columns.range[path]:.3f} m"),
-                ("speed", f"{columns.velocity[path]:+z.3f} m/s"), ("power", level_text(columns.power_dbm(path)))]

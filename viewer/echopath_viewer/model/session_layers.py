@@ -44,7 +44,7 @@ class SessionLayers:
             self._known_data[TWINS] = ghost_twins(self.paths, self.columns, self.told_objects())
             return
         if self.known is None:
-            raise ValueError(f"{layer}: only frames have them, got paths alone")
+            raise ValueError(f"{layer}: only frames have them, not paths alone or live views")
         self._known_data[name] = getattr(self.known, name)(progress)
 
     def known_data(self, layer: str):

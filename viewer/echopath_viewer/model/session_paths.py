@@ -3,20 +3,42 @@ from __future__ import annotations
 
 import numpy as np
 
+from echopath.paths.edge_hits import edge_hits
 from echopath.paths.subset import paths_on, strongest
+from echopath.presentation.tables import event
 
 from .frames.kept_orders import KEPT_CHANNEL
-from .maps.part_set import WHOLE, Part
+from .maps.part_set import WHOLE, Part, level_text
 from .rays.filters import Filters
 from .rays.ray_sample import SAMPLINGS, RaySampler, coherent_powers
 from .rays.touch_groups import TouchGroups
 
+EVENTS = {"S": "specular", "D": "diffuse", "E": "on an edge"}
 MAX_LISTED = 100_000     # rows of the table
 MAX_KEPT_MATCHES = 16    # masks of expressions kept for the next time
 
 
 class SessionPaths:
     """Part of Session: what filters, parts and hidden meshes leave of the paths."""
+
+    def explain(self, path: int) -> list[tuple]:
+        """What a path is, in (label, text) lines: its hits, and the sheets that it goes through on its way."""
+        columns = self.columns
+        diffuse, edges = int(self.paths.diffuse[path]), int(edge_hits(self.paths, slice(path, path + 1))[0])
+        lines = self._passes_of(path, 0)
+        for hit, mesh in enumerate(columns.meshes_of(path)):
+            lines += [(f"hit {hit + 1}", f"{self.mesh_names[mesh]} ({EVENTS[event(diffuse, edges, hit)]})")]
+            lines += self._passes_of(path, hit + 1)
+        return [("path", f"{path:,}"), *lines, ("range", f"{columns.range[path]:.3f} m"),
+                ("speed", f"{columns.velocity[path]:+z.3f} m/s"), ("power", level_text(columns.power_dbm(path)))]
+
+    def _passes_of(self, path: int, leg: int) -> list[tuple]:
+        """Lines of the sheets on a leg of a path."""
+        if not len(self.paths.passes):
+            return []
+        first, last = self.paths.pass_offsets[path:path + 2]
+        passes = self.paths.passes[first:last]
+        return [("through", self.mesh_names[mesh]) for mesh in passes["mesh_id"][passes["leg"] == leg]]
 
     def matches(self, selection):
         """Which paths a selection takes, bool [P]; kept for the next time."""

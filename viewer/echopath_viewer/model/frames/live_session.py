@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import echopath as ep
 
+from ..maps.layers import NAMES
 from ..maps.part_set import PartSet
 from ..maps.signals import Signals
 from ..view_state import apply_state
@@ -49,6 +50,6 @@ def input_of_view(live, view, spectrum_settings: dict | None = None) -> ViewInpu
 
 
 def _without_parts(state: dict) -> dict:
-    """Parts take synthesis, which would slow down what is dragged."""
-    whole = ["whole", "whole"]
-    return state | {"part": whole, "partition": None, "own_parts": {}, "node": None, "node_base": whole, "layers": []}
+    """Parts take synthesis and layers but for names their own time, which would slow down what is dragged."""
+    whole, layers = ["whole", "whole"], [layer for layer in state["layers"] if layer == NAMES]
+    return state | {"part": whole, "partition": None, "own_parts": {}, "node": None, "node_base": whole, "layers": layers}

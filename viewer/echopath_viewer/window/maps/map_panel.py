@@ -241,9 +241,15 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         painter.save()
         painter.translate(8, rect.center().y())
         painter.rotate(-90)
-        painter.drawText(QtCore.QRectF(-90, -8, 180, 14), Qt.AlignmentFlag.AlignCenter, self.y_label)
+        painter.drawText(QtCore.QRectF(-90, -8, 180, 14), Qt.AlignmentFlag.AlignCenter, self.y_text(painter.fontMetrics()))
         painter.restore()
         self._paint_title(painter, font, rect)
+
+    def y_text(self, metrics) -> str:
+        """The label of the vertical axis, its unit alone where there is no room for more; metrics: of its font."""
+        middle = self.plot_rect().center().y()
+        has_room = metrics.horizontalAdvance(self.y_label) <= 2.0 * min(middle, self.height() - middle)
+        return self.y_label if has_room else self.y_label.rpartition(" in ")[2]
 
     def _paint_title(self, painter, font, rect) -> None:
         font.setPointSizeF(font.pointSizeF() + 1.0)

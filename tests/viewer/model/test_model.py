@@ -121,6 +121,23 @@ def test_a_ray_tells_the_sheets_that_it_goes_through_on_its_way():
         assert {text for label, text in lines if label == "through"} <= {"pane"}
 
 
+def test_scales_of_range_and_speed_are_those_of_a_gesture():
+    """Fingers 58 and 68 mm ahead, the first of which comes with 20 mm/s: no more than that is the scale."""
+    scene = ep.Scene()
+    for name, ahead, across, speed in (("first", 0.06, 0.01, -0.02), ("second", 0.07, -0.01, 0.0)):
+        scene.add(ep.actors.box(size=(0.004, 0.004, 0.004)), name=name, position=(ahead, across, -0.002), material="skin",
+                  motion=ep.LinearMotion(velocity=(speed, 0.0, 0.0)))
+    chirps = ep.ChirpSequence(start_frequency=60e9, bandwidth=6e9, num_samples=32, sampling_rate=2e6, num_chirps=4,
+                              chirp_interval=1e-4)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.001, 0))])
+    session = Session(from_paths(scene, ep.trace(scene, radar, num_rays=300, max_bounces=1)))
+    session.set_color_by("range")
+    low, high = session.colouring(session.segments(session.shown_rays())).legend.clim
+    assert 0.057 < low < high < 0.075
+    session.set_color_by("speed")
+    assert session.colouring(session.segments(session.shown_rays())).legend.clim == pytest.approx((-0.02, 0.02), rel=0.05)
+
+
 def test_a_cell_shows_its_power_from_chirp_to_chirp(session, frame):
     session.select_cells(CellBox(0, 60, 0, 31))
     cube = ep.synthesize(frame.paths.select(session.lit))[0, 0]

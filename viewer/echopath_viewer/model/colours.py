@@ -12,6 +12,7 @@ from .palette import rgb_of
 
 COLOUR_MODES = ("bounces", "mesh", "power", "range", "speed")
 POWER_SPAN_DB = 40.0  # below the strongest ray, where no limits are given
+LEAST_SPAN = 1e-3     # m and m/s, of the scales of range and speed: what differs by less has one colour
 MAX_LEGEND_ROWS = 12
 _SCALES = {"power": ("Power in dBm", "viridis"), "range": ("Range in m", "viridis"),
            "speed": ("Radial speed in m/s (away: +)", "coolwarm")}
@@ -93,9 +94,9 @@ def _limits(mode: str, values) -> tuple:
     if mode == "power":
         return float(values.max()) - POWER_SPAN_DB, float(values.max())
     if mode == "speed":
-        fastest = max(float(np.abs(values).max()), 0.1)
+        fastest = max(float(np.abs(values).max()), LEAST_SPAN)
         return -fastest, fastest
-    return float(values.min()), max(float(values.max()), float(values.min()) + 0.1)
+    return float(values.min()), max(float(values.max()), float(values.min()) + LEAST_SPAN)
 
 
 def _by_bounces(columns, segments) -> Colouring:

@@ -1,6 +1,8 @@
 """One range-Doppler map."""
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from echopath.plots.style import MAP_COLOURS
@@ -55,7 +57,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         self._pixels = np.ascontiguousarray(levels_of(level[::-1], limits))
         height, width = self._pixels.shape
         self.image = QtGui.QImage(self._pixels.data, width, height, width, QtGui.QImage.Format.Format_Indexed8)
-        self.image.setColorTable([QtGui.qRgb(*map(int, rgb)) for rgb in colour_table(self._colours)])
+        self.image.setColorTable(_colour_list(self._colours))
         self.update()
 
     def show_nothing(self) -> None:
@@ -260,6 +262,12 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)
+
+
+@functools.cache
+def _colour_list(name: str) -> list:
+    """Of a colour map, as images take it: kept, as making it takes longer than all else of a map."""
+    return [QtGui.qRgb(*map(int, rgb)) for rgb in colour_table(name)]
 
 
 def nearest_index(axis, value: float) -> int:

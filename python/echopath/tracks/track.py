@@ -51,7 +51,8 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     merge_distance: m, detections of a frame nearer to each other are one, in their mean weighted by power; 0: none are
     gate_probability: with which a detection of an object is within its gate, 0.5 to 1
     min_hits: detections that a track needs to count, within max_misses frames in a row without one; then it ends
-    truth_distance: m, from the outline of an object's box at most, for a track to be its
+    truth_distance: m, from the outline of an object's box at most, for a track to be its; one that is nearer to another object
+        by more than half of it does not become its, as the further tracks of a guard rail do not become what passes the rail
     Returns Tracks, empty without any. Raises TypeError or ValueError naming the argument.
     """
     _check_times(times, detections)
@@ -160,8 +161,10 @@ def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:
         places = (there.position, there.yaw) if in_world else (there.position_in_radar, there.yaw_in_radar)
         distance = _outline_distances(np.array([rows[index][3][:2] for index in here]), *places, there.size)
         is_kept = np.array([there.name == kept.get(rows[index][0], "") for index in here])
-        cost = np.where(is_kept & (distance <= truth_distance), -len(here) * (truth_distance + 1.0), distance)
-        pairs = assigned(np.where(distance <= truth_distance, cost, np.inf), truth_distance + 1.0)
+        cost = np.where(is_kept, -len(here) * (truth_distance + 1.0), distance)
+        nearest = np.min(distance, axis=1, keepdims=True, initial=np.inf)
+        is_possible = (distance <= truth_distance) & (is_kept | (distance <= nearest + 0.5 * truth_distance))
+        pairs = assigned(np.where(is_possible, cost, np.inf), truth_distance + 1.0)
         kept |= {rows[here[row]][0]: str(there.name[found]) for row, found in pairs}
         for row, found in pairs:
             names[here[row]] = str(there.name[found])

@@ -56,6 +56,18 @@ def test_crossing_points_keep_their_tracks(seed, merge_distance):
         assert one.state[-1, 2:] == pytest.approx([4.0, 4.0 if one.object[0] == "up" else -4.0], abs=0.5)
 
 
+def test_what_passes_a_rail_is_none_of_its_posts():
+    """A rail of 12 m shows as three posts; what passes it 1.8 m aside stays unseen."""
+    posts = np.array([[10.0, 0.0], [15.0, 0.0], [20.0, 0.0]])
+    positions = np.stack([np.tile([15.0, 0.0], (FRAMES, 1)), np.stack([5.0 + 5.0 * TIMES, np.full(FRAMES, 2.4)], axis=1)], axis=1)
+    truth = truth_of(positions, ["rail", "passing"])
+    truth.size[truth.name == "rail"] = 12.0, 0.2, 0.8
+    tracks = ep.track([posts] * FRAMES, TIMES, truth=truth)
+    assert tracks.num_tracks == 3 and set(tracks.object) == {"rail", ""}
+    beside = ep.track([points[1:] for points in positions], TIMES, truth=truth)
+    assert set(beside.object) == {"passing"}
+
+
 def test_the_truth_of_other_times_is_refused():
     positions = crossing()
     truth = truth_of(positions, ["up", "down"])

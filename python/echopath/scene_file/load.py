@@ -227,9 +227,12 @@ def _trajectory(table: RadarTable, trajectories: Trajectories, key: str) -> Traj
 
 def _place(table: RadarTable, trajectories: Trajectories, key: str) -> dict:
     """Keywords of Radar that say where it is and how it moves."""
-    position, motion = tuple(table.position), motion_of(table.motion, f"{key}.motion") or _trajectory(table, trajectories, key)
-    if table.rides_on is not None:
-        position, motion = (0.0, 0.0, 0.0), motion.motion(position)
+    position = tuple(table.position)
+    if table.rides_on is None:
+        motion = motion_of(table.motion, f"{key}.motion") or _trajectory(table, trajectories, key)
+    else:
+        motion = trajectories.traffic.mount(table.rides_on, position, f"{key}.rides_on")
+        position = (0.0, 0.0, 0.0)
     return {"position": position, "yaw": yaw_of(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
             "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from .. import _core
+from ..actors.vehicles.trucks import DRIVE_AXLE
 from ..arguments.checks import refused
 from ..arguments.names import first_names
 from ..scene.scene import Scene
@@ -41,9 +43,16 @@ class TrafficFiles:
 
     def of(self, name: str, key: str) -> Trajectory:
         """The trajectory of a name, of the first file that has it; key: that asks for it. Raises ValueError."""
+        return self._file_of(name, key).trajectories([name])[name]
+
+    def mount(self, name: str, position, key: str) -> _core.CurveMotion:
+        """The motion of a place [3] in m in the axes of a name, of trucks in those of the cab. Takes and raises as `of` does."""
+        return self.of(name, key).motion(position, axle=self._file_of(name, key).axle(name))
+
+    def _file_of(self, name: str, key: str) -> _File:
         for file in self._files:
             if name in file.ways:
-                return file.trajectories([name])[name]
+                return file
         names = [one for file in self._files for one in file.ways]
         raise refused(ToldValueError, key, f"an id of the [[traffic]], which has {first_names(names) or 'none'}", name)
 
@@ -89,6 +98,12 @@ class _File:
         actors = {name: self._actor(one) for name, one in chosen.items()}
         names = object_names([name for name, actor in actors.items() if actor], others)
         return [{"name": names[name], "actor": actors[name], "kind": chosen[name].kind} for name in names]
+
+    def axle(self, name: str) -> float:
+        """m, of the point ahead of the origin by which a name is steered, as `Trajectory.motion` takes it."""
+        shape = of_kind(self._shapes.items(), self.ways[name].kind, None)
+        has_model = shape is not None and shape.maker is not None and shape.actor is None
+        return DRIVE_AXLE if self._actor(self.ways[name]) == "truck" and not has_model else 0.0
 
     def _actor(self, way: Way) -> str:
         """The actor of what goes along a way, "" for no object."""

@@ -68,6 +68,44 @@ class Track:
         rates = by_yaw * yaw_rate[:, None] + by_pitch * pitch_rate[:, None]
         return values.reshape(-1, 3, 3), rates.reshape(-1, 3, 3)
 
+    def steered_by(self, times, ahead: float):
+        """(place [N, 3] of the origin as a point of the body whose point so many m ahead stays on the path and looks along it, as
+        the drive axle of a tractor does, its velocity, yaw [N], its rate); with headings, those of the track itself."""
+        if self.headings is not None:
+            return *self.places(times), *self.yaws(times)
+        distance, speed, _ = self.profile.at(times)
+        axle, tangent, _ = self.path.at(distance + ahead)
+        yaw, turn = self.path.bearings(distance + ahead)
+        return *shifted(axle, speed[:, None] * tangent, yaw, turn * speed, -ahead), yaw, turn * speed
+
+    def relative(self, moved, has_pitch: bool):
+        """(times -> (place [N, 3] of another body's origin, velocity), times -> (turn [N], rate)) in the axes of the track.
+
+        moved: of that body, times -> as of steered_by
+        """
+        def place(times):
+            (own, own_velocity), (yaw, yaw_rate) = self.places(times), self.yaws(times)
+            found, velocity, _, _ = moved(times)
+            away, speed = found - own, velocity - own_velocity
+            c, s, w = np.cos(yaw), np.sin(yaw), yaw_rate
+            x, y = c * away[:, 0] + s * away[:, 1], c * away[:, 1] - s * away[:, 0]
+            vx, vy = c * speed[:, 0] + s * speed[:, 1], c * speed[:, 1] - s * speed[:, 0]
+            level = 0.0 if has_pitch else 1.0
+            return (np.stack([x, y, level * away[:, 2]], axis=-1),
+                    np.stack([vx + w * y, vy - w * x, level * speed[:, 2]], axis=-1))
+
+        def turn(times):
+            (yaw, rate), (own, own_rate) = moved(times)[2:], self.yaws(times)
+            return yaw - own, rate - own_rate
+        return place, turn
+
+    def junctions_with(self, ahead: float):
+        """Those times, and when a point so many m ahead passes the junctions of the path."""
+        ends = self.profile.at(np.array([self.profile.begin, self.profile.end]))[0]
+        axle = self.path.junctions - ahead
+        passed = self.time_at(axle[(axle > ends[0]) & (axle < ends[1])])
+        return np.unique(np.concatenate([self.junctions(), passed]))
+
     def junctions(self):
         """Times in s at which it may not be smooth: those of the profile, and when it passes those of the path."""
         knots, at_knots = self.profile.times, self.profile.at(self.profile.times)[0]
@@ -140,3 +178,10 @@ class Track:
     def _speed_ahead(self, times):
         distance, speed, _ = self.profile.at(times)
         return speed * np.cos(self.yaws(times)[0] - self.path.bearings(distance)[0])
+
+
+def shifted(place, velocity, yaw, rate, ahead: float):
+    """(place [N, 3], velocity) of the point that is so many m ahead of a place, as the body turns."""
+    c, s, zero = np.cos(yaw), np.sin(yaw), 0.0 * yaw
+    return (place + ahead * np.stack([c, s, zero], axis=-1),
+            velocity + ahead * rate[:, None] * np.stack([-s, c, zero], axis=-1))

@@ -133,14 +133,18 @@ class Trajectory(_core.CurveMotion):
         """Whether it is a person, who is no vehicle whatever the word of the kind."""
         return self._is_person
 
-    def motion(self, position: ArrayLike = (0.0, 0.0, 0.0)) -> _core.CurveMotion:
+    def motion(self, position: ArrayLike = (0.0, 0.0, 0.0), *, axle: float = 0.0) -> _core.CurveMotion:
         """The CurveMotion that the core follows; scenes keep it in the place of the trajectory.
 
         position: [3] m, a place in the axes of what follows the trajectory (x ahead, y left, z up), whose motion is asked for:
             that of a radar behind the bumper of a car, `motion=car.motion((2.2, 0, 0.5))` of one at the origin, swings in curves
-        Raises TypeError or ValueError naming it.
+        axle: m, of the point ahead of the origin that stays on the path and looks along it where that is not the origin: 3.15
+            for what rides on the cab of `ep.actors.truck`. A trajectory with a yaw of its own carries the cab as it says
+        Raises TypeError or ValueError naming the argument.
         """
-        mount = np.asarray(vector("position", position), float)
+        mount, axle = np.asarray(vector("position", position), float), real(-100.0, 100.0, "m")("axle", axle)
+        if axle and self._track.headings is None:
+            return self._motion_on_axle(mount, axle)
         if not np.any(mount):
             return _core.CurveMotion(self.translation, self.rotation)
 
@@ -150,6 +154,30 @@ class Trajectory(_core.CurveMotion):
             return points + axes @ mount, velocities + rates @ mount
 
         return _core.CurveMotion(curve_through(places, self._track.junctions(), TOLERANCE), self.rotation)
+
+    def _motion_on_axle(self, mount, axle: float) -> _core.CurveMotion:
+        track, has_pitch = self._track, self._has_pitch
+        place, turn = track.relative(lambda times: track.steered_by(times, axle), has_pitch)
+
+        def places(times):
+            points, velocities = track.places(times)
+            axes, rates = track.axes(times, has_pitch)
+            (origin, speed), (angle, rate) = place(times), turn(times)
+            c, s = np.cos(angle), np.sin(angle)
+            x, y = c * mount[0] - s * mount[1], s * mount[0] + c * mount[1]
+            own = origin + np.stack([x, y, mount[2] + 0.0 * x], axis=-1)
+            moving = speed + rate[:, None] * np.stack([-y, x, 0.0 * x], axis=-1)
+            return (points + np.einsum("tij,tj->ti", axes, own),
+                    velocities + np.einsum("tij,tj->ti", rates, own) + np.einsum("tij,tj->ti", axes, moving))
+
+        def rotations(times):
+            (values, changes), (angle, rate) = track.rotations(times, has_pitch), turn(times)
+            turned = _turned_about_z(values, angle)
+            return turned, _turned_about_z(changes, angle) + 0.5 * rate[:, None] * _turned_about_z(values, angle + np.pi)
+
+        junctions = track.junctions_with(axle)
+        return _core.CurveMotion(curve_through(places, junctions, TOLERANCE),
+                                 curve_through(rotations, junctions, ROTATION_TOLERANCE))
 
     def position(self, time: ArrayLike) -> np.ndarray:
         """Position [3] or [T, 3] in m at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
@@ -256,6 +284,13 @@ class Trajectory(_core.CurveMotion):
     def __repr__(self) -> str:
         kind = f"'{self.kind}', " if self.kind else ""
         return f"Trajectory({kind}{self.length:.6g} m from {self.begin:g} to {self.end:g} s)"
+
+
+def _turned_about_z(values, angles):
+    """Quaternions [N, 4] (w, x, y, z) times those of turns about z by angles [N] in rad."""
+    c, s = np.cos(0.5 * angles), np.sin(0.5 * angles)
+    w, x, y, z = values.T
+    return np.stack([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s], axis=-1)
 
 
 def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):

@@ -224,6 +224,23 @@ def test_a_trailer_follows_a_tractor_whose_yaw_is_given():
     assert -yaw_of(motion_of(truck, "trailer/roof"), 18.0) == pytest.approx(lag, abs=1e-3)
 
 
+@pytest.mark.parametrize("pitch", [False, True])
+def test_a_radar_on_the_cab_turns_with_the_drive_axle(circling, pitch):
+    """On a circle about a centre, whose tangent the drive axle has: a place ahead of that axle is on a larger circle."""
+    trajectory, truck = circling[0].replace(pitch=pitch), circling[1]
+    x, y = 8.3, 0.4
+    mount = trajectory.motion((x, y, 0.7), axle=DRIVE_AXLE)
+    for time in np.linspace(trajectory.end - 12.0, trajectory.end - 2.0, 9):
+        at = mount.at(time)
+        place = at[:3, 3] - [40.0, CURVE, 0.7]
+        assert np.hypot(*place[:2]) == pytest.approx(math.hypot(CURVE - y, x - DRIVE_AXLE), abs=1e-4)
+        bearing = math.atan2(place[1], place[0]) - math.atan2(x - DRIVE_AXLE, CURVE - y) + math.pi / 2
+        assert np.angle(np.exp(1j * (bearing - math.atan2(at[1, 0], at[0, 0])))) == pytest.approx(0.0, abs=1e-5)
+        assert place[2] == pytest.approx(0.0, abs=1e-5)
+        cab = world_of(trajectory, motion_of(truck, "cab/body"), np.array([x, y, 0.7]), time)
+        assert np.linalg.norm(at[:3, 3] - cab) < 2e-4
+
+
 def test_a_truck_that_backs_up_is_where_it_was_when_it_pulled_out_that_way():
     """A trailer that does not slip goes back as it came, in line where the way out begins."""
     angles = np.linspace(0.0, 0.5 * math.pi, 13)

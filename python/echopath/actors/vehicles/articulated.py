@@ -16,6 +16,7 @@ from ... import _core
 from ...base.process.callers import warn_user
 from ...trajectories.knots import curve_through
 from ...trajectories.profile import Profile, hermite_pieces
+from ...trajectories.track import shifted
 from ...trajectories.trajectory import TOLERANCE
 from ..following import WHEEL_TOLERANCE, Rolling, Wheels, turned
 
@@ -52,31 +53,21 @@ class Towing:
     @cached_property
     def junctions(self):
         """Times in s at which the units may not move smoothly: those of the path, under the origin and under the axle."""
-        track, drive = self._track, self.coupling.drive_axle
-        ends = track.profile.at(np.array([track.profile.begin, track.profile.end]))[0]
-        axle = track.path.junctions - drive
-        passed = track.time_at(axle[(axle > ends[0]) & (axle < ends[1])])
-        return np.unique(np.concatenate([track.junctions(), passed]))
+        return self._track.junctions_with(self.coupling.drive_axle)
 
     def _tractor(self, times):
         """(place [N, 3] of the vehicle's origin as a point of the tractor, its velocity, yaw [N], its rate)."""
-        track, drive = self._track, self.coupling.drive_axle
-        if track.headings is not None:
-            return *track.places(times), *track.yaws(times)
-        distance, speed, _ = track.profile.at(times)
-        axle, tangent, _ = track.path.at(distance + drive)
-        yaw, turn = track.path.bearings(distance + drive)
-        return *_shifted(axle, speed[:, None] * tangent, yaw, turn * speed, -drive), yaw, turn * speed
+        return self._track.steered_by(times, self.coupling.drive_axle)
 
     def _trailer(self, times):
         """The same of the trailer."""
         hitch, velocity = self._hitch(times)
         yaw, rate, _ = self._angle.at(times)
-        return *_shifted(hitch, velocity, yaw, rate, -self.coupling.hitch), yaw, rate
+        return *shifted(hitch, velocity, yaw, rate, -self.coupling.hitch), yaw, rate
 
     def _hitch(self, times):
         """(place [N, 3], velocity [N, 3]) of the hitch."""
-        return _shifted(*self._tractor(times), self.coupling.hitch)
+        return shifted(*self._tractor(times), self.coupling.hitch)
 
     def _steps(self):
         """Times in s between which what rolls is summed up."""
@@ -165,23 +156,8 @@ class Unit:
 
     def _relative(self):
         """(times -> (place [N, 3] of the vehicle's origin, velocity), times -> (turn [N], rate)) in the trajectory's axes."""
-        track = self._towing._track
-
-        def place(times):
-            (own, own_velocity), (yaw, yaw_rate) = track.places(times), track.yaws(times)
-            found, velocity, _, _ = self._moved(times)
-            away, speed = found - own, velocity - own_velocity
-            c, s, w = np.cos(yaw), np.sin(yaw), yaw_rate
-            x, y = c * away[:, 0] + s * away[:, 1], c * away[:, 1] - s * away[:, 0]
-            vx, vy = c * speed[:, 0] + s * speed[:, 1], c * speed[:, 1] - s * speed[:, 0]
-            level = 0.0 if self._towing.trajectory._has_pitch else 1.0
-            return (np.stack([x, y, level * away[:, 2]], axis=-1),
-                    np.stack([vx + w * y, vy - w * x, level * speed[:, 2]], axis=-1))
-
-        def turn(times):
-            (yaw, rate), (own, own_rate) = self._moved(times)[2:], track.yaws(times)
-            return yaw - own, rate - own_rate
-        return place, turn
+        trajectory = self._towing.trajectory
+        return trajectory._track.relative(self._moved, trajectory._has_pitch)
 
 
 def _followed(yaw: float, velocities, steps, length: float) -> list[float]:
@@ -203,13 +179,6 @@ def _followed(yaw: float, velocities, steps, length: float) -> list[float]:
 def _turning(velocity, yaw, length: float):
     """rad/s, of a trailer whose hitch has a velocity (x, y) in m/s."""
     return (velocity[1] * np.cos(yaw) - velocity[0] * np.sin(yaw)) / length
-
-
-def _shifted(place, velocity, yaw, rate, ahead: float):
-    """(place [N, 3], velocity) of the point that is so many m ahead of a place, as the body turns."""
-    c, s, zero = np.cos(yaw), np.sin(yaw), 0.0 * yaw
-    return (place + ahead * np.stack([c, s, zero], axis=-1),
-            velocity + ahead * rate[:, None] * np.stack([-s, c, zero], axis=-1))
 
 
 def _level(point, angle):

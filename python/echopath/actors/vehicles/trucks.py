@@ -48,7 +48,8 @@ def truck(*, speed: float = 0.0, drives: bool = True, trajectory: Trajectory | N
     trajectory: a Trajectory that it follows instead: the tractor's rear axle, 3.15 m ahead of the origin, stays on its path (one
     with a yaw of its own carries the tractor as it says); the trailer follows its hitch without slipping sideways, in line at
     the begin, or at the end of what backs up, and cuts corners as trailers do. All wheels roll their way, those in front
-    steer. Warns (RuntimeWarning) of ways that fold it by more than 90 degrees.
+    steer. `trajectory.motion((8.3, 0, 0.7), axle=3.15)` is that of a radar before its bumper. Warns (RuntimeWarning) of ways
+    that fold it by more than 90 degrees.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
     driving = Driving(speed, drives, trajectory)

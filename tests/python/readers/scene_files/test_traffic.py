@@ -187,6 +187,27 @@ def test_a_mount_swings_with_the_yaw_of_what_carries_it():
         np.testing.assert_allclose(steep.motion(place).at(time)[:3, 3], (steep.at(time) @ [*place, 1.0])[:3], rtol=0, atol=2e-5)
 
 
+@pytest.mark.parametrize("more", ["", 'actors = {"lorry*" = "truck"}'])
+def test_a_radar_that_rides_on_a_truck_stays_before_its_bumper(tmp_path, more):
+    """A table without yaws, whose truck turns by a quarter on 12 m."""
+    angles = np.linspace(0.0, 0.5 * math.pi, 20)
+    way = [(x, 0.0) for x in np.linspace(0.0, 38.0, 20)]
+    way += [(40.0 + 12.0 * math.sin(angle), 12.0 - 12.0 * math.cos(angle)) for angle in angles]
+    way += [(52.0, y) for y in np.linspace(14.0, 40.0, 14)]
+    kind = "lorry_5" if more else "truck_5"
+    times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))]) / 6.0
+    (tmp_path / "way.csv").write_text("time,id,type,x,y\n" + "".join(
+        f"{time},t,{kind},{x},{y}\n" for time, (x, y) in zip(times, way)))
+    (tmp_path / "scene.toml").write_text('[radar]\nrides_on = "t"\nposition = [8.4, 0.0, 0.6]\n' + WAVEFORM + ANTENNAS
+                                         + f'[[traffic]]\nfile = "way.csv"\n{more}\n')
+    loaded = ep.load_scene(tmp_path / "scene.toml")
+    bumper = next(mesh for mesh in loaded.scene.meshes if mesh.name == "t/cab/bumper")
+    for time in np.linspace(1.0, times[-1] - 1.0, 12):
+        pose = loaded.radar.world_from_radar(time)
+        own = (loaded.scene.world_vertices(bumper.id, time) - pose[:3, 3]) @ pose[:3, :3]
+        assert own[:, 0].max() == pytest.approx(8.25 - 8.4, abs=0.1) and abs(own[:, 1].mean()) < 1e-3
+
+
 def test_who_cannot_follow_is_told_with_the_name():
     with pytest.raises(ValueError, match=r"^trajectories\['tom'\]: trajectory: must be one of at most .* for a dog"):
         ep.add_traffic(ep.Scene(), {"tom": ep.Trajectory([(0, 0), (90, 0)], speed=30, kind="dog")})

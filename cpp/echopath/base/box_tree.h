@@ -1,16 +1,14 @@
 #pragma once
 // Finds those of many objects, such as triangles, that may lie in a region of space, by a binary tree of bounding boxes.
-#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "echopath/base/geometry.h"
 #include "echopath/base/threads/job.h"
 
 namespace echopath {
-
-using Box = Eigen::AlignedBox3d;
 
 // Holds a binary tree of boxes. Each branch divides its objects in two halves at the median of the centres of their boxes,
 // so that neither large objects nor distant ones unbalance the tree. To build the tree of n objects takes n log n steps; it

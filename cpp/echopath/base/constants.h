@@ -1,5 +1,5 @@
 #pragma once
-// Defines the physical constants (SI, exact by the 2019 definition) and the conventions of the whole program.
+// Defines the physical constants in SI units and the conventions of the whole program.
 //
 // The conventions have their only home here:
 //  * time factor e^{+jwt}: a wave that travelled L carries e^{-jkL};
@@ -12,10 +12,10 @@
 
 namespace echopath {
 
-inline constexpr double kSpeedOfLight = 299792458.0;             // m/s
-inline constexpr double kBoltzmann = 1.380649e-23;               // J/K
+inline constexpr double kSpeedOfLight = 299792458.0;             // m/s, exact
+inline constexpr double kBoltzmann = 1.380649e-23;               // J/K, exact since 2019
 inline constexpr double kReferenceTemperature = 290.0;           // K, IEEE noise figure
-inline constexpr double kVacuumPermittivity = 8.8541878128e-12;  // F/m
+inline constexpr double kVacuumPermittivity = 8.8541878128e-12;  // F/m, CODATA 2018
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 

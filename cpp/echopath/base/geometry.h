@@ -3,12 +3,15 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace echopath {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
+using Box = Eigen::AlignedBox3d;  // with sides along the axes
 // A transform T turns p_inner into p_outer = T * p_inner; its name reads from right to left, as in world_from_node.
 using Transform = Eigen::Affine3d;
 
@@ -19,6 +22,18 @@ constexpr double kUnitTolerance = 1e-6;
 // Points and normals that are the same have the same component along this direction, and others seldom do by chance: things
 // made by people lie along their axes.
 inline const Vec3 kSortingDirection{0.7193, 0.5271, 0.4526};
+
+// Returns the cross product of two sides of a triangle: it points along the normal that follows from the winding, and is
+// twice as long as the area.
+inline Vec3 cross_of_sides(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
+inline Vec3 cross_of_sides(const std::array<Vec3, 3>& corners) { return cross_of_sides(corners[0], corners[1], corners[2]); }
+
+// Returns the box about some points.
+inline Box box_about(std::span<const Vec3> points) {
+  Box box;
+  for (const Vec3& point : points) box.extend(point);
+  return box;
+}
 
 // Returns the distance from a point to the segment between two others, which may be one.
 inline double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {

@@ -9,8 +9,8 @@ namespace echopath {
 // Holds that box in coordinates of its own, which begin at the mean of the points.
 struct PrincipalBox {
   Vec3 mean;
-  Mat3 axes;                // unit columns; the points spread least along the first
-  Eigen::AlignedBox3d box;  // m
+  Mat3 axes;  // unit columns; the points spread least along the first
+  Box box;    // m
 
   Vec3 coordinates(const Vec3& point) const { return axes.transpose() * (point - mean); }
 };

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kLettersPerSlip = 4;     // a word of so many letters may be misspelt by one
 constexpr size_t kShortestBeginning = 3;  // letters
 
-// What others call what a name of ours stands for; of several names the first that is known counts.
+// Holds what others call what a name of ours stands for; of several names the first that is known counts.
 struct Synonyms {
   const char* names;
   const char* words;

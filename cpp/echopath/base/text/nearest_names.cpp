@@ -51,7 +51,8 @@ size_t edits_of_path(std::string_view word, std::string_view name) {
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count) {
-  // Whether the name does not begin with the word, letters outside the parts that the two paths share, edits between them.
+  // A rank tells whether the name does not begin with the word, how many letters lie outside the parts that the two paths
+  // share, and the edits between them.
   using Rank = std::tuple<bool, size_t, size_t>;
   std::vector<std::pair<Rank, std::string>> ranked;
   ranked.reserve(candidates.size());

@@ -127,7 +127,7 @@ double angle_about(const Wedge& wedge, const Vec3& direction) {
 
 std::complex<double> edge_filter(double linear_phase, double quadratic_phase) {
   const double x = std::abs(0.5 * linear_phase), x2 = x * x;
-  // The means of s^0, s^2 and s^4 times cos(xs) over s in [0, 1].
+  // These are the means of s^0, s^2 and s^4 times cos(xs) over s in [0, 1].
   double mean0, mean2, mean4;
   if (x < 0.2) {
     mean0 = 1.0 - x2 / 6.0 + x2 * x2 / 120.0;

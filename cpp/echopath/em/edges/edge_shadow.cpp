@@ -12,8 +12,8 @@ namespace {
 constexpr double kLeastAcross = 1e-3;       // sine of the angle between a wave and the edge
 constexpr double kLeastOffBoundary = 1e-6;  // rad: nearer to a boundary counts as that far off it
 
-// One of Keller's cotangents with its transition: its boundary lies where `off` (rad) is zero, and n is the exterior angle
-// over pi. `zone` is the number of half Fresnel zones per sine of half of `off`.
+// Is one of Keller's cotangents with its transition: its boundary lies where `off` (rad) is zero, and n is the exterior
+// angle over pi. `zone` is the number of half Fresnel zones per sine of half of `off`.
 struct Term {
   double off, n, zone;
 

@@ -18,8 +18,8 @@ Vec3 beside(const Vec3& direction, const Vec3& along, const Vec3& normal) {
   return (along + kBeside * normal).normalized();
 }
 
-// Returns the direction on Keller's cone about the way `along` at the angle of `in` about the edge, on which coefficients
-// hang alone. Antennas of an array, and those that have moved since the trace, see the edge from beside that cone.
+// Returns the direction on Keller's cone about the way `along` at the angle of `in` about the edge, on which alone
+// coefficients depend. Antennas of an array, and those that have moved since the trace, see the edge from beside that cone.
 Vec3 on_cone(const Vec3& in, const Vec3& along, const Vec3& edge) {
   const double cosine = along.dot(edge), sine = along.cross(edge).norm();
   const Vec3 across = in - in.dot(edge) * edge;
@@ -65,7 +65,7 @@ bool MultipleDiffraction::add_link(const DiffractingEdge& first, const Diffracti
   return false;
 }
 
-// Of a cylindrical wave from the edge, e^{-j pi/4}/sqrt(2 pi k r).
+// Returns the spread of a cylindrical wave from the edge, e^{-j pi/4}/sqrt(2 pi k r).
 std::complex<double> MultipleDiffraction::spread(const Link& link) const {
   return std::polar(1.0 / std::sqrt(kTwoPi * wavenumber_ * link.length), -0.25 * kPi);
 }

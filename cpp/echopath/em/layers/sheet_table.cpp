@@ -19,7 +19,7 @@ SheetTable::SheetTable(const SheetModel& model) {
   }
 }
 
-// The polynomial of Lagrange through the four rows about the cosine.
+// Evaluates the polynomial of Lagrange through the four rows about the cosine.
 SheetPassage SheetTable::passage(double cos_incidence) const {
   const auto steps = static_cast<double>(rows_.size() - 1);
   const double place = std::clamp(cos_incidence, 0.0, 1.0) * steps;

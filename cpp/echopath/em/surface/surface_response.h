@@ -45,9 +45,8 @@ class SurfaceModel {
   const DiffuseLobe& lobe() const { return lobe_; }
   // Returns whether the coefficients depend on the polarisation.
   bool is_dielectric() const { return is_dielectric_; }
-  // is_constant() tells whether the response is the same for all waves; constant() is that response.
+  // Returns whether the response is the same for all waves.
   bool is_constant() const { return !is_dielectric_ && wavenumber_height_ == 0; }
-  const SurfaceResponse& constant() const { return constant_; }
   // Returns whether a part of the power may leave diffusely.
   bool may_scatter() const { return constant_.diffuse > 0 || wavenumber_height_ > 0; }
   // Returns the same as the free function `respond`.

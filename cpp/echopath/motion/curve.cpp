@@ -26,7 +26,7 @@ bool is_limited(const TimeSpan& during) {
   return during.begin > whole.begin && during.end < whole.end;
 }
 
-// The runs that `during` touches, first and last.
+// Returns the first and the last of the runs that `during` touches.
 std::array<int64_t, 2> runs_in(const Playback& playback, const TimeSpan& during) {
   if (playback.period == 0.0 || !is_limited(during)) return {0, 0};
   const int64_t first = playback.run_at(during.begin);

@@ -79,7 +79,7 @@ double angular_speed(const Curve& curve, size_t k) {
   return 2.0 * fastest / std::max(shortest, kShortest);
 }
 
-// The keys between which an unlooped curve is played; all of them where it is looped.
+// Returns the keys between which an unlooped curve is played; all of them where it is looped.
 KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSpan& during) {
   const size_t last = curve.times.size() - 1;
   if (last == 0) return {};

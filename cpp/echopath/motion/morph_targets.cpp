@@ -12,7 +12,7 @@ void check_points(const std::vector<Vec3>& points, const char* argument) {
   for (const Vec3& point : points) require(point.allFinite(), argument, "must be finite", point.transpose());
 }
 
-// The longest displacement of each target, m.
+// Returns the longest displacement of each target, m.
 std::vector<double> extents_of(const std::vector<std::vector<Vec3>>& targets) {
   std::vector<double> extents;
   for (const std::vector<Vec3>& target : targets) {

@@ -7,7 +7,6 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/text/streamed.h"
-#include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
 namespace {
@@ -30,7 +29,7 @@ void require_samples(const std::vector<double>& values, size_t count, const std:
   for (const double value : values) require(std::isfinite(value), name, "must be finite", value);
 }
 
-// "a mean of 1.2 (0.79 dB)"
+// Returns such as "a mean of 1.2 (0.79 dB)".
 std::string in_words(double mean) {
   return "a mean of " + with_digits(4, mean) + " (" + with_digits(4, 10.0 * std::log10(mean)) + " dB)";
 }

@@ -13,6 +13,10 @@ struct AntennaGain {
   double phase = 0.0;  // rad, of the field; enters path amplitudes as e^{j phase}, in transmission and reception
 };
 
+// Bounds the mean power gain over the sphere that an antenna may have: no antenna radiates more power than it is fed. The
+// excess over 1 is noise of tables.
+inline constexpr double kLargestEfficiency = 1.02;
+
 // Holds gain over direction in the antenna's frame: boresight is +x, azimuth turns about z (left, +y, positive), and
 // elevation is taken from the xy-plane.
 //

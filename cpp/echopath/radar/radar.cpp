@@ -13,7 +13,6 @@
 #include "echopath/base/geometry.h"
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/base/text/streamed.h"
-#include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
 namespace {
@@ -115,7 +114,7 @@ double ChirpSequence::mean_interval() const {
 }
 
 double ChirpSequence::slot_start(int64_t slot) const {
-  // One product of an exact integer: equal spacing up to one rounding, however long the frame.
+  // This is one product with an exact integer, so that the spacing is equal up to one rounding, however long the frame.
   const double even = static_cast<double>(slot) * chirp_interval;
   if (extra_idle.empty()) return even;
   const auto length = std::ssize(extra_idle);

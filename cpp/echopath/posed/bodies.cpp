@@ -4,8 +4,8 @@
 
 namespace echopath {
 
-Eigen::AlignedBox3d box_of(const PosedScene& pose, uint32_t mesh_id) {
-  Eigen::AlignedBox3d box;
+Box box_of(const PosedScene& pose, uint32_t mesh_id) {
+  Box box;
   const Mat3& linear = pose.linear(mesh_id);
   const Vec3& translation = pose.world_translation(mesh_id);
   for (const Vec3& vertex : pose.local_vertices(mesh_id)) box.extend(Vec3(linear * vertex + translation));

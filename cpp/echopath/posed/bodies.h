@@ -12,11 +12,11 @@ namespace echopath {
 struct Body {
   int node = 0;  // index into Scene::nodes()
   std::vector<uint32_t> meshes;
-  Eigen::AlignedBox3d box;  // m, along the world's axes
+  Box box;  // m, along the world's axes
 };
 
 // Returns the box of a mesh in m, along the world's axes.
-Eigen::AlignedBox3d box_of(const PosedScene& pose, uint32_t mesh_id);
+Box box_of(const PosedScene& pose, uint32_t mesh_id);
 
 // Returns all bodies that take part and have meshes, in the order of their first meshes. `pose` has all vertices of `scene`.
 std::vector<Body> bodies_of(const Scene& scene, const PosedScene& pose);

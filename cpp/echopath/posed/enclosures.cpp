@@ -26,14 +26,13 @@ double angle_of(const Scene& scene, const PosedScene& pose, uint32_t mesh, const
 
 bool is_whole_sphere(double angle) { return std::abs(angle) > kWholeSphere * 4.0 * kPi; }
 
-bool is_anything_outside(const std::vector<Body>& bodies, const Eigen::AlignedBox3d& box) {
+bool is_anything_outside(const std::vector<Body>& bodies, const Box& box) {
   return std::ranges::any_of(bodies, [&](const Body& body) { return !box.contains(body.box); });
 }
 
 // Returns whether some other body or mesh is wholly beside the box of a mesh; a frame that reaches through a wall of its
 // room is not.
-bool is_anything_beside(const PosedScene& pose, const std::vector<Body>& bodies, const Body& of_mesh,
-                        const Eigen::AlignedBox3d& box) {
+bool is_anything_beside(const PosedScene& pose, const std::vector<Body>& bodies, const Body& of_mesh, const Box& box) {
   return std::ranges::any_of(of_mesh.meshes, [&](uint32_t id) { return !box.intersects(box_of(pose, id)); }) ||
          std::ranges::any_of(bodies, [&](const Body& body) { return &body != &of_mesh && !box.intersects(body.box); });
 }

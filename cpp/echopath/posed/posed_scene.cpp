@@ -9,7 +9,7 @@
 namespace echopath {
 namespace {
 
-// Unit vertex normals [V] of a deforming mesh, in its frame.
+// Returns the unit vertex normals [V] of a deforming mesh, in its frame.
 std::vector<Vec3> whole_deformed_normals(const Node& node, double time) {
   const SurfacePatch patch = make_patch(*node.mesh, std::vector<uint8_t>(node.mesh->triangles().size(), 1), true);
   std::vector<Vec3> vertices, normals;

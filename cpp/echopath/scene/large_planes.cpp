@@ -25,7 +25,7 @@ class PlaneMeasure {
 
   // Returns the triangles of MeshOfLargePlanes; nothing where the mesh is none.
   std::optional<std::vector<uint32_t>> find() const {
-    const Eigen::AlignedBox3d box = box_of_all();
+    const Box box = box_about(vertices_);
     const double extent = box.diagonal().norm();
     if (!(extent >= least_width_at(nearest_distance(box)))) return std::nullopt;  // most meshes are told by their boxes
     Sizes sizes = measured(flat_tolerance(extent));
@@ -43,7 +43,7 @@ class PlaneMeasure {
     Vec3 normal = Vec3::UnitX();  // of the widest plane
   };
 
-  bool are_large(const Sizes& sizes, const Eigen::AlignedBox3d& box) const {
+  bool are_large(const Sizes& sizes, const Box& box) const {
     const double longest = box.sizes().maxCoeff();
     const bool is_short = longest < rule_.least_extent;
     const bool is_as_vehicle = longest <= rule_.vehicle_length && depth_along(sizes.normal) <= rule_.vehicle_width;
@@ -82,12 +82,6 @@ class PlaneMeasure {
     return found;
   }
 
-  Eigen::AlignedBox3d box_of_all() const {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& vertex : vertices_) box.extend(vertex);
-    return box;
-  }
-
   // Returns whether an antenna stands in the box along the mesh's own axes and has more of the mesh around it than half of
   // all directions, as in a room and in no body that it sees from outside.
   bool surrounds_antennas() const {
@@ -111,7 +105,7 @@ class PlaneMeasure {
   // Returns the width in m from which on a plane is large, at a distance in m from the antennas.
   double least_width_at(double distance) const { return kZones * 2.0 * std::sqrt(rule_.wavelength * distance); }
 
-  double nearest_distance(const Eigen::AlignedBox3d& box) const {
+  double nearest_distance(const Box& box) const {
     double nearest = INFINITY;
     for (const Vec3& antenna : rule_.antennas) nearest = std::min(nearest, box.exteriorDistance(antenna));
     return nearest;
@@ -127,19 +121,13 @@ class PlaneMeasure {
     return farthest;
   }
 
-  // Returns the cross product of two sides of a triangle, m^2.
-  Vec3 cross_of(uint32_t triangle) const {
-    const auto& [a, b, c] = triangles_[triangle];
-    return (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]);
-  }
-
   double area_of(const std::vector<uint32_t>& patch) const {
     double twice = 0.0;
-    for (const uint32_t triangle : patch) twice += cross_of(triangle).norm();
+    for (const uint32_t triangle : patch) twice += cross_of_sides(vertices_, triangles_[triangle]).norm();
     return 0.5 * twice;
   }
 
-  Vec3 normal_of(uint32_t triangle) const { return cross_of(triangle).normalized(); }
+  Vec3 normal_of(uint32_t triangle) const { return cross_of_sides(vertices_, triangles_[triangle]).normalized(); }
 
   // Returns from where to where the mesh reaches along a direction, m.
   double depth_along(const Vec3& direction) const {

@@ -10,8 +10,8 @@
 namespace echopath {
 namespace {
 
-// Remembers the seams of the last scenes, because each stage of a frame asks for them and they take long to find: they hang
-// on the meshes and their places to each other alone.
+// Remembers the seams of the last scenes, because each stage of a frame asks for them and they take long to find: they
+// depend only on the meshes and on their places relative to each other.
 class KnownSeams {
  public:
   std::shared_ptr<const SeamedEdges> of(const Scene& scene) {

@@ -14,14 +14,15 @@ namespace {
 
 constexpr double kTouch = 2e-6;  // of the extent of a group of meshes: boxes nearer to each other touch
 
-// A whole mesh at one place in a group of nodes that keep their places to each other. Its parts are meshes of the scene.
+// Describes a whole mesh at one place in a group of nodes that keep their places to each other. Its parts are meshes of the
+// scene.
 struct Placed {
   int group = 0;  // the node that moves them, -1: none
   const Mesh* surface = nullptr;
   Transform place;  // in the frame of the group
   std::vector<uint32_t> meshes;
-  Eigen::AlignedBox3d box;
-  std::vector<Eigen::AlignedBox3d> contacts;
+  Box box;
+  std::vector<Box> contacts;
 };
 
 // Gathers the surfaces of a scene, each once where it stands, whatever is between its parts in the order of the meshes.
@@ -53,7 +54,7 @@ class PlacedSurfaces {
 
 // Sets what of each box others of the same group touch. Sweeps along x.
 void find_contacts(std::vector<Placed>& all) {
-  std::map<int, Eigen::AlignedBox3d> extent;
+  std::map<int, Box> extent;
   for (const Placed& one : all) extent[one.group].extend(one.box);
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -62,11 +63,11 @@ void find_contacts(std::vector<Placed>& all) {
   for (size_t i = 0; i < order.size(); ++i) {
     Placed& one = all[order[i]];
     const Vec3 margin = Vec3::Constant(kTouch * extent[one.group].diagonal().norm());
-    const Eigen::AlignedBox3d wide(one.box.min() - margin, one.box.max() + margin);
+    const Box wide(one.box.min() - margin, one.box.max() + margin);
     for (size_t k = i + 1; k < order.size(); ++k) {
       Placed& other = all[order[k]];
       if (other.group != one.group || other.box.min().x() > wide.max().x()) break;
-      const Eigen::AlignedBox3d common = wide.intersection({other.box.min() - margin, other.box.max() + margin});
+      const Box common = wide.intersection({other.box.min() - margin, other.box.max() + margin});
       if (common.isEmpty()) continue;
       one.contacts.push_back(common);
       other.contacts.push_back(common);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kSamePlace = 1e-6;      // of the extent of the mesh: two lines as near to each other are one
 constexpr double kSameDirection = 1e-6;  // rad, likewise for faces about one edge
 
-// A side of a triangle as a stretch of a line.
+// Describes a side of a triangle as a stretch of a line.
 struct EdgeSide {
   uint32_t surface, triangle, side;
   Vec3 from, to;     // m
@@ -38,7 +38,7 @@ Vec3 one_way(const Vec3& v) {
 class SharpEdgeFinder {
  public:
   explicit SharpEdgeFinder(std::span<const EdgeSurface> surfaces) : surfaces_(surfaces) {
-    Eigen::AlignedBox3d box;
+    Box box;
     for (const EdgeSurface& surface : surfaces_) {
       for (const Vec3& vertex : surface.mesh->vertices()) box.extend(surface.place * vertex);
     }
@@ -127,7 +127,7 @@ class SharpEdgeFinder {
     }
   }
 
-  // A face about an edge.
+  // Describes a face about an edge.
   struct Face {
     double angle;  // rad, about the edge
     Vec3 inward;

@@ -10,13 +10,13 @@ namespace echopath {
 // Describes a surface in the frame in which edges are looked for.
 struct EdgeSurface {
   const Mesh* mesh;
-  Transform place;                            // from the mesh's frame
-  std::vector<Eigen::AlignedBox3d> contacts;  // where others may touch it; empty for one surface alone
+  Transform place;            // from the mesh's frame
+  std::vector<Box> contacts;  // where others may touch it; empty for one surface alone
 
   // Returns whether a side between two points may lie on another surface.
   bool may_touch(const Vec3& from, const Vec3& to) const {
-    Eigen::AlignedBox3d side(from.cwiseMin(to), from.cwiseMax(to));
-    const auto meets = [&](const Eigen::AlignedBox3d& contact) { return contact.intersects(side); };
+    Box side(from.cwiseMin(to), from.cwiseMax(to));
+    const auto meets = [&](const Box& contact) { return contact.intersects(side); };
     return contacts.empty() || std::ranges::any_of(contacts, meets);
   }
 };

@@ -26,14 +26,9 @@ class PatchFinder {
   }
 
  private:
-  Vec3 area_vector(uint32_t triangle) const {
-    const auto& [a, b, c] = triangles_[triangle];
-    return (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]);
-  }
-
   std::vector<uint32_t> by_area() const {
     std::vector<double> areas;
-    for (uint32_t t = 0; t < triangles_.size(); ++t) areas.push_back(area_vector(t).squaredNorm());
+    for (uint32_t t = 0; t < triangles_.size(); ++t) areas.push_back(cross_of_sides(vertices_, triangles_[t]).squaredNorm());
     std::vector<uint32_t> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::ranges::stable_sort(order, std::greater(), [&](uint32_t triangle) { return areas[triangle]; });
@@ -71,11 +66,11 @@ class PatchFinder {
 
   // Returns the mean plane by area, whatever the windings.
   Plane fitted_to(const std::vector<uint32_t>& patch) const {
-    const Vec3 reference = area_vector(patch.front());
+    const Vec3 reference = cross_of_sides(vertices_, triangles_[patch.front()]);
     Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
     double weight = 0.0;
     for (const uint32_t triangle : patch) {
-      const Vec3 area = area_vector(triangle);
+      const Vec3 area = cross_of_sides(vertices_, triangles_[triangle]);
       const auto& [a, b, c] = triangles_[triangle];
       normal += area.dot(reference) < 0 ? Vec3(-area) : area;
       middle += area.norm() / 3.0 * (vertices_[a] + vertices_[b] + vertices_[c]);

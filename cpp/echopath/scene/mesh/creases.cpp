@@ -18,10 +18,6 @@ struct FacetAtVertex {
 };
 using FacetsAtVertex = std::vector<FacetAtVertex>;
 
-Vec3 area_of(const std::vector<Vec3>& vertices, const Triangle& triangle) {
-  return (vertices[triangle[1]] - vertices[triangle[0]]).cross(vertices[triangle[2]] - vertices[triangle[0]]);
-}
-
 bool is_within(const Vec3& a, const Vec3& b, double cosine) { return a.dot(b) >= cosine * a.norm() * b.norm(); }
 
 // Returns the facets at those vertices where a facet is too far from the normal to be smooth. Wherever surfaces meet in a
@@ -32,7 +28,7 @@ std::map<uint32_t, FacetsAtVertex> facets_at_creases(const std::vector<Vec3>& ve
   for (Vec3& normal : normals) normal.stableNormalize();
   std::map<uint32_t, FacetsAtVertex> found;
   for (const Triangle& triangle : triangles) {
-    const Vec3 area = area_of(vertices, triangle);
+    const Vec3 area = cross_of_sides(vertices, triangle);
     const double least = kCreaseCosine * area.norm();
     for (const uint32_t vertex : triangle) {
       if (area.dot(normals[vertex]) < least) found.try_emplace(vertex);
@@ -41,7 +37,7 @@ std::map<uint32_t, FacetsAtVertex> facets_at_creases(const std::vector<Vec3>& ve
   for (uint32_t t = 0; !found.empty() && t < triangles.size(); ++t) {
     for (uint32_t corner = 0; corner < 3; ++corner) {
       const auto at = found.find(triangles[t][corner]);
-      if (at != found.end()) at->second.push_back({{t, corner}, area_of(vertices, triangles[t]), at->second.size()});
+      if (at != found.end()) at->second.push_back({{t, corner}, cross_of_sides(vertices, triangles[t]), at->second.size()});
     }
   }
   return found;

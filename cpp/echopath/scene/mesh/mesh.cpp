@@ -102,21 +102,16 @@ void sort_and_check(std::vector<uint32_t>& triangles, size_t num_triangles) {
   require(triangles.back() < num_triangles, "triangles", "must be below their number in the whole mesh", triangles.back());
 }
 
-// Returns the area in m^2, along the normal that follows from the winding.
-Vec3 area_vector(const std::vector<Vec3>& vertices, const Triangle& t) {
-  return 0.5 * (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
-}
-
 double surface_area(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   double area = 0.0;
-  for (const Triangle& triangle : triangles) area += area_vector(vertices, triangle).norm();
+  for (const Triangle& triangle : triangles) area += 0.5 * cross_of_sides(vertices, triangle).norm();
   return area;
 }
 
 // Compares all vertices with the plane of the first triangle.
 bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   constexpr double kRelative = 1e-6;
-  const Vec3 normal = area_vector(vertices, triangles.front()).normalized(), &origin = vertices[triangles.front()[0]];
+  const Vec3 normal = cross_of_sides(vertices, triangles.front()).normalized(), &origin = vertices[triangles.front()[0]];
   return std::ranges::all_of(vertices, [&](const Vec3& vertex) {
     const Vec3 line = vertex - origin;
     return std::abs(normal.dot(line)) <= kRelative * line.norm();
@@ -196,7 +191,7 @@ Mesh::~Mesh() = default;
 void Mesh::measure() {
   area_ = surface_area(vertices_, triangles_);
   is_flat_ = lie_in_a_plane(vertices_, triangles_);
-  for (const Vec3& vertex : vertices_) box_.extend(vertex);
+  box_ = box_about(vertices_);
   boxes_of_runs_ = find_boxes_of_runs(vertices_, triangles_);
 }
 

@@ -13,6 +13,11 @@ namespace echopath {
 
 using Triangle = std::array<uint32_t, 3>;
 
+// Returns the cross product of two sides of a triangle of these vertices (base/geometry.h).
+inline Vec3 cross_of_sides(const std::vector<Vec3>& vertices, const Triangle& triangle) {
+  return cross_of_sides(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]);
+}
+
 struct SharpEdge;  // scene/edges/sharp_edges.h
 
 class Mesh;
@@ -42,11 +47,11 @@ class Mesh {
   int64_t num_removed_triangles() const { return num_removed_triangles_; }
   int64_t num_input_vertices() const { return num_input_vertices_; }  // as many as a Deformation must have
   int64_t num_duplicated_vertices() const { return num_duplicated_vertices_; }
-  bool is_closed() const { return is_closed_; }            // no boundary edge, no duplicated vertex
-  double area() const { return area_; }                    // m^2
-  bool is_flat() const { return is_flat_; }                // all vertices in one plane, to 1e-6 of the extent
-  const Eigen::AlignedBox3d& box() const { return box_; }  // m, of the vertices
-  const std::vector<Eigen::AlignedBox3d>& boxes_of_runs() const { return boxes_of_runs_; }  // m
+  bool is_closed() const { return is_closed_; }  // no boundary edge, no duplicated vertex
+  double area() const { return area_; }          // m^2
+  bool is_flat() const { return is_flat_; }      // all vertices in one plane, to 1e-6 of the extent
+  const Box& box() const { return box_; }        // m, of the vertices
+  const std::vector<Box>& boxes_of_runs() const { return boxes_of_runs_; }  // m
   // These return the edges that find_sharp_edges finds, and the triangles that edge_neighbours finds [F]; they look for them
   // at the first call, and are thread-safe.
   const std::vector<SharpEdge>& sharp_edges() const;
@@ -70,9 +75,9 @@ class Mesh {
   std::vector<uint32_t> original_triangle_, original_vertex_;
   int64_t num_input_vertices_ = 0, num_removed_triangles_ = 0, num_duplicated_vertices_ = 0;
   bool is_closed_ = false, is_flat_ = false;
-  double area_ = 0.0;        // m^2
-  Eigen::AlignedBox3d box_;  // m
-  std::vector<Eigen::AlignedBox3d> boxes_of_runs_;
+  double area_ = 0.0;  // m^2
+  Box box_;            // m
+  std::vector<Box> boxes_of_runs_;
   MeshPtr whole_;
   std::vector<uint32_t> whole_triangle_, whole_vertex_;
   struct Found;

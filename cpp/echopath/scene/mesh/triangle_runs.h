@@ -12,7 +12,7 @@ namespace echopath {
 inline constexpr uint32_t kRunLength = 16;  // triangles; the last run may be shorter
 
 // Returns the boxes of the runs of a mesh, in order, m.
-std::vector<Eigen::AlignedBox3d> find_boxes_of_runs(const std::vector<Vec3>& vertices,
-                                                    const std::vector<std::array<uint32_t, 3>>& triangles);
+std::vector<Box> find_boxes_of_runs(const std::vector<Vec3>& vertices,
+                                    const std::vector<std::array<uint32_t, 3>>& triangles);
 
 }  // namespace echopath

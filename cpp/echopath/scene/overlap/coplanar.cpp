@@ -30,9 +30,7 @@ struct OverlapPair {
   std::pair<uint32_t, uint32_t> meshes() const { return {first_mesh_id, second_mesh_id}; }
 };
 
-double triangle_area(const Corners& corners) {
-  return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
-}
+double triangle_area(const Corners& corners) { return 0.5 * cross_of_sides(corners).norm(); }
 
 PosedTriangles pose_triangles(const Scene& scene, double time, const Job* job) {
   PosedTriangles posed;
@@ -81,7 +79,7 @@ PosedTriangles without_copies(const PosedTriangles& posed, const std::vector<uin
 class OverlapSearch {
  public:
   OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
-      : tree_(static_cast<uint32_t>(posed.corners.size()), [&](uint32_t i) { return box_of(posed.corners[i]); },
+      : tree_(static_cast<uint32_t>(posed.corners.size()), [&](uint32_t i) { return box_about(posed.corners[i]); },
               kTrianglesOfLeaf, job),
         max_distance_(max_distance) {
     triangles_.reserve(tree_.size());
@@ -115,7 +113,7 @@ class OverlapSearch {
     };
     tree_.walk(may_hold, [&](const BoxTree::Branch& leaf) {
       for (uint32_t other = std::max(leaf.begin, place + 1); other < leaf.end; ++other) {
-        if (!plane.may_meet(box_of(triangles_[other]), max_distance_)) continue;
+        if (!plane.may_meet(box_about(triangles_[other]), max_distance_)) continue;
         const auto overlap = plane.overlap(triangles_[other], max_distance_);
         if (overlap) found.push_back(overlap_pair(place, other, *overlap));
       }

@@ -56,22 +56,15 @@ bool is_apart(const Corners& seen, double distance) {
 }
 
 bool is_parallel(const Corners& seen) {
-  const Vec3 normal = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
+  const Vec3 normal = cross_of_sides(seen[0], seen[1], seen[2]);
   return std::abs(normal.z()) > kMinCosine * normal.norm();
 }
 
 }  // namespace
 
-Box box_of(const Corners& corners) {
-  Box box(corners[0]);
-  box.extend(corners[1]);
-  box.extend(corners[2]);
-  return box;
-}
-
 FacetPlane::FacetPlane(const Corners& corners)
-    : box_(box_of(corners)), origin_(corners[0]), across_((corners[1] - corners[0]).normalized()),
-      normal_((corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized()), height_(height_of(corners)) {
+    : box_(box_about(corners)), origin_(corners[0]), across_((corners[1] - corners[0]).normalized()),
+      normal_(cross_of_sides(corners).normalized()), height_(height_of(corners)) {
   up_ = normal_.cross(across_);
   for (size_t k = 0; k < 3; ++k) corners_[k] = seen(corners[k]);
   sides_ = sides_of(corners_);

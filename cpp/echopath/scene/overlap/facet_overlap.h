@@ -9,8 +9,6 @@ namespace echopath {
 
 using Corners = std::array<Vec3, 3>;
 
-Box box_of(const Corners& corners);
-
 // Describes the region where two triangles overlap.
 struct FacetOverlap {
   double area = 0.0;      // m^2

@@ -12,17 +12,12 @@ Vec3 unit_of(const Vec3& vector) {
   return std::isfinite(length) && length > 0.0 ? Vec3(vector / length) : Vec3(Vec3::Zero());
 }
 
-Vec3 vector_area(const Soup& soup, uint32_t triangle) {
-  const Triangle& t = soup.triangles[triangle];
-  return (soup.vertices[t[1]] - soup.vertices[t[0]]).cross(soup.vertices[t[2]] - soup.vertices[t[0]]);
-}
-
 }  // namespace
 
 CornerNormals::CornerNormals(const Soup& soup) : soup_(soup) {
   for (uint32_t t = 0; t < soup.triangles.size(); ++t) {
     if (smoothing(t) == 0 || has_own(t)) continue;
-    const Vec3 area = vector_area(soup, t);
+    const Vec3 area = cross_of_sides(soup.vertices, soup.triangles[t]);
     for (const uint32_t vertex : soup.triangles[t]) {
       sums_.try_emplace(key(smoothing(t), vertex), Vec3::Zero()).first->second += area;
     }
@@ -34,7 +29,7 @@ bool CornerNormals::are_given(const std::vector<uint32_t>& triangles) const {
 }
 
 std::array<Vec3, 3> CornerNormals::of(uint32_t triangle) const {
-  const Vec3 facet = unit_of(vector_area(soup_, triangle));
+  const Vec3 facet = unit_of(cross_of_sides(soup_.vertices, soup_.triangles[triangle]));
   std::array<Vec3, 3> found = {facet, facet, facet};
   for (size_t k = 0; k < 3; ++k) {
     Vec3 normal = Vec3::Zero();

@@ -103,7 +103,7 @@ class ObjLines : public std::streambuf {
     else check_face(values);
   }
 
-  // A number, or `on`; everything else, such as `off`, is none.
+  // Returns the group that a line `s` names, 1 for `on`; anything else but a number, such as `off`, names none.
   static uint32_t smoothing_of(std::string_view values) {
     const std::string_view word = take_word(values);
     if (word == "on") return 1;

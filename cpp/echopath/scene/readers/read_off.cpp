@@ -3,7 +3,6 @@
 #include <string_view>
 #include <utility>
 
-#include "echopath/base/errors.h"
 #include "echopath/scene/readers/obj_words.h"
 #include "echopath/scene/readers/soup.h"
 #include "echopath/scene/readers/text_lines.h"

@@ -79,7 +79,7 @@ std::optional<Eigen::Vector2d> on_curve(const ReflectingTriangle& triangle, cons
 
 ReflectingTriangle reflecting_triangle(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals) {
   ReflectingTriangle out{corners, normals, (corners[0] + corners[1] + corners[2]) / 3.0,
-                         (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized()};
+                         cross_of_sides(corners).normalized()};
   if (!is_smooth_facet(out.facet_normal, normals)) out.normals.fill(out.facet_normal);
   for (size_t i = 0; i < 3; ++i) {
     out.radius = std::max(out.radius, (corners[i] - out.centre).norm());

@@ -201,9 +201,9 @@ class Sums {
   void add_even(size_t group, size_t path, double power) {
     GroupSums& sums = groups_[group];
     sums.lattice_squares += power * power;
-    const int turn = paths_.frame.sampler == Sampler::kLattice ? turn_of_ray(paths_.flags[path]) : 0;
-    if (turn > 0) {
-      rows_[group][paths_.passes_of(path).empty() ? 0 : 1].add(turn, power);
+    const int place = paths_.frame.sampler == Sampler::kLattice ? place_in_row(paths_.flags[path]) : 0;
+    if (place > 0) {
+      rows_[group][paths_.passes_of(path).empty() ? 0 : 1].add(place, power);
     } else if (paths_.frame.scatterers == Scatterers::kSurface) {
       triangles_[group].add(paths_.hits_of(static_cast<int64_t>(path))[std::countr_zero(paths_.diffuse[path])], power);
     } else {

@@ -2,6 +2,7 @@
 // Holds the record of a trace: what every ray touched. It is immutable after the trace; selections share the hits.
 #include <array>
 #include <bit>
+#include <compare>
 #include <complex>
 #include <cstdint>
 #include <memory>
@@ -30,6 +31,12 @@ struct Hit {  // 16 bytes
       : mesh_id(mesh), triangle_id(triangle), u(first), v(second) {}
 };
 static_assert(sizeof(Hit) == 16);
+
+// Names a triangle among all of a scene.
+struct TriangleName {
+  uint32_t mesh_id, triangle_id;
+  auto operator<=>(const TriangleName&) const = default;
+};
 
 // Names where a path goes through a sheet (Material::layers), which is no bounce.
 struct Pass {    // 20 bytes
@@ -79,12 +86,12 @@ constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
 constexpr int edge_hit(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 8 & 63u) : -1; }
 constexpr int num_edge_hits(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 3 & 3u) + 1 : 0; }
 constexpr int num_edge_pieces(uint32_t flags) { return static_cast<int>(flags >> 16); }
-// Paths of rays that leave along the rows of the launch lattice hold, in the place of a hit on an edge, which ray of its row
-// they are of: 1 to kRaysInTurn, over and over. Rays next to each other in this order are neighbours in the lattice. 0 is of
-// other rays.
-inline constexpr int kRaysInTurn = 63;
-constexpr uint32_t turn_flags(int64_t index) { return static_cast<uint32_t>(index % kRaysInTurn + 1) << 8; }
-constexpr int turn_of_ray(uint32_t flags) {
+// Paths of rays that leave along the rows of the launch lattice hold, in the place of a hit on an edge, the place of the ray
+// in its row: from 1 to kPlacesInRow and then again from 1. Rays at neighbouring places are neighbours in the lattice. 0
+// stands for other rays.
+inline constexpr int kPlacesInRow = 63;
+constexpr uint32_t place_flags(int64_t index) { return static_cast<uint32_t>(index % kPlacesInRow + 1) << 8; }
+constexpr int place_in_row(uint32_t flags) {
   return flags & (kEdgePath | kBesideEdge) ? 0 : static_cast<int>(flags >> 8 & 63u);
 }
 // Returns the flag of a ray's paths by its index: 0 or kSecondHalf. It is the parity of the index's digits (Thue and Morse),
@@ -163,7 +170,7 @@ struct Paths {
   std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
   std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
-  // bits: kReversedPath, kSecondHalf with turn_flags, kStandsForOthers, kBesideEdge with beside_edge_flags, kEdgePath with
+  // bits: kReversedPath, kSecondHalf with place_flags, kStandsForOthers, kBesideEdge with beside_edge_flags, kEdgePath with
   // edge_flags
   std::vector<uint32_t> flags;
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of

@@ -1,5 +1,6 @@
 #pragma once
 // A scene is a tree of named nodes with placements, motions and meshes; a pose is its geometry at one time.
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@
 namespace echopath {
 
 using MaterialPtr = std::shared_ptr<const Material>;
+
+// Stands in the place of a mesh ID where there is no mesh.
+inline constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
 
 struct Node {
   std::string name;                                // full path, "street/pedestrian/arm_left"

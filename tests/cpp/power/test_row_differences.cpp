@@ -14,7 +14,7 @@ namespace {
 
 using Power = std::function<double(const Eigen::Vector2d&)>;  // of a ray at a point of the unit disc
 
-int turn_at(int64_t index) { return turn_of_ray(turn_flags(index)); }
+int place_at(int64_t index) { return place_in_row(place_flags(index)); }
 
 struct Scatter {
   double variance = 0.0, estimate = 0.0;  // of the sums of many lattices; mean of what they say themselves
@@ -28,13 +28,13 @@ Scatter scatter_of(int64_t num_rays, const Power& power) {
   double sum_of_sums = 0.0, sum_of_squares = 0.0;
   Scatter out;
   for (int i = 0; i < kLattices; ++i) {
-    const LaunchLattice lattice(LaunchDomain{}, num_rays, Eigen::Vector2d(uniform(random), uniform(random)));
+    const LaunchLattice lattice(LaunchDomain{}, num_rays, {Eigen::Vector2d(uniform(random), uniform(random))});
     const Eigen::Vector2d moved(0.05 * uniform(random), 0.05 * uniform(random));
     RowDifferences rows;
     double sum = 0.0;
     for (int64_t ray = 0; ray < lattice.size(); ++ray) {
       const double of_ray = power(lattice.point(ray) + moved);
-      if (of_ray > 0.0) rows.add(turn_at(ray), of_ray);
+      if (of_ray > 0.0) rows.add(place_at(ray), of_ray);
       sum += of_ray;
     }
     sum_of_sums += sum / kLattices;
@@ -77,7 +77,7 @@ TEST(RowDifferences, OfIndependentRaysAddUpTheirVariances) {
   std::uniform_real_distribution<double> uniform;
   RowDifferences rows;
   for (int64_t ray = 0; ray < kRays; ++ray) {
-    if (uniform(random) < kShare) rows.add(turn_at(ray), uniform(random));
+    if (uniform(random) < kShare) rows.add(place_at(ray), uniform(random));
   }
   EXPECT_NEAR(rows.variance() / (kRays * kVarianceOfOne), 1.0, kChance);
 }
@@ -86,8 +86,8 @@ TEST(RowDifferences, OfIndependentRaysAddUpTheirVariances) {
 TEST(RowDifferences, LoneHitsHaveTheVarianceOfACount) {
   RowDifferences rows, parted;
   for (int64_t k = 1; k <= 10; ++k) {
-    rows.add(turn_at(10 * k), 2.0);
-    for (int i = 0; i < 4; ++i) parted.add(turn_at(10 * k), 0.5);
+    rows.add(place_at(10 * k), 2.0);
+    for (int i = 0; i < 4; ++i) parted.add(place_at(10 * k), 0.5);
   }
   EXPECT_DOUBLE_EQ(rows.variance(), 10 * 2.0 * 2.0);
   EXPECT_DOUBLE_EQ(parted.variance(), rows.variance());
@@ -98,7 +98,7 @@ TEST(RowDifferences, LoneHitsHaveTheVarianceOfACount) {
 TEST(RowDifferences, EvenRowsErrAtTheirEnds) {
   constexpr double kAtOutlines = 0.34;
   RowDifferences rows;
-  for (int64_t ray = 5; ray < 1005; ++ray) rows.add(turn_at(ray), 1.0);
+  for (int64_t ray = 5; ray < 1005; ++ray) rows.add(place_at(ray), 1.0);
   EXPECT_DOUBLE_EQ(rows.variance(), kAtOutlines * (0.5 + 0.5));
 }
 

@@ -228,7 +228,7 @@ TEST(Launch, OwnersCoverEachSurfaceOnce) {
     });
   }
   constexpr int64_t kEven = 1000000;  // directions over the whole sphere, for comparison
-  const LaunchLattice lattice(LaunchDomain{}, kEven, Eigen::Vector2d(0.3, 0.8));
+  const LaunchLattice lattice(LaunchDomain{}, kEven, {Eigen::Vector2d(0.3, 0.8)});
   const LaunchDirections sphere({Stratum{}});
   for (int64_t i = 0; i < kEven; ++i) {
     shoot(sphere.direction(0, lattice.point(i)), [&](uint32_t mesh) { seen[mesh] += 4 * kPi / kEven; });

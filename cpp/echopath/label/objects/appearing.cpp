@@ -124,7 +124,7 @@ class Watch {
     EmbreeScene::MeshHits met;
     while (true) {
       geometry_.intersect_meshes(begin, directions, stretch, geometry_.mask_of(mesh), met);
-      if (met.mesh_id[0] == mesh || met.mesh_id[0] == EmbreeScene::kNothing) return met.mesh_id[0] == mesh;
+      if (met.mesh_id[0] == mesh || met.mesh_id[0] == kNoMesh) return met.mesh_id[0] == mesh;
       stretch.begin[0] = met.distance[0] * ObjectView::kAfter;
     }
   }

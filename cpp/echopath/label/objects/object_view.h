@@ -11,7 +11,7 @@ namespace echopath {
 
 class ObjectView {
  public:
-  static constexpr uint32_t kNothing = EmbreeScene::kNothing;
+  static constexpr uint32_t kNothing = kNoMesh;
   // Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
   static constexpr double kSameDepth = 1e-5;
   static constexpr double kAfter = 1.0 + 1e-7;  // times a distance: one step of single precision
@@ -45,7 +45,7 @@ class ObjectView {
   uint32_t object_;
   Vec3 apex_;
   std::vector<uint32_t> mesh_ids_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  // of its meshes, or one of all
+  std::vector<Box> boxes_;  // of its meshes, or one of all
   uint32_t mask_ = 0;
 };
 

@@ -34,7 +34,7 @@ double mean_depth(const Mesh& mesh, const std::vector<Vec3>& vertex_normals) {
       corners[i] = mesh.vertices()[triangle[i]];
       normals[i] = vertex_normals[triangle[i]];
     }
-    const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const Vec3 across = cross_of_sides(corners);
     const double size = across.norm();
     area += size;
     if (is_smooth_facet(across / size, normals)) sum += size * mean_depth(corners, normals);

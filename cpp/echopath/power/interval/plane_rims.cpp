@@ -141,9 +141,7 @@ double rims_at_most(std::span<const RimWaves> planes, std::span<const double> se
 FacetedBody::FacetedBody(std::vector<Vec3> vertices, const std::vector<Triangle>& triangles, bool is_closed)
     : vertices_(std::move(vertices)), triangles_(triangles), neighbours_(edge_neighbours(vertices_, triangles)),
       patch_of_(triangles.size()) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : vertices_) box.extend(vertex);
-  patches_ = planar_patches(vertices_, triangles, flat_tolerance(box.diagonal().norm()));
+  patches_ = planar_patches(vertices_, triangles, flat_tolerance(box_about(vertices_).diagonal().norm()));
   for (size_t patch = 0; patch < patches_.size(); ++patch) {
     for (const uint32_t triangle : patches_[patch]) patch_of_[triangle] = static_cast<uint32_t>(patch);
     planes_.push_back(plane_of(patches_[patch]));
@@ -166,7 +164,7 @@ Plane FacetedBody::plane_of(const std::vector<uint32_t>& patch) const {
   Vec3 point = Vec3::Zero(), largest = Vec3::Zero();
   for (const uint32_t triangle : patch) {
     const auto [a, b, c] = corners(triangle);
-    const Vec3 area = (b - a).cross(c - a);
+    const Vec3 area = cross_of_sides(a, b, c);
     if (area.squaredNorm() <= largest.squaredNorm()) continue;
     largest = area;
     point = a;

@@ -13,12 +13,12 @@ constexpr int kFarApart = 3;          // rays between which no difference counts
 
 }  // namespace
 
-void RowDifferences::add(int turn, double power) {
-  if (turn != turn_) {
-    const int steps = turn_ == 0 ? kFarApart : (turn - turn_ + kRaysInTurn) % kRaysInTurn;
+void RowDifferences::add(int place, double power) {
+  if (place != place_) {
+    const int steps = place_ == 0 ? kFarApart : (place - place_ + kPlacesInRow) % kPlacesInRow;
     end_ray();
     for (int i = 1; i < std::min(steps, kFarApart); ++i) push(0.0);
-    turn_ = turn;
+    place_ = place;
   }
   open_ += power;
 }

@@ -12,8 +12,8 @@ namespace echopath {
 // surface whose semivariogram rises with that power of the distance (Matheron 1963).
 class RowDifferences {
  public:
-  // Adds to the power, W, of the ray `turn` (turn_of_ray). Rays come in the order of the record.
-  void add(int turn, double power);
+  // Adds to the power, W, of the ray at a place of its row (place_in_row). Rays come in the order of the record.
+  void add(int place, double power);
   // Returns the variance of the sum of all that was added, W^2.
   double variance() const;
 
@@ -21,7 +21,7 @@ class RowDifferences {
   void push(double power);
   void end_ray();
 
-  int turn_ = 0;                      // of the ray that may get more; 0: none yet
+  int place_ = 0;                     // of the ray that may get more; 0: none yet
   double open_ = 0.0;                 // W, of that ray
   double before_ = 0.0, last_ = 0.0;  // W, of the two rays before
   double next_ = 0.0, second_ = 0.0;  // W^2, g1 and g2

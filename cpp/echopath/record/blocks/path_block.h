@@ -14,7 +14,7 @@ class PathBlock {
   std::vector<Hit> hits;
   PathColumns rows;                  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
-  uint32_t current_ray = 0;          // flags of the same paths: kSecondHalf, turn_flags
+  uint32_t current_ray = 0;          // flags of the same paths: kSecondHalf, place_flags
   // This column has a row for each path up to the last one that ends behind a curved bounce; rows of other paths are zeros.
   std::vector<std::array<float, 7>> curved_cell;
   std::vector<JonesMatrix> jones;      // has a row for each path up to the last polarised one, likewise

@@ -1,19 +1,16 @@
 #include "echopath/trace/connect/antenna_legs.h"
 
 namespace echopath {
-namespace {
 
-AntennaView view_for_legs(const Vec3& antenna, const MirrorFrusta& found, const RayContext& context, bool serve_legs) {
+AntennaView view_for_legs(const Vec3& antenna, const MirrorFrusta& found, bool serve_legs, const SbrSettings& settings) {
   if (!serve_legs) return {antenna, {}, {}};
-  return view_of(antenna, with_at_most(found, most_leg_mirrors(context.settings)));
+  return view_of(antenna, with_at_most(found, most_leg_mirrors(settings)));
 }
-
-}  // namespace
 
 AntennaLegs::AntennaLegs(const RayContext& context, const AntennaFrusta& frusta)
     : finder_(context.geometry, context.mirrors, context.settings.frequency, context.settings.polarization),
-      transmitter_(view_for_legs(context.settings.transmitter, frusta.transmitter, context, frusta.serve_legs)),
-      receiver_(view_for_legs(context.settings.receiver, frusta.receiver, context, frusta.serve_legs)),
+      transmitter_(view_for_legs(context.settings.transmitter, frusta.transmitter, frusta.serve_legs, context.settings)),
+      receiver_(view_for_legs(context.settings.receiver, frusta.receiver, frusta.serve_legs, context.settings)),
       are_straight_(with_at_most(frusta.transmitter, most_leg_mirrors(context.settings)).empty() &&
                     with_at_most(frusta.receiver, most_leg_mirrors(context.settings)).empty()) {}
 

@@ -30,6 +30,10 @@ class AntennaLegs {
   bool are_straight_;
 };
 
+// Returns the view of an antenna in which its legs are searched. `found` has its frusta; the view has none of them unless
+// they serve legs.
+AntennaView view_for_legs(const Vec3& antenna, const MirrorFrusta& found, bool serve_legs, const SbrSettings& settings);
+
 // Returns the leg over a sequence of mirrors, or null where there is none.
 inline const Leg* leg_over(const std::vector<Leg>& legs, MirrorSequence sequence) {
   for (const Leg& leg : legs) {

@@ -5,7 +5,6 @@
 // stationary phase along it; what comes around several edges, as those on both sides of a board, adds up with its phases.
 // All edges of bodies count as those of perfect conductors: the part that follows from the shadow, which is most of it near
 // the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none.
-#include <limits>
 #include <vector>
 
 #include "echopath/base/geometry.h"
@@ -26,7 +25,6 @@ struct AroundQuery {
 
 // Holds the strongest leg around one edge, and what all of them bring.
 struct LegAroundEdge {
-  static constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
   uint32_t mesh_id = kNoMesh;  // whose edge; kNoMesh: nothing is in the way, or no edge leads there
   Vec3 point = Vec3::Zero();   // m, world: on the edge
   double length = 0.0;         // m, of the leg

@@ -5,9 +5,9 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/trace/connect/antenna_legs.h"
 #include "echopath/trace/edges/edge_coefficients.h"
 #include "echopath/trace/edges/edge_sequences.h"
-#include "echopath/trace/mirrors/legs.h"
 
 namespace echopath {
 namespace {
@@ -17,21 +17,16 @@ constexpr double kFrontPhase = 0.8;        // rad, quadratic phase over half a p
 constexpr double kOfBody = 1.0 / 16;       // of the extent of a body, a piece at most where a part of the edge is hidden
 constexpr double kLeastDiffracted = 0.03;  // of what the edge of a half plane sends
 
-AntennaView view_for_edges(const Vec3& antenna, const MirrorFrusta& found, const EdgeQuery& query) {
-  if (!query.frusta.serve_legs) return {antenna, {}, {}};
-  return view_of(antenna, with_at_most(found, most_leg_mirrors(query.settings)));
-}
-
 // Returns the extent (m) of the body that each mesh belongs to, by mesh ID.
 std::vector<double> extents_of_bodies(const EdgeQuery& query) {
   const SceneEdges found(query.scene);
-  std::vector<Eigen::AlignedBox3d> box(query.scene.meshes().size());
+  std::vector<Box> box(query.scene.meshes().size());
   for (uint32_t id = 0; id < box.size(); ++id) {
     if (!found.of(id).empty()) box[found.body_of(id)].extend(query.geometry.box(id));
   }
   std::vector<double> extent;
   for (uint32_t id = 0; id < box.size(); ++id) {
-    const Eigen::AlignedBox3d& body = box[found.body_of(id)];
+    const Box& body = box[found.body_of(id)];
     extent.push_back(body.isEmpty() ? 0.0 : body.diagonal().norm());
   }
   return extent;
@@ -46,8 +41,9 @@ class EdgeTracer {
       : query_(query), coefficients_(query.settings.polarization), extent_(extents_of_bodies(query)),
         wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight), sequences_(query.edges, kTwoPi / wavenumber_),
         finder_(query.geometry, query.mirrors, query.settings.frequency, query.settings.polarization),
-        transmitter_(view_for_edges(query.settings.transmitter, query.frusta.transmitter, query)),
-        receiver_(view_for_edges(query.settings.receiver, query.frusta.receiver, query)) {}
+        transmitter_(
+            view_for_legs(query.settings.transmitter, query.frusta.transmitter, query.frusta.serve_legs, query.settings)),
+        receiver_(view_for_legs(query.settings.receiver, query.frusta.receiver, query.frusta.serve_legs, query.settings)) {}
 
   // Holds what is needed while one thread follows edges.
   struct Scratch {

@@ -37,7 +37,7 @@ std::vector<EdgeSequences::OnPlane> EdgeSequences::sorted_faces(const Vec3& midd
 }
 
 void EdgeSequences::find_planes() {
-  Eigen::AlignedBox3d box;
+  Box box;
   for (const PosedEdge& edge : edges_) box.extend(edge.from).extend(edge.to);
   const double extent = edges_.empty() ? 0.0 : box.diagonal().norm();
   const std::vector<OnPlane> faces = sorted_faces(edges_.empty() ? Vec3(Vec3::Zero()) : Vec3(box.center()), extent);

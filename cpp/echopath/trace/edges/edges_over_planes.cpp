@@ -19,13 +19,13 @@ constexpr double kFrontPhaseOverPlanes = 0.1;  // rad, quadratic phase over half
 constexpr double kOfLitEdge = 1.0 / 16;        // of the edge, a piece at most
 constexpr double kOfWave = 0.5;                // wavelengths, the shortest piece for that
 
-// An edge, and what the antennas light over planes of its faces.
+// Holds an edge, and what the antennas light over planes of its faces.
 struct LitEdge : PosedEdge {
   std::vector<const LitPlane*> transmit, receive;
 };
 
 // Returns the stretch of a segment within a box, in shares of it; empty where the first is larger.
-std::pair<double, double> stretch_within(const Vec3& from, const Vec3& to, const Eigen::AlignedBox3d& box) {
+std::pair<double, double> stretch_within(const Vec3& from, const Vec3& to, const Box& box) {
   double begin = 0.0, end = 1.0;
   const Vec3 line = to - from;
   for (int axis = 0; axis < 3; ++axis) {

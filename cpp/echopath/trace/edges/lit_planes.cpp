@@ -27,7 +27,7 @@ bool LitPlanes::may_mirror(const Hit& hit) const {
 }
 
 void LitPlanes::add_chains(const PathBlock& block) {
-  std::vector<Facet> facets;
+  std::vector<TriangleName> facets;
   for (const PathBlock::LitChain& chain : block.lit_chains) {
     const std::span<const Hit> hits(block.chain_hits.data() + chain.first, chain.count);
     if (!std::ranges::all_of(hits, [&](const Hit& hit) { return may_mirror(hit); })) continue;
@@ -45,11 +45,11 @@ void LitPlanes::add_chains(const PathBlock& block) {
 
 void LitPlanes::find_planes() {
   for (const auto& [facets, boxes] : chains_) {
-    for (const Facet& facet : facets) plane_of_facet_[facet] = -1;
+    for (const TriangleName& facet : facets) plane_of_facet_[facet] = -1;
   }
   for (auto& [facet, index] : plane_of_facet_) {
     const auto corners = geometry_.corners(facet.mesh_id, facet.triangle_id);
-    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    const Vec3 normal = cross_of_sides(corners).normalized();
     index = plane_through(corners, normal);
     if (index >= 0) continue;
     index = static_cast<int>(planes_.size());
@@ -77,19 +77,19 @@ int LitPlanes::plane_of(const Hit& hit) const {
   if (const auto known = plane_of_facet_.find({hit.mesh_id, hit.triangle_id}); known != plane_of_facet_.end())
     return known->second;
   const auto corners = geometry_.corners(hit.mesh_id, hit.triangle_id);
-  return plane_through(corners, (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized());
+  return plane_through(corners, cross_of_sides(corners).normalized());
 }
 
 void LitPlanes::finish(double antenna_distance) {
   find_planes();
   Found there, back;
-  const auto widened = [&](const Eigen::AlignedBox3d& box) -> Eigen::AlignedBox3d {
+  const auto widened = [&](const Box& box) -> Box {
     const Vec3 around = Vec3::Constant(kApart * antenna_distance);
     return {box.min() - around, box.max() + around};
   };
   for (const auto& [facets, boxes] : chains_) {
     std::vector<int> planes;
-    for (const Facet& facet : facets) planes.push_back(plane_of_facet_.at(facet));
+    for (const TriangleName& facet : facets) planes.push_back(plane_of_facet_.at(facet));
     there[{{planes.begin(), planes.end() - 1}, planes.back()}].extend(boxes.back());
     for (size_t k = 0; k + 1 < planes.size(); ++k) {
       const std::vector<int> mirrors(planes.rbegin(), planes.rend() - static_cast<int64_t>(k) - 1);

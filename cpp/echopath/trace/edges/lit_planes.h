@@ -15,7 +15,7 @@ namespace echopath {
 struct LitPlane {
   std::vector<int> mirrors;  // in order of travel from the antenna
   int plane;
-  Eigen::AlignedBox3d box;  // m: where rays met it, and the space to the rays beside them
+  Box box;  // m: where rays met it, and the space to the rays beside them
 };
 
 // Holds the planes of the facets that mirrored a ray or at which a mirrored ray arrived. Facets of sheets are left out,
@@ -42,12 +42,8 @@ class LitPlanes {
   int plane_through(std::span<const Vec3> points, const Vec3& normal) const;
 
  private:
-  struct Facet {
-    uint32_t mesh_id, triangle_id;
-    auto operator<=>(const Facet&) const = default;
-  };
-  using Boxes = std::vector<Eigen::AlignedBox3d>;  // of each facet of a chain
-  using Found = std::map<std::pair<std::vector<int>, int>, Eigen::AlignedBox3d>;
+  using Boxes = std::vector<Box>;  // of each facet of a chain
+  using Found = std::map<std::pair<std::vector<int>, int>, Box>;
 
   bool may_mirror(const Hit& hit) const;
   void find_planes();
@@ -56,8 +52,8 @@ class LitPlanes {
   const Scene& scene_;
   const EmbreeScene& geometry_;
   double tolerance_;  // m
-  std::map<std::vector<Facet>, Boxes> chains_;
-  std::map<Facet, int> plane_of_facet_;
+  std::map<std::vector<TriangleName>, Boxes> chains_;
+  std::map<TriangleName, int> plane_of_facet_;
   std::vector<Plane> planes_;
   std::vector<std::pair<double, int>> by_slope_;  // planes by a key that nearly parallel ones share
   std::vector<LitPlane> from_transmitter_, from_receiver_;

@@ -49,9 +49,7 @@ void EmbreeMeshes::place_in_world(const PosedScene& pose, uint32_t mesh_id) {
   Posed& posed = meshes_[mesh_id];
   posed.width = std::make_unique<Lazy<double>>();
   posed.vertices = pose.world_vertices(mesh_id);
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : posed.vertices) box.extend(vertex);
-  world_boxes_[mesh_id] = box;
+  world_boxes_[mesh_id] = box_about(posed.vertices);
   posed.normals = posed.source.smooth ? pose.world_normals(mesh_id) : std::vector<Vec3>();
 }
 
@@ -66,8 +64,8 @@ void EmbreeMeshes::count_from_origin(const Scene& scene, uint32_t mesh_id) {
 std::vector<uint32_t> EmbreeMeshes::update(const Scene& scene, const PosedScene& pose, const OriginRule& origin) {
   std::vector<uint32_t> changed = take_sources(scene, pose);
   for (const uint32_t mesh_id : changed) place_in_world(pose, mesh_id);
-  Eigen::AlignedBox3d all;
-  for (const Eigen::AlignedBox3d& box : world_boxes_) all.extend(box);
+  Box all;
+  for (const Box& box : world_boxes_) all.extend(box);
   const Vec3 next = origin(all);
   require_in_range(next, "scene", "what is next to the radar");
   if (next != origin_) {
@@ -87,9 +85,9 @@ const Mat3* EmbreeMeshes::rigid_pose(uint32_t mesh_id) const {
   return source.deformation ? nullptr : &source.linear;
 }
 
-Eigen::AlignedBox3d EmbreeMeshes::box(uint32_t mesh_id) const {
-  const Eigen::AlignedBox3d& box = world_boxes_[mesh_id];
-  return box.isEmpty() ? box : Eigen::AlignedBox3d(box.min() - origin_, box.max() - origin_);
+Box EmbreeMeshes::box(uint32_t mesh_id) const {
+  const Box& box = world_boxes_[mesh_id];
+  return box.isEmpty() ? box : Box(box.min() - origin_, box.max() - origin_);
 }
 
 EmbreeMeshes::Extent EmbreeMeshes::extent() const {
@@ -97,7 +95,7 @@ EmbreeMeshes::Extent EmbreeMeshes::extent() const {
   double volumes = 0.0;
   for (uint32_t mesh_id = 0; mesh_id < size(); ++mesh_id) {
     extent.is_anything_moving = extent.is_anything_moving || is_moving(mesh_id);
-    const Eigen::AlignedBox3d own = box(mesh_id);
+    const Box own = box(mesh_id);
     if (own.isEmpty()) continue;
     extent.box.extend(own);
     volumes += own.volume();

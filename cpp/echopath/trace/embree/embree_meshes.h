@@ -17,7 +17,7 @@ enum class Sees : uint32_t { kOpaque = 0x7FFFFFFFu, kSheets = 0x80000000u, kAll 
 class EmbreeMeshes {
  public:
   // Returns the origin (m, world) for meshes within a bounding box (m, world).
-  using OriginRule = std::function<Vec3(const Eigen::AlignedBox3d& box)>;
+  using OriginRule = std::function<Vec3(const Box& box)>;
   // Returns the IDs of the meshes that differ from those of the last call, ascending: all meshes where the origin or the
   // number of meshes has changed, none where nothing moves. Raises invalid_argument naming the mesh that is out of the range
   // of coordinates (base/range_of_coordinates.h) about the origin; after that it may only be destroyed.
@@ -39,15 +39,15 @@ class EmbreeMeshes {
     if (is_sheet(mesh_id)) return static_cast<uint32_t>(Sees::kSheets);
     return uint32_t{1} << (static_cast<unsigned>(meshes_[mesh_id].source.object) % 31u);
   }
-  Eigen::AlignedBox3d box(uint32_t mesh_id) const;  // m
+  Box box(uint32_t mesh_id) const;  // m
   // Returns the width in m that `measure` gives for the mesh, or gave since its vertices were last computed.
   double width(uint32_t mesh_id, const std::function<double()>& measure) const {
     return meshes_[mesh_id].width->get(measure);
   }
-  const Eigen::AlignedBox3d& world_box(uint32_t mesh_id) const { return world_boxes_[mesh_id]; }
+  const Box& world_box(uint32_t mesh_id) const { return world_boxes_[mesh_id]; }
 
   struct Extent {
-    Eigen::AlignedBox3d box;          // m, of all meshes
+    Box box;                          // m, of all meshes
     double largest_coordinate = 0.0;  // m, of all vertices by magnitude
     double mean_cover = 0.0;          // mean number of boxes of meshes in which a point of the box of all lies
     bool is_anything_moving = false;
@@ -77,8 +77,8 @@ class EmbreeMeshes {
   void count_from_origin(const Scene& scene, uint32_t mesh_id);
 
   Vec3 origin_ = Vec3::Zero();
-  std::vector<Posed> meshes_;                     // by mesh ID, as the next one
-  std::vector<Eigen::AlignedBox3d> world_boxes_;  // m
+  std::vector<Posed> meshes_;     // by mesh ID, as the next one
+  std::vector<Box> world_boxes_;  // m
 };
 
 }  // namespace echopath

@@ -166,15 +166,15 @@ void EmbreeScene::intersect_meshes(const Vec3& from, const LaneVectors& directio
   forget_hits(queries.hit);
   queries_->intersect(valid, queries, PacketWay::kApart);
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const bool is_met = valid.lanes[lane] != 0 && queries.hit.geomID[lane] != kNothing;
-    out.mesh_id[lane] = is_met ? named(queries.hit.geomID[lane], queries.hit.primID[lane], 0.0f, 0.0f).mesh_id : kNothing;
+    const bool is_met = valid.lanes[lane] != 0 && queries.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+    out.mesh_id[lane] = is_met ? named(queries.hit.geomID[lane], queries.hit.primID[lane], 0.0f, 0.0f).mesh_id : kNoMesh;
     out.distance[lane] = double{queries.ray.tfar[lane]} + moved[lane];
   }
 }
 
 // Names the triangles that Embree means.
 void EmbreeScene::name_hits(std::array<Hit, kPacketSize>& met) const {
-  if (trees_->places().empty()) return;
+  if (trees_->names().empty()) return;
   for (Hit& hit : met) {
     if (is_met(hit)) hit = named(hit.mesh_id, hit.triangle_id, hit.u, hit.v);
   }

@@ -36,15 +36,15 @@ bool is_ray(const Vec3& from, const Vec3& direction) {
   return from.allFinite() && square > 0.0 && square < 2.0;
 }
 
-Eigen::AlignedBox3d world_box(const Scene& scene, const PosedScene& pose) {
-  Eigen::AlignedBox3d box;
+Box world_box(const Scene& scene, const PosedScene& pose) {
+  Box box;
   for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
     for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
   }
   return box;
 }
 
-Vec3 origin_in(const Eigen::AlignedBox3d& box, const Vec3& near, bool is_rounded) {
+Vec3 origin_in(const Box& box, const Vec3& near, bool is_rounded) {
   if (box.isEmpty()) return near;
   const Vec3 nearest = near.cwiseMax(box.min()).cwiseMin(box.max());
   const double length = box.sizes().maxCoeff();
@@ -72,11 +72,11 @@ void EmbreeScene::forget() {
 }
 
 void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job) {
-  bring_to(scene, pose, [&](const Eigen::AlignedBox3d&) { return origin; }, Upkeep::kTimes, job);
+  bring_to(scene, pose, [&](const Box&) { return origin; }, Upkeep::kTimes, job);
 }
 
 void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& near, Upkeep upkeep, Job* job) {
-  bring_to(scene, pose, [&](const Eigen::AlignedBox3d& box) {
+  bring_to(scene, pose, [&](const Box& box) {
     return origin_in(box, near, upkeep != Upkeep::kTimes || scene.is_anything_moving());
   }, upkeep, job);
 }
@@ -109,10 +109,10 @@ Vec3 EmbreeScene::origin_near(const Scene& scene, const PosedScene& pose, const 
 
 // Names the triangle that Embree means.
 Hit EmbreeScene::named(uint32_t geometry_id, uint32_t triangle_id, float u, float v) const {
-  const std::vector<const TrianglePlace*>& places = trees_->places();
-  if (places.empty() || !places[geometry_id]) return {geometry_id, triangle_id, u, v};
-  const TrianglePlace& place = places[geometry_id][triangle_id];
-  return {place.mesh_id, place.triangle_id, u, v};
+  const std::vector<const TriangleName*>& names = trees_->names();
+  if (names.empty() || !names[geometry_id]) return {geometry_id, triangle_id, u, v};
+  const TriangleName& name = names[geometry_id][triangle_id];
+  return {name.mesh_id, name.triangle_id, u, v};
 }
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {

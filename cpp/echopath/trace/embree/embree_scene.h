@@ -56,7 +56,7 @@ class EmbreeScene {
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
   // Says what may differ at the next update: the time alone; or `near` moves, too; or the scene is edited. Edits may touch
   // any object: the origin is then rounded even where nothing moves, as are lift and reach (up to powers of two), so that
-  // they seldom hang on any one of them, and meshes that overlap little have trees of their own.
+  // they seldom depend on any one of them, and meshes that overlap little have trees of their own.
   enum class Upkeep { kTimes, kMovingRadar, kEdits };
   static Upkeep upkeep_near(bool near_moves) { return near_moves ? Upkeep::kMovingRadar : Upkeep::kTimes; }
   // Updates the scene likewise, with the origin that origin_near gives for `near` (m, world).
@@ -105,10 +105,9 @@ class EmbreeScene {
     LaneValues begin, end;  // m, along the rays; a ray whose stretch is empty is not asked about
   };
   struct MeshHits {
-    std::array<uint32_t, kPacketSize> mesh_id;  // kNothing where there is none
+    std::array<uint32_t, kPacketSize> mesh_id;  // kNoMesh where there is none
     LaneValues distance;                        // m
   };
-  static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
   void intersect_meshes(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask,
                         MeshHits& out) const;
   uint32_t mask_of(uint32_t mesh_id) const { return meshes_.mask_of(mesh_id); }  // its bit: EmbreeMeshes::mask_of
@@ -147,7 +146,7 @@ class EmbreeScene {
   size_t num_triangles(uint32_t mesh_id) const { return meshes_.triangles(mesh_id).size(); }
   // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
-  Eigen::AlignedBox3d box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
+  Box box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
   // Returns the width in m that `measure` gives for the mesh, or gave since its vertices were last computed.
   double width(uint32_t mesh_id, const std::function<double()>& measure) const { return meshes_.width(mesh_id, measure); }
 

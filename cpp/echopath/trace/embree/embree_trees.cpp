@@ -86,18 +86,18 @@ std::vector<uint32_t> EmbreeScene::Trees::geometries_of(const std::vector<uint32
 }
 
 void EmbreeScene::Trees::renew(uint32_t id, const EmbreeMeshes& meshes, Device& device) {
-  if (!clusters_.empty()) places_.resize(meshes.size());
-  if (!places_.empty()) places_[id] = nullptr;
+  if (!clusters_.empty()) names_.resize(meshes.size());
+  if (!names_.empty()) names_[id] = nullptr;
   if (owners_[id] != id) return device.remove(id);
   const auto found = clusters_.find(id);
   if (found == clusters_.end()) return device.set_mesh(id, meshes);
   Cluster& cluster = found->second;
-  cluster.places.clear();
+  cluster.names.clear();
   for (const uint32_t mesh_id : cluster.mesh_ids) {
     const auto num_triangles = static_cast<uint32_t>(meshes.triangles(mesh_id).size());
-    for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) cluster.places.push_back({mesh_id, triangle});
+    for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) cluster.names.push_back({mesh_id, triangle});
   }
-  places_[id] = cluster.places.data();
+  names_[id] = cluster.names.data();
   device.set_cluster(id, meshes, cluster.mesh_ids);
 }
 

@@ -9,11 +9,6 @@
 
 namespace echopath {
 
-// Where Embree's answers come from a cluster of meshes, this tells which of them is meant, and which of its triangles.
-struct TrianglePlace {
-  uint32_t mesh_id, triangle_id;
-};
-
 class EmbreeScene::Trees {
  public:
   struct Scope {
@@ -24,14 +19,14 @@ class EmbreeScene::Trees {
   // after that it may only be destroyed.
   void update(const EmbreeMeshes& meshes, const Scope& scope, const std::vector<uint32_t>& changed, Device& device,
               Job* job);
-  // Returns the places of the triangles of a cluster by the ID of Embree's geometry, null where that is a mesh; empty where
-  // there are no clusters.
-  const std::vector<const TrianglePlace*>& places() const { return places_; }
+  // Returns, by the ID of Embree's geometry, the names of the triangles of a cluster in the order in which Embree counts
+  // them; null where the geometry is a mesh. It is empty where there are no clusters.
+  const std::vector<const TriangleName*>& names() const { return names_; }
 
  private:
   struct Cluster {
     std::vector<uint32_t> mesh_ids;  // ascending: the first of them names the geometry
-    std::vector<TrianglePlace> places;
+    std::vector<TriangleName> names;
   };
   std::vector<uint32_t> sort_out(const EmbreeMeshes& meshes, const std::vector<uint32_t>& changed);
   std::vector<uint32_t> geometries_of(const std::vector<uint32_t>& changed,
@@ -41,7 +36,7 @@ class EmbreeScene::Trees {
   std::vector<uint8_t> is_small_;  // by mesh ID, as the next one: whether a cluster may hold it
   std::vector<uint32_t> owners_;   // the geometry that it is in
   std::map<uint32_t, Cluster> clusters_;
-  std::vector<const TrianglePlace*> places_;
+  std::vector<const TriangleName*> names_;
 };
 
 }  // namespace echopath

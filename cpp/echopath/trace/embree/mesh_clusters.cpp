@@ -70,7 +70,7 @@ class Divider {
 
  private:
   void add(Place begin, Place end) {
-    Eigen::AlignedBox3d box;
+    Box box;
     for (Place i = begin; i != end; ++i) box.extend(i->mesh->box);
     const double most = kLargeShare * box.sizes().maxCoeff();
     std::vector<uint32_t> cluster;

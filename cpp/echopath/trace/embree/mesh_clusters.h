@@ -11,7 +11,7 @@ struct SmallMesh {
   static constexpr size_t kMostTriangles = 256;
   uint32_t mesh_id;
   uint32_t num_triangles;
-  Eigen::AlignedBox3d box;  // m, world
+  Box box;  // m, world
 };
 
 // Returns clusters of neighbours, each a list of mesh IDs, ascending: the meshes in a cell of an octree over the world,

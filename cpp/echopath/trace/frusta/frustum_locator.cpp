@@ -20,7 +20,7 @@ constexpr double kAround = 0.25;         // share of the extent of the mirrors b
 enum class Reach { kNone, kPart, kWhole };
 
 // Tells how much of a box lies in an intersection of half-spaces; kPart may be said of a box that is beside it.
-Reach reach_into(const Eigen::AlignedBox3d& box, std::span<const HalfSpace> region) {
+Reach reach_into(const Box& box, std::span<const HalfSpace> region) {
   const Vec3 centre = box.center(), half = 0.5 * box.sizes();
   Reach reach = Reach::kWhole;
   for (const HalfSpace& one : region) {
@@ -46,7 +46,7 @@ class FrustumLocator::Cells {
     }
     begin_.push_back(halves_.size());
     const Vec3 around = Vec3::Constant(kAround * root_.box.sizes().maxCoeff());
-    root_.box = Eigen::AlignedBox3d(Vec3(root_.box.min() - around), Vec3(root_.box.max() + around));
+    root_.box = Box(Vec3(root_.box.min() - around), Vec3(root_.box.max() + around));
     root_.crossing = all_;
     num_entries_ = root_.size();
   }
@@ -63,7 +63,7 @@ class FrustumLocator::Cells {
 
  private:
   struct Cell {
-    Eigen::AlignedBox3d box;
+    Box box;
     std::vector<int> holding, crossing;  // frusta that reach into all of the cell and into a part of it; both ascending
     int depth = 0, num_vain = 0;
     std::atomic<bool> is_settled = false;        // all below is for good

@@ -134,7 +134,7 @@ bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, con
   const double side = target.height(source.apex) > 0 ? 1.0 : -1.0;
   occluder = clipped(occluder, side * target.normal, side * target.normal.dot(target.point) + kOffPlane);
   if (occluder.empty()) return true;
-  const Vec3 normal = (occluder[1] - occluder[0]).cross(occluder[2] - occluder[0]).normalized();
+  const Vec3 normal = cross_of_sides(occluder[0], occluder[1], occluder[2]).normalized();
   if (std::abs(normal.dot(source.apex - occluder[0])) < kOffPlane) occluder.clear();
   return true;
 }

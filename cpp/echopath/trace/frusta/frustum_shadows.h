@@ -23,12 +23,13 @@ struct FrustumSource {
   double offset = 0.0;               // of its plane
 };
 
-// Marks the meshes that cast shadows, by mesh ID; none: all do. Nothing hangs on where the others are.
+// Marks the meshes that cast shadows, by mesh ID; an empty vector stands for all meshes. The frusta do not depend on where
+// the other meshes are.
 using ShadowCasters = std::vector<bool>;
 
 class FrustumShadows {
  public:
-  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowCasters casters = {});
+  FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, ShadowCasters casters);
   // Shrinks `window`, a convex polygon on the mirror `target`, to a convex polygon that holds all that can be seen from the
   // source; it is empty where all is hidden. Parts of it may still be hidden: rays find that out. Shadows are taken away one
   // after the other, each of a whole mirror without holes or of the one triangle that was met.

@@ -13,11 +13,10 @@ constexpr double kNoImageWithin = 1e-4;  // m: an antenna or image this near the
 constexpr double kFlatBox = 1e-4;        // m: mirrors may stray this far from their outlines
 constexpr size_t kTogether = 512;        // frusta that are followed side by side
 
-std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Mirror>& mirrors) {
-  std::vector<Eigen::AlignedBox3d> boxes;
+std::vector<Box> boxes_of(const std::vector<Mirror>& mirrors) {
+  std::vector<Box> boxes;
   for (const Mirror& mirror : mirrors) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& corner : mirror.outline) box.extend(corner);
+    const Box box = box_about(mirror.outline);
     boxes.emplace_back(box.min().array() - kFlatBox, box.max().array() + kFlatBox);
   }
   return boxes;

@@ -1,5 +1,5 @@
 #pragma once
-// Leaves out points that no outline of a body hangs on.
+// Leaves out points that no outline of a body depends on.
 #include <vector>
 
 #include "echopath/base/geometry.h"

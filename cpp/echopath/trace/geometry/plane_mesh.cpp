@@ -12,7 +12,7 @@ constexpr double kOutside = 1e-9;  // m: how far outside its triangle a point ma
 
 PlaneMesh::Facet PlaneMesh::facet_of(uint32_t triangle_id, const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
-  const Vec3 normal = (b - a).cross(c - a);
+  const Vec3 normal = cross_of_sides(a, b, c);
   const double squared = normal.squaredNorm();
   Facet facet{triangle_id, a, (c - a).cross(normal) / squared, normal.cross(b - a) / squared, 0.0, 0.0, 0.0};
   facet.slack_u = kOutside * facet.along_u.norm();

@@ -17,7 +17,7 @@ constexpr double kSameAngle = 3.5e-3;  // rad (0.2 degrees): planes and angles o
 
 TriangleRim::TriangleRim(const EmbreeScene& geometry, const Hit& hit)
     : corners_(geometry.corners(hit.mesh_id, hit.triangle_id)) {
-  const Vec3 normal = (corners_[1] - corners_[0]).cross(corners_[2] - corners_[0]);
+  const Vec3 normal = cross_of_sides(corners_);
   for (size_t k = 0; k < 3; ++k) outward_[k] = (corners_[(k + 1) % 3] - corners_[k]).cross(normal);
 }
 

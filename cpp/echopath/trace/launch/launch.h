@@ -87,8 +87,8 @@ struct LaunchSettings {
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
   LaunchGuide guide;           // by default the rule above, without foci
-  // The rule is that of rays_by_object, for scenes that are edited: the rays of an object hang little on what else is in the
-  // scene.
+  // The rule is that of rays_by_object, for scenes that are edited: the rays of an object depend little on what else is in
+  // the scene.
   bool by_object = false;
   // Rays have random numbers by the name of their stratum, shares are rounded to whole rays one by one, and those of a guide
   // count rays: a stratum that stands still and gets the same share in another plan has the same rays there.

@@ -16,8 +16,6 @@ namespace echopath {
 // wider cell, so that each batch stands for the domain in the same way and their sizes differ by a few points.
 class LaunchLattice : public LaunchPoints {
  public:
-  LaunchLattice(const LaunchDomain& domain, int64_t num_points, const Eigen::Vector2d& shift)
-      : LaunchLattice(domain, num_points, std::vector<Eigen::Vector2d>{shift}) {}
   LaunchLattice(const LaunchDomain& domain, int64_t num_points, const std::vector<Eigen::Vector2d>& shifts);
   int64_t size() const override { return first_.back(); }
   double cell_area() const override { return cell_area_; }

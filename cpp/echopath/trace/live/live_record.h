@@ -49,7 +49,7 @@ class LiveRecord {
 
   Paths empty;  // scene, radar and frame of the record
   SharedByRays shared;
-  std::vector<Eigen::AlignedBox3d> boxes;  // of the meshes
+  std::vector<Box> boxes;  // of the meshes
   std::vector<LiveBlockPtr> blocks;
   std::vector<size_t> first_block;  // [strata + 1] index of the first one of each, and of the points that are aimed at
   std::vector<PathBlock> without_rays;

@@ -2,12 +2,12 @@
 // Keeps the record of a scene that is changed again and again: after a change it shoots only those rays again that the
 // change may touch.
 //
-// A ray's paths hang on its plan, on the answers of its queries and on the surfaces that it meets. All queries of some rays
-// in a row are remembered as stretches of space (queried_space.h). A changed mesh was in one box before and is in another
-// one now; rays of which no stretch meets either box have the same paths as before. Rays are planned object by object
-// (TraceSettings::for_edits), so that an object that comes, goes or begins to move leaves most others their rays; meshes and
-// strata of two records are the same by their names. Where a change reaches what all rays share (antennas, flagged mirrors,
-// the settings, a scene that grows beyond a power of two of metres), all are shot again.
+// A ray's paths depend on its plan, on the answers of its queries and on the surfaces that it meets. All queries of some
+// rays in a row are remembered as stretches of space (queried_space.h). A changed mesh was in one box before and is in
+// another one now; rays of which no stretch meets either box have the same paths as before. Rays are planned object by
+// object (TraceSettings::for_edits), so that an object that comes, goes or begins to move leaves most others their rays;
+// meshes and strata of two records are the same by their names. Where a change reaches what all rays share (antennas,
+// flagged mirrors, the settings, a scene that grows beyond a power of two of metres), all are shot again.
 #include <functional>
 #include <memory>
 #include <utility>

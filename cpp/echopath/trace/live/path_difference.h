@@ -12,7 +12,7 @@ struct CommonParts {
 
 // Leaves out of `before` and `after` the paths that have the same echoes in both scenes: those whose hits and columns are
 // the same but for the numbers of meshes and strata, which meet no changed mesh, and whose stratum has not changed. Paths
-// are compared by 64 bits that hang on all of these. Raises Cancelled.
+// are compared by 64 bits that depend on all of these. Raises Cancelled.
 void leave_out_common(Paths& before, Paths& after, const CommonParts& common, Job* job = nullptr);
 
 // Returns the same paths with the hits that they use, in a scene with the meshes that they meet. Their echoes are the same,

@@ -21,9 +21,9 @@ double surface_of(const FloatBox& box) {
 
 // Adds the boxes of where a mesh was and is; where they lie together, one that holds both. A box is met by stretches about
 // as often as its surface is large.
-void add_boxes(const Eigen::AlignedBox3d& was, const Eigen::AlignedBox3d& is, std::vector<FloatBox>& boxes) {
+void add_boxes(const Box& was, const Box& is, std::vector<FloatBox>& boxes) {
   std::vector<FloatBox> own;
-  for (const Eigen::AlignedBox3d* box : {&was, &is}) {
+  for (const Box* box : {&was, &is}) {
     if (!box->isEmpty()) own.push_back(box->cast<float>());
   }
   if (own.size() == 2) {
@@ -35,7 +35,7 @@ void add_boxes(const Eigen::AlignedBox3d& was, const Eigen::AlignedBox3d& is, st
 
 std::vector<FloatBox> changed_boxes(const LiveRecord& before, const LiveRecord& after, const SceneChanges& changes) {
   std::vector<FloatBox> boxes;
-  const Eigen::AlignedBox3d nowhere;
+  const Box nowhere;
   for (size_t id = 0; id < changes.of_before.size(); ++id) {
     const uint32_t now = changes.id_after[id];
     if (changes.of_before[id]) add_boxes(before.boxes[id], now == kNoMesh ? nowhere : after.boxes[now], boxes);
@@ -90,7 +90,7 @@ void RecordMatch::match_strata() {
 }
 
 // Where other strata own the echoes of a mesh, it counts as changed. Where they are the same but have other rays, the
-// weights of echoes at the mesh may be others, because they hang on the density of these rays: then what has hits there
+// weights of echoes at the mesh may be others, because they depend on the density of these rays: then what has hits there
 // does not stay.
 void RecordMatch::match_owners() {
   const RayOwners &was = before_->shared.owners, &is = after_.shared.owners;
@@ -109,8 +109,8 @@ void RecordMatch::match_owners() {
   }
 }
 
-// Shares of both orders of two bounces, of which one is over a smooth mesh, hang on the density of rays (MirrorOrders) and
-// may be none: then a block tells by no path that its rays met the mesh.
+// Shares of both orders of two bounces, of which one is over a smooth mesh, depend on the density of rays (MirrorOrders) and
+// may be zero: then no path of a block shows that its rays met the mesh.
 void RecordMatch::add_boxes_of_other_density() {
   const Scene& scene = *before_->empty.scene;
   bool any_smooth = false;
@@ -139,7 +139,7 @@ int64_t RecordMatch::known_block(size_t index) const {
   return before < 0 ? -1 : static_cast<int64_t>(was[before] + index - is[stratum]);
 }
 
-// Points hang on the ID of their mesh.
+// The points of a mesh depend on its ID.
 bool RecordMatch::aims_alike(int64_t begin, int64_t end) const {
   const SharedByRays &was = before_->shared, &is = after_.shared;
   for (int64_t ray = begin; ray < end; ++ray) {

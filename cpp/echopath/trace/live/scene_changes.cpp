@@ -73,10 +73,10 @@ SceneChanges changes_between(const Scene& before, const Scene& after, bool time_
   return changes;
 }
 
-std::vector<Eigen::AlignedBox3d> boxes_of(const EmbreeScene& geometry, uint32_t num_meshes) {
-  std::vector<Eigen::AlignedBox3d> boxes;
+std::vector<Box> boxes_of(const EmbreeScene& geometry, uint32_t num_meshes) {
+  std::vector<Box> boxes;
   for (uint32_t id = 0; id < num_meshes; ++id) {
-    Eigen::AlignedBox3d box = geometry.box(id);
+    Box box = geometry.box(id);
     if (!box.isEmpty()) {
       const Vec3 margin = Vec3::Constant(16.0 * geometry.lift());
       box.extend(box.min() - margin).extend(box.max() + margin);

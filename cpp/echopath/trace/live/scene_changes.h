@@ -1,6 +1,5 @@
 #pragma once
 // Tells which meshes of a scene differ from those of another one, for rays and for the signal.
-#include <limits>
 #include <vector>
 
 #include "echopath/trace/embree/embree_scene.h"
@@ -9,8 +8,6 @@ namespace echopath {
 
 // Holds which meshes differ.
 using ChangedMeshes = std::vector<bool>;  // by mesh ID
-
-inline constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
 
 // Meshes of two scenes are the same by the full names of their nodes, whatever their IDs.
 struct SceneChanges {
@@ -23,11 +20,11 @@ struct SceneChanges {
   void mark(uint32_t id_of_after);  // as one that differs
 };
 
-// Returns the meshes of which anything differs that rays or echoes hang on: shape, material, place, or a motion of their own
-// or of a node above. Where `time_moved` (the scenes are looked at in different times), all that move differ.
+// Returns the meshes of which anything differs that rays or echoes depend on: shape, material, place, or a motion of their
+// own or of a node above. Where `time_moved` (the scenes are looked at in different times), all that move differ.
 SceneChanges changes_between(const Scene& before, const Scene& after, bool time_moved);
 
 // Returns the boxes of the meshes, a little larger than they are, relative to the origin of the geometry.
-std::vector<Eigen::AlignedBox3d> boxes_of(const EmbreeScene& geometry, uint32_t num_meshes);
+std::vector<Box> boxes_of(const EmbreeScene& geometry, uint32_t num_meshes);
 
 }  // namespace echopath

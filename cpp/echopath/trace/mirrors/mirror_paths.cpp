@@ -66,8 +66,8 @@ class HalfwayMeeting {
   const MirrorFrustum& operator[](size_t i) const { return transmit_.first[i]; }
 
  private:
-  static std::vector<Eigen::AlignedBox3d> boxes_of_images(FrustumRange frusta) {
-    std::vector<Eigen::AlignedBox3d> boxes;
+  static std::vector<Box> boxes_of_images(FrustumRange frusta) {
+    std::vector<Box> boxes;
     for (const MirrorFrustum* one = frusta.first; one != frusta.second; ++one)
       boxes.emplace_back(one->image(), one->image());
     return boxes;

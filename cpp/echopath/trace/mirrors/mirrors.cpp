@@ -27,7 +27,7 @@ Mirror fit_plane(const Scene& scene, const EmbreeScene& geometry, uint32_t mesh_
   double weight = 0.0;
   for (const uint32_t triangle : triangles) {
     const auto& [a, b, c] = all_corners.emplace_back(geometry.corners(mesh_id, triangle));
-    Vec3 cross = (b - a).cross(c - a);
+    Vec3 cross = cross_of_sides(a, b, c);
     if (reference.isZero(0)) reference = cross;
     if (cross.dot(reference) < 0) cross = -cross;  // windings may differ
     area_normal += cross;
@@ -45,7 +45,7 @@ bool fills_outline(const EmbreeScene& geometry, const Mirror& mirror, const std:
   double filled = 0.0, whole = 0.0;
   for (const uint32_t triangle : triangles) {
     const auto [a, b, c] = geometry.corners(mirror.mesh_id, triangle);
-    filled += (b - a).cross(c - a).norm();
+    filled += cross_of_sides(a, b, c).norm();
   }
   for (size_t i = 2; i < mirror.outline.size(); ++i) {
     whole += (mirror.outline[i - 1] - mirror.outline[0]).cross(mirror.outline[i] - mirror.outline[0]).norm();

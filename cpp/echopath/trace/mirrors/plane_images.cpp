@@ -67,7 +67,7 @@ class RayLocator final : public PointLocator {
   double tolerance_;
 };
 
-bool reaches_plane(const Eigen::AlignedBox3d& box, const Plane& plane, double tolerance) {
+bool reaches_plane(const Box& box, const Plane& plane, double tolerance) {
   return !box.isEmpty() &&
          std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
 }
@@ -119,7 +119,7 @@ void PlaneImages::add_chains(const PathBlock& block) {
   for (const PathBlock::HitChain& chain : block.chains) chains_.push_back({first + chain.first, chain.count});
 }
 
-// Sorts the chains by their facets, so that they do not hang on the order of the rays, and keeps each once.
+// Sorts the chains by their facets, so that they do not depend on the order of the rays, and keeps each once.
 void PlaneImages::sort_chains() {
   const auto compare = [&](const RayChain& a, const RayChain& b) {
     const Facets one = facets_of(a), other = facets_of(b);
@@ -142,7 +142,7 @@ std::vector<int> PlaneImages::planes_of(Facets chain) {
     const auto [a, b, c] = geometry_.corners(mesh_id, triangle_id);
     Mirror plane;
     plane.point = a;
-    plane.normal = (b - a).cross(c - a).normalized();
+    plane.normal = cross_of_sides(a, b, c).normalized();
     plane.mesh_id = mesh_id;
     plane.material = node.material.get();
     plane.outline = {a, b, c};

@@ -1,16 +1,15 @@
 #pragma once
 // Finds the paths over planes that nobody flagged, by images.
 //
-// Rays show the way: a coherent ray whose hits reflect it to within a few spacings of rays of the receiver names the planes
-// of one path (its chain), as in the method of shooting and bouncing rays with a sphere around the receiver. The image
-// method finds the path itself, to rounding, in the order of the chain or in another one: about a corner rays come back in
-// all orders, and the one that the path has may be that of next to none of them. It counts where each of its surfaces is
-// larger than its Fresnel zone (mirror_zone.h): then the field is that of geometrical optics, with what the edges near its
-// points leave of it (field_of_flat_mirror), and the echoes by physical optics that rays send over the same planes in the
-// same order are left out, because they add up to the same field. Everything else stays with the rays: smaller surfaces,
+// Rays tell which planes to try: a coherent ray whose hits reflect it to within a few spacings of rays of the receiver names
+// the planes of one path (its chain), as in the method of shooting and bouncing rays with a sphere around the receiver. The
+// image method finds the path itself, to rounding, in the order of the chain or in another one: about a corner rays come
+// back in all orders, and the one that the path has may be that of hardly any of them. It counts where each of its surfaces
+// is larger than its Fresnel zone (mirror_zone.h): then the field is that of geometrical optics, with what the edges near
+// its points leave of it (field_of_flat_mirror), and the echoes by physical optics that rays send over the same planes in
+// the same order are left out, because they add up to the same field. Everything else stays with the rays: smaller surfaces,
 // planes without a point of reflection, diffuse echoes, paths that meet anything else. Source: Schaubach, Davis, Rappaport
 // 1992 (sphere around the receiver).
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -38,15 +37,11 @@ class PlaneImages {
   const PlaneDoubles& doubles() const { return doubles_; }
 
  private:
-  struct Facet {
-    uint32_t mesh_id, triangle_id;
-    auto operator<=>(const Facet&) const = default;
-  };
   struct RayChain {
     size_t first;  // in facets_
     uint32_t count;
   };
-  using Facets = std::span<const Facet>;  // the surfaces of each hit
+  using Facets = std::span<const TriangleName>;  // the surfaces of each hit
   Facets facets_of(const RayChain& chain) const { return {facets_.data() + chain.first, chain.count}; }
   void sort_chains();
   std::vector<int> planes_of(Facets chain);
@@ -62,9 +57,9 @@ class PlaneImages {
   const Scene& scene_;
   const EmbreeScene& geometry_;
   const SbrSettings& settings_;
-  double wavelength_;          // m
-  double tolerance_;           // m: surfaces that stray no farther from a plane are parts of it
-  std::vector<Facet> facets_;  // of all rays with chains, which the chains of a ray share
+  double wavelength_;                 // m
+  double tolerance_;                  // m: surfaces that stray no farther from a plane are parts of it
+  std::vector<TriangleName> facets_;  // of all rays with chains, which the chains of a ray share
   std::vector<RayChain> chains_;
   std::vector<Mirror> planes_;  // of the chain at hand
   // These are the points of the sequences tried and places beside them along the normals, by their meshes and by where the

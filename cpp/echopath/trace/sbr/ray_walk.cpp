@@ -47,7 +47,7 @@ template <class Weight>
 void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) const {
   const FirstHits& first = scratch.first;
   block.current_batch = static_cast<uint8_t>(first.places.batches[lane]);
-  block.current_ray = half_of_ray(first.ray(lane)) | (first.points ? 0 : turn_flags(first.ray(lane)));
+  block.current_ray = half_of_ray(first.ray(lane)) | (first.points ? 0 : place_flags(first.ray(lane)));
   scratch.launch_index = first.index(lane);
   scratch.num_branches = 0;
   if (context_.geometry.has_sheets()) return shoot_lane_among_sheets(lane, scratch, block);

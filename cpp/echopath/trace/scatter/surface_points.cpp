@@ -152,7 +152,7 @@ class PointTaker {
 void add_surface_points(uint64_t seed, const ScatteringTriangle& triangle, const PointDensity& density,
                         std::vector<SurfacePoint>& out) {
   const auto& corners = triangle.corners;
-  const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const Vec3 across = cross_of_sides(corners);
   const double twice_area = across.norm();
   if (!(twice_area > 0.0)) return;
   const double height = std::abs(across.dot(density.viewer - corners[0])) / twice_area;

@@ -12,16 +12,11 @@
 #include <vector>
 
 #include "echopath/base/geometry.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 
-// Names a triangle among all of a scene.
-struct TriangleName {
-  uint32_t mesh_id, triangle_id;
-  bool operator==(const TriangleName&) const = default;
-};
-
-// A triangle with points, its corners in the coordinates of their viewer.
+// Describes a triangle with points; its corners are in the coordinates of their viewer.
 struct ScatteringTriangle {
   TriangleName name;
   uint32_t mesh_number;  // SceneMesh::number, by which its random numbers go: another than the ID where meshes are hidden

@@ -60,7 +60,7 @@ SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, cons
 bool SurfaceTable::is_met_from_behind(const Hit& hit, const Vec3& normal) const {
   if (!backs_.contains(hit.mesh_id)) return false;
   const auto [a, b, c] = geometry_.corners(hit.mesh_id, hit.triangle_id);
-  return (b - a).cross(c - a).dot(normal) < 0.0;
+  return cross_of_sides(a, b, c).dot(normal) < 0.0;
 }
 
 }  // namespace echopath

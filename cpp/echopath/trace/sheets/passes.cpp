@@ -88,7 +88,7 @@ class PassFinder {
     const std::array<Vec3, 3> corners = pose_.world_triangle(hit.mesh_id, hit.triangle_id);
     const auto& [a, b, c] = corners;
     return {hit_point(corners, hit) - origin_,
-            models_.contains(hit.mesh_id) ? Vec3((b - a).cross(c - a).normalized()) : Vec3(Vec3::Zero())};
+            models_.contains(hit.mesh_id) ? Vec3(cross_of_sides(a, b, c).normalized()) : Vec3(Vec3::Zero())};
   }
 
   // Moves the end of a leg off its sheet, toward the other end.

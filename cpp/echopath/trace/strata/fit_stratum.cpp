@@ -46,12 +46,11 @@ bool all_within(const std::vector<Vec3>& directions, const Vec3& axis) {
   return std::ranges::all_of(directions, [&](const Vec3& direction) { return direction.dot(axis) >= kWidestCosine; });
 }
 
-// Points toward the middle of the box of the vertices, which does not hang on any one of them, or where that is too far
-// aside toward the middle of their directions. Neither hangs on vertices inside of others.
+// Points toward the middle of the box of the vertices, or where that is too far aside toward the middle of their directions.
+// Neither depends on vertices within the hull of the others.
 std::optional<Vec3> axis_toward(const std::vector<Vec3>& vertices, const Vec3& apex, const std::vector<Vec3>& directions) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : vertices) box.extend(vertex);
-  const Vec3 line = box.center() - apex, toward_box = line.norm() > 0 ? Vec3(line.normalized()) : directions.front();
+  const Vec3 line = box_about(vertices).center() - apex;
+  const Vec3 toward_box = line.norm() > 0 ? Vec3(line.normalized()) : directions.front();
   if (all_within(directions, toward_box)) return toward_box;
   const Vec3 middle = middle_of(directions, toward_box);
   return all_within(directions, middle) ? std::optional<Vec3>(middle) : std::nullopt;

@@ -16,7 +16,7 @@ class FittedStrata {
   // Begins a plan.
   void begin_plan();
   // Returns what was fitted to the same input before, else what `fit` returns. `input` is the sum of the bits of all that
-  // the stratum hangs on (base/bit_sum.h).
+  // the stratum depends on (base/bit_sum.h).
   Fitted find(uint64_t input, const std::function<Fitted()>& fit);
 
  private:

@@ -91,7 +91,7 @@ void RayTargetFinder::add_images(TargetMeshes& target, int num_mirrors, std::vec
   }
 }
 
-// Returns the sum of the bits of all that a stratum hangs on.
+// Returns the sum of the bits of all that a stratum depends on.
 uint64_t RayTargetFinder::input_of(const TargetMeshes& target, const std::vector<int>& sequence) const {
   if (!settings_.fitted) return 0;
   BitSum bits;
@@ -103,7 +103,7 @@ uint64_t RayTargetFinder::input_of(const TargetMeshes& target, const std::vector
     const Mirror& mirror = mirrors_[index];
     bits.add_bytes(mirror.point.data(), sizeof(Vec3));
     bits.add_bytes(mirror.normal.data(), sizeof(Vec3));
-    const std::string own_name = name_of(mirror, scene_);  // an ID hangs on what else is in the scene
+    const std::string own_name = name_of(mirror, scene_);  // an ID depends on what else is in the scene
     bits.add_bytes(own_name.data(), own_name.size());
   }
   return bits.value();

@@ -11,7 +11,7 @@
 
 namespace echopath {
 
-// Holds the meshes of an object, or of a part of one, with what its strata hang on.
+// Holds the meshes of an object, or of a part of one, with what its strata depend on.
 class TargetMeshes {
  public:
   // `index`: of the target (RayTarget::object); `of_what_moves`: RayTarget::moves. The geometry must outlive it.
@@ -19,7 +19,7 @@ class TargetMeshes {
 
   // Returns the vertices of all its meshes, which are put together when they are first asked for.
   const std::vector<Vec3>& vertices();
-  // Returns those that its outline may hang on, from wherever it is seen; they are looked for when they are first asked for.
+  // Returns those that its outline may depend on, from wherever it is seen; they are looked for when they are first asked for.
   const std::vector<Vec3>& outer_vertices();
 
   int object, node;

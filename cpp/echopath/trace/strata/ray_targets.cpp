@@ -21,20 +21,6 @@ constexpr double kMostlyFilled = 0.5;
 
 bool has_fewer_mirrors(const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; }
 
-// Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
-void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
-  const size_t all = objects.size() + images.size();
-  std::ranges::stable_sort(images, has_fewer_mirrors);
-  if (objects.size() > kMaxAims) {
-    std::ranges::stable_sort(objects, std::greater(), [](const RayTarget& one) { return one.stratum.solid_angle(); });
-    objects.resize(kMaxAims);
-  }
-  images.resize(std::min(images.size(), kMaxAims - objects.size()));
-  out.num_left_out += static_cast<int64_t>(all - objects.size() - images.size());
-  out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
-  out.any_still_unaimed = out.any_still_unaimed || out.num_left_out > 0;
-}
-
 // Marks the meshes of objects that stand still [mesh ID]; mirrors are no objects.
 std::vector<bool> still_objects(std::vector<bool> still_meshes, const Scene& scene) {
   for (uint32_t id = 0; id < still_meshes.size(); ++id)
@@ -59,7 +45,7 @@ class TargetSearch {
   }
 
   void finish() {
-    limit(objects_, images_, out_);
+    limit();
     out_.targets = std::move(objects_);
     append(std::move(images_), out_.targets);
   }
@@ -135,14 +121,14 @@ class TargetSearch {
   // rail are not: they carry it.
   bool are_apart(const std::vector<SceneObject>& parts) const {
     if (parts.size() < 2 || parts.size() > kMostThings) return false;
-    std::vector<Eigen::AlignedBox3d> boxes(parts.size());
+    std::vector<Box> boxes(parts.size());
     for (size_t i = 0; i < parts.size(); ++i) {
       for (const uint32_t id : parts[i].mesh_ids) boxes[i].extend(geometry_.box(id));
     }
-    const auto num_apart = std::ranges::count_if(boxes, [&](const Eigen::AlignedBox3d& box) {
+    const auto num_apart = std::ranges::count_if(boxes, [&](const Box& box) {
       const double near = 0.5 * box.diagonal().norm();
-      return std::ranges::none_of(
-          boxes, [&](const Eigen::AlignedBox3d& other) { return &other != &box && other.exteriorDistance(box) <= near; });
+      return std::ranges::none_of(boxes,
+                                  [&](const Box& other) { return &other != &box && other.exteriorDistance(box) <= near; });
     });
     return 2 * num_apart >= std::ssize(parts);
   }
@@ -235,6 +221,18 @@ class TargetSearch {
     leave_out(things.size() - kept);
     things.erase(things.begin() + static_cast<int64_t>(kept), things.end());
     aim_at(things);
+  }
+
+  // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
+  void limit() {
+    const size_t all = objects_.size() + images_.size();
+    std::ranges::stable_sort(images_, has_fewer_mirrors);
+    if (objects_.size() > kMaxAims) {
+      std::ranges::stable_sort(objects_, std::greater(), [](const RayTarget& one) { return one.stratum.solid_angle(); });
+      objects_.resize(kMaxAims);
+    }
+    images_.resize(std::min(images_.size(), kMaxAims - objects_.size()));
+    leave_out(all - objects_.size() - images_.size());
   }
 
   void leave_out(size_t count) {

@@ -23,7 +23,8 @@ struct RayTarget {
   // Rays find it over these; planes at right angles have one image in both orders.
   std::vector<MirrorSequence> sequences;
   bool moves = false;  // it, or a part of it, or a mirror that shows it moves, or comes and goes (Scene::still_meshes)
-  // In the sharing of the rays. The things of one object that stand still share the weight of that, those that move another.
+  // The rays are shared out by these weights. The things of one object that stand still share the weight of that, those that
+  // move another.
   double weight = 1.0;
 };
 

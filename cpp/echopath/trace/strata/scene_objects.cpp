@@ -25,7 +25,7 @@ std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object)
 }
 
 Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids) {
-  Eigen::AlignedBox3d box;
+  Box box;
   for (const uint32_t id : mesh_ids) {
     for (const Vec3& vertex : vertices_of(id)) box.extend(vertex);
   }

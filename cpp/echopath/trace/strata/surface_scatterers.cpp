@@ -78,7 +78,7 @@ class PointFinder {
  private:
   // Returns a number with the sign of the side from which the transmitter sees a triangle.
   double side_of(const std::array<Vec3, 3>& corners) const {
-    return (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(settings_.transmitter - corners[0]);
+    return cross_of_sides(corners).dot(settings_.transmitter - corners[0]);
   }
 
   const EmbreeScene& geometry_;

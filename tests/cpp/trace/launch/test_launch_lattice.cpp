@@ -19,7 +19,7 @@ const Eigen::Vector2d kShift(0.37, 0.81);
 
 TEST(LaunchLattice, HasExactlyTheNumberAskedFor) {
   for (const int64_t count : {0, 1, 2, 3, 10, 63, 1000, 4097, 200000}) {
-    const LaunchLattice lattice(LaunchDomain{}, count, kShift);
+    const LaunchLattice lattice(LaunchDomain{}, count, {kShift});
     ASSERT_EQ(lattice.size(), count);
     for (int64_t i = 0; i < count; ++i) ASSERT_LE(lattice.point(i).norm(), 1.0 + kRim);
     if (count > 100) {
@@ -30,7 +30,7 @@ TEST(LaunchLattice, HasExactlyTheNumberAskedFor) {
 
 // Moments of the disc: mean x^2 = 1/4, mean x y = 0. A random set of this size errs by about 2e-3.
 TEST(LaunchLattice, IsEven) {
-  const LaunchLattice lattice(LaunchDomain{}, 20000, kShift);
+  const LaunchLattice lattice(LaunchDomain{}, 20000, {kShift});
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
   for (int64_t i = 0; i < lattice.size(); ++i) moment += lattice.point(i) * lattice.point(i).transpose();
   moment *= lattice.cell_area() / kPi;
@@ -38,7 +38,7 @@ TEST(LaunchLattice, IsEven) {
 }
 
 TEST(LaunchLattice, NeighboursInOrderAreNeighbours) {
-  const LaunchLattice lattice(LaunchDomain{}, 10000, kShift);
+  const LaunchLattice lattice(LaunchDomain{}, 10000, {kShift});
   double sum = 0.0;
   for (int64_t i = 1; i < lattice.size(); ++i) sum += (lattice.point(i) - lattice.point(i - 1)).norm();
   EXPECT_LT(sum / 9999.0, 2.0 * std::sqrt(kPi / 10000.0));
@@ -55,7 +55,7 @@ TEST(LaunchLattice, FillsRectanglesEvenly) {
         ASSERT_TRUE((lattice.point(i).array().abs() <= rectangle.half.array() * (1.0 + kRim)).all()) << length;
       }
     }
-    const LaunchLattice lattice(rectangle, 20000, kShift);
+    const LaunchLattice lattice(rectangle, 20000, {kShift});
     EXPECT_NEAR(lattice.cell_area() * 20000.0 / rectangle.area(), 1.0, kCells);
     Eigen::Array2d moment = Eigen::Array2d::Zero();
     for (int64_t i = 0; i < lattice.size(); ++i)

@@ -266,7 +266,7 @@ TEST(FrustumShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
   const EmbreeScene geometry(scene, pose, Vec3::Zero());
   const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
   const Vec3 antenna(9.3, 8.7, 3.1);
-  const FrustumShadows shadows(geometry, mirrors);
+  const FrustumShadows shadows(geometry, mirrors, {});
   std::mt19937 draw(10);
   std::uniform_real_distribution<double> inside(0.01, 0.99);  // off the rims, where rounding decides
   size_t num_hidden = 0, num_seen = 0;

@@ -4,7 +4,6 @@
 #include <map>
 #include <utility>
 
-#include "echopath/base/errors.h"
 #include "echopath/base/text/nearest_names.h"
 #include "echopath/label/expressions/nfa.h"
 #include "echopath/scene/scene.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "echopath/base/errors.h"
-
 namespace echopath {
 namespace {
 

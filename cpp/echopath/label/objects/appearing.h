@@ -20,9 +20,9 @@ struct AppearingSettings {
 //
 // The points of an object that directions meet at the one time move with it, and so do the meshes that hide any of them: as
 // long as no more points than the share come out from behind those meshes alone, the object is hidden. No geometry is built:
-// a segment is looked at where the mesh that may cut it was. It takes the silhouette of the object as that of the points,
-// which is so while it turns little. Objects that deform, that
-// deforming meshes hide or that no direction meets are returned too. `kept` and errors are those of `visibility`.
+// a segment is looked at where the mesh that may cut it was. It takes the silhouette of the object for that of the points,
+// which holds while the object turns little. Objects that deform, that deforming meshes hide or that no direction meets are
+// returned too. `kept` and errors are those of `visibility`.
 std::vector<uint32_t> may_appear(const Scene& scene, const Radar& radar, const SurfaceMap& surfaces,
                                  std::span<const uint32_t> objects, const AppearingSettings& settings, Job* job = nullptr,
                                  KeptGeometry* kept = nullptr);

@@ -12,7 +12,7 @@ constexpr double kRounding = 1e-9;  // relative to a length, more than that of p
 
 double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
-  const Vec3 normal = (b - a).cross(c - a).normalized();
+  const Vec3 normal = cross_of_sides(a, b, c).normalized();
   bool is_above = true;  // the foot of the perpendicular lies on the inner side of all three edges
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
@@ -77,7 +77,7 @@ class RunsOfMesh {
     std::vector<std::pair<double, uint32_t>> runs;
     double nearest_end = limit;
     for (uint32_t run = 0; run < boxes_->size(); ++run) {
-      const Eigen::AlignedBox3d& box = (*boxes_)[run];
+      const Box& box = (*boxes_)[run];
       const double begin = box.exteriorDistance(point) * shortest_ * (1.0 - kRounding);
       if (begin >= nearest_end) continue;
       const Vec3 farthest = (point - box.min()).cwiseAbs().cwiseMax((point - box.max()).cwiseAbs());
@@ -91,8 +91,8 @@ class RunsOfMesh {
 
   const EmbreeScene& geometry_;
   uint32_t mesh_, num_triangles_;
-  std::vector<Eigen::AlignedBox3d> own_boxes_;  // of a deformed mesh
-  const std::vector<Eigen::AlignedBox3d>* boxes_ = &own_boxes_;
+  std::vector<Box> own_boxes_;  // of a deformed mesh
+  const std::vector<Box>* boxes_ = &own_boxes_;
   Mat3 to_mesh_ = Mat3::Identity();        // takes lines of the geometry to those of the boxes
   Vec3 place_ = Vec3::Zero();              // m, of the origin of the boxes in the geometry
   double shortest_ = 1.0, longest_ = 1.0;  // lengths in the geometry of what is 1 m long among the boxes

@@ -51,16 +51,15 @@ ECHOPATH_INLINE void cross_box(VectorOf<double> low, VectorOf<double> high, cons
   }
 }
 
-void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& corners) {
-  for (int corner = 0; corner < 8; ++corner)
-    corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+void add_corners(const Box& box, std::vector<Vec3>& corners) {
+  for (int corner = 0; corner < 8; ++corner) corners.push_back(box.corner(static_cast<Box::CornerType>(corner)));
 }
 
 }  // namespace
 
 ObjectView::ObjectView(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object, const Vec3& apex)
     : geometry_(geometry), surfaces_(surfaces), object_(object), apex_(apex), mesh_ids_(surfaces.meshes_of(object)) {
-  Eigen::AlignedBox3d all;
+  Box all;
   for (const uint32_t mesh : mesh_ids_) {
     all.extend(geometry.box(mesh));
     boxes_.push_back(geometry.box(mesh));
@@ -68,12 +67,12 @@ ObjectView::ObjectView(const EmbreeScene& geometry, const SurfaceMap& surfaces, 
   }
   if (boxes_.size() > kMostBoxes) boxes_ = {all};
   const Vec3 margin = Vec3::Constant(kBoxMargin * geometry.lift());
-  for (Eigen::AlignedBox3d& box : boxes_) box = {box.min() - margin, box.max() + margin};
+  for (Box& box : boxes_) box = {box.min() - margin, box.max() + margin};
 }
 
 double ObjectView::extent() const {
-  Eigen::AlignedBox3d all;
-  for (const Eigen::AlignedBox3d& box : boxes_) all.extend(box);
+  Box all;
+  for (const Box& box : boxes_) all.extend(box);
   return all.isEmpty() ? 0.0 : all.diagonal().norm();
 }
 
@@ -102,7 +101,7 @@ EmbreeScene::Stretches ObjectView::stretches_in_boxes(const LaneVectors& directi
   }
   LaneVectors inverse;
   run_simd<&invert_lanes>(&directions, &inverse);
-  for (const Eigen::AlignedBox3d& box : boxes_) {
+  for (const Box& box : boxes_) {
     run_simd<&cross_box>(unpacked(box.min() - apex_), unpacked(box.max() - apex_), &inverse, &stretches);
   }
   for (int lane = count; lane < kPacketSize; ++lane) stretches.end[lane] = 0.0;

@@ -92,16 +92,12 @@ bool take_meshes(const std::string& glob, uint32_t object, const std::vector<std
 }
 
 // Returns a box that holds a mesh, a little larger than needed: that of the corners of its box in its own frame.
-Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint32_t mesh) {
+Box box_around(const Scene& scene, const PosedScene& pose, uint32_t mesh) {
   const Node& node = scene.node_of(mesh);
-  Eigen::AlignedBox3d local, world;
-  if (!node.deformation) {
-    local = node.mesh->box();
-  } else {
-    for (const Vec3& vertex : pose.local_vertices(mesh)) local.extend(vertex);
-  }
+  const Box local = node.deformation ? box_about(pose.local_vertices(mesh)) : node.mesh->box();
+  Box world;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    const Vec3 corner = local.corner(static_cast<Box::CornerType>(i));
     world.extend(pose.linear(mesh) * corner + pose.world_translation(mesh));
   }
   return world;
@@ -129,7 +125,7 @@ bool is_flat_or_holds(const std::vector<Vec3>& vertices, const Standpoint& from)
 // it, as a wall or a road is. Its bounding sphere holds the antenna then. The radius of that sphere is no more than half a
 // diagonal of any box that holds the object, and its centre lies in that box.
 bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& object, const Standpoint& from) {
-  Eigen::AlignedBox3d box;
+  Box box;
   for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(scene, pose, mesh));
   if (box.exteriorDistance(from.antenna) > kSureOutside * 0.5 * box.diagonal().norm()) return false;
   std::vector<Vec3> vertices;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/even_steps.h"
 
 namespace echopath {
@@ -24,7 +24,7 @@ VisibilityGrid::VisibilityGrid(const Stratum& stratum, int64_t num_cells) : dire
   const double num_blocks = std::max(1.0, static_cast<double>(num_cells) / kCells);
   num_columns_ = static_cast<int>(std::clamp(std::round(std::sqrt(num_blocks * half_[0] / half_[1])), 1.0, num_blocks));
   num_rows_ = static_cast<int>(std::max(1.0, std::round(num_blocks / num_columns_)));
-  const double square = is_disc_ ? 4.0 / std::numbers::pi : 1.0;  // of the disc's own area
+  const double square = is_disc_ ? 4.0 / kPi : 1.0;  // of the disc's own area
   cell_angle_ = stratum.solid_angle() * square / static_cast<double>(kCells * this->num_blocks());
   while (step_ > 1 && num_first_rows() * num_first_columns() < kFewestFirst) step_ /= 2;
   const auto size = static_cast<size_t>(this->num_blocks());

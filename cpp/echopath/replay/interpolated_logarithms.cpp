@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "echopath/base/constants.h"
 #include "echopath/replay/echo_memory.h"
 #include "echopath/replay/replay.h"
 #include "echopath/replay/time/chebyshev_tails.h"
@@ -21,7 +22,7 @@ bool take_logarithms(size_t num_nodes, size_t stride, const double* turn, std::c
   for (size_t node = 0; node < num_nodes; ++node, turn += stride, amplitude += stride) {
     const double size = std::abs(*amplitude), own = std::arg(*amplitude);
     if (!(size > 0.0) || !std::isfinite(*turn)) return false;
-    const double phase = node == 0 ? own : before + std::remainder(own - before, 2.0 * M_PI);
+    const double phase = node == 0 ? own : before + std::remainder(own - before, 2.0 * kPi);
     if (node > 0 && std::abs(phase - before) > kLargestStep) return false;
     before = phase;
     *amplitude = {std::log(size), phase + *turn};

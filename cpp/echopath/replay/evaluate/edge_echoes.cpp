@@ -28,7 +28,7 @@ struct WaveAtEdge {
   FieldVector field;                // of a unit wave, where it arrives; zero in the scalar model
 };
 
-// The mirrors between an antenna and an edge, in the order of travel from the antenna.
+// Holds the mirrors between an antenna and an edge, in the order of travel from the antenna.
 struct MirrorsToEdge {
   std::vector<PosedHit> hits;
   std::vector<const Material*> materials;

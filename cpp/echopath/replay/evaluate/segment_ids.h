@@ -22,7 +22,7 @@ class SegmentIds {
       slot = (slot + 1) & (entries_.size() - 1);
     Entry& entry = entries_[slot];
     if (!is_taken(entry)) {
-      entry = {hits, hash, kind, kNone, static_cast<uint16_t>(count), turn_};
+      entry = {hits, hash, kind, kNone, static_cast<uint16_t>(count), generation_};
       ++size_;
     }
     return entry.value;
@@ -31,9 +31,9 @@ class SegmentIds {
   // Forgets all runs but keeps the memory.
   void clear() {
     size_ = 0;
-    if (++turn_ != 0) return;
+    if (++generation_ != 0) return;
     entries_.assign(entries_.size(), {});
-    turn_ = 1;
+    generation_ = 1;
   }
 
  private:
@@ -41,10 +41,10 @@ class SegmentIds {
     const Hit* hits = nullptr;
     uint64_t hash = 0, kind = 0;
     uint32_t value = kNone;
-    uint16_t count = 0, turn = 0;  // turn: number of the `clear` since which it is taken
+    uint16_t count = 0, generation = 0;  // generation: the one in which the entry was taken
   };
 
-  bool is_taken(const Entry& entry) const { return entry.turn == turn_; }
+  bool is_taken(const Entry& entry) const { return entry.generation == generation_; }
   static bool is(const Entry& entry, uint64_t hash, const Hit* hits, int count, uint64_t kind) {
     return entry.hash == hash && entry.kind == kind && entry.count == count &&
            (entry.hits == hits || std::memcmp(entry.hits, hits, static_cast<size_t>(count) * sizeof(Hit)) == 0);
@@ -75,7 +75,7 @@ class SegmentIds {
 
   std::vector<Entry> entries_;  // power of two, at most half full
   size_t size_ = 0;
-  uint16_t turn_ = 1;
+  uint16_t generation_ = 1;  // grows with each clear()
 };
 
 }  // namespace echopath

@@ -4,7 +4,6 @@
 
 #include "echopath/base/plane.h"
 #include "echopath/replay/evaluate/inner_part.h"
-#include "echopath/replay/kernels/path_formula.h"
 
 namespace echopath {
 namespace {

@@ -62,7 +62,7 @@ class SharedLegEvaluation {
   // these paths.
   void leave_out(const SharedLegPlan& plan, const std::vector<uint8_t>& places);
   // Writes the chains and mirror paths of the plan. Where the nodes are those of the last call, which must still be as they
-  // were, only what hangs on `radio` is evaluated again.
+  // were, only what depends on `radio` is evaluated again.
   void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                   const RadioConstants& radio, const ChannelSpan& channels);
   // Reads the plan and the nodes of the last call: sets turned[place] to 1 where the surface at an end of the path turns its

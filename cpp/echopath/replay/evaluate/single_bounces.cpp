@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/base/lanes/simd.h"
 #include "echopath/replay/factors/path_weight.h"
 
 namespace echopath {

@@ -55,7 +55,7 @@ ECHOPATH_INLINE Real largest_cell_filter(const CellShape& cell, const CellWaves<
                      cell.second_form[2] * cell.second_form[2]);
   const double per_side = filter.wavenumber * filter.view.side;
   const Real turn = turned.arrival + turned.departure;
-  // The change of h; one over the shortest leg is at most (1 + a) over the leg.
+  // This is the change of h, where one over the shortest leg is at most (1 + a) over the leg.
   const Real change = 3.0 * square *
                       (turned.arrival * (1.0 + turned.arrival) * at.inverse_in +
                        turned.departure * (1.0 + turned.departure) * at.inverse_out);

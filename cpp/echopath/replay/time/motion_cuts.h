@@ -19,7 +19,7 @@ struct Cuts {
 };
 
 // Names a few sets of cuts by their index: those of the meshes and of their unions. A path has the cuts of the meshes that
-// it touches, so its signal does not hang on how other objects move. The radar's cuts are in every set.
+// it touches, so its signal does not depend on how other objects move. The radar's cuts are in every set.
 class MotionCuts {
  public:
   static constexpr uint32_t kOfRadar = 0;  // index of the set that has the cuts of the radar alone

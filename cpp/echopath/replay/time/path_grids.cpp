@@ -14,7 +14,7 @@ constexpr int kNodesBeyondTurns = 2;  // nodes beyond w T / 2 from which on coef
 constexpr int64_t kWorthOfANode = 5;
 constexpr size_t kTriedVertices = 16;  // of a mesh, at least, where it has as many
 
-// Holds vertices all over a mesh in its frame, m, at the nodes of a grid. They do not hang on which triangles paths touch,
+// Holds vertices all over a mesh in its frame, m, at the nodes of a grid. They do not depend on which triangles paths touch,
 // as patches do.
 class TriedVertices {
  public:

@@ -11,8 +11,8 @@
 namespace echopath {
 
 // Polynomials of a set of cuts stand in ascending order of their nodes. None has more nodes than evaluation in every chirp,
-// and there is none at all where that was asked for. Only `join` adds
-// grids; those that are there keep their index and do not change.
+// and there is none at all where that was asked for. Only `join` adds grids; those that exist keep their index and do not
+// change.
 class TimeGrids {
  public:
   static constexpr int kHighestOrder = 32;

@@ -79,7 +79,6 @@ class Synthesizer {
   // Returns whether only the cells near the echoes of a group take memory, because echoes are spread on grids and there are
   // several groups.
   bool has_bands() const { return spread_ && num_groups_ > 1; }
-  size_t num_band_bytes() const;
   // Leaves the memory that only `add` needs to KeptMemory, which the next `add` takes again.
   void leave_scratch();
   // Returns the samples [channel, chirp, sample] of one group so far, in sqrt(W).

@@ -126,12 +126,6 @@ void Synthesizer::absorb_group(const Synthesizer& other, int channel, int group)
   }
 }
 
-size_t Synthesizer::num_band_bytes() const {
-  size_t bytes = 0;
-  for (const std::unique_ptr<RowBands>& bands : bands_) bytes += bands->num_bytes();
-  return bytes;
-}
-
 std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
   require_group(group);
   const size_t channel_size = static_cast<size_t>(waveform_.num_chirps) * static_cast<size_t>(waveform_.num_samples);

@@ -38,7 +38,7 @@ ECHOPATH_INLINE void scale(const double* values, const double* factor, int64_t c
   }
 }
 
-// Of this thread, until it asks again: kept as it is of the size of its plan.
+// Returns a buffer of this thread, which is made anew when the thread asks for another size.
 FftBuffer& scratch(int size) {
   thread_local FftBuffer buffer(size);
   if (buffer.size() != size) buffer = FftBuffer(size);

@@ -161,12 +161,6 @@ class PeakSearch {
   const BeamKernel beams_;
 };
 
-Vec3 mean_position(const std::vector<Antenna>& antennas) {
-  Vec3 sum = Vec3::Zero();
-  for (const Antenna& antenna : antennas) sum += antenna.position;
-  return sum / static_cast<double>(antennas.size());
-}
-
 }  // namespace
 
 void EstimateOptions::validate(int num_slots) const {
@@ -201,7 +195,8 @@ AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, cons
   };
   parallel_for(std::ssize(cells), search_cell, job);
 
-  const Vec3 middle = 0.5 * (mean_position(radar.transmitters) + mean_position(radar.receivers));
+  const auto mean_of = [](const std::vector<Antenna>& antennas) { return mean_position(antennas, Transform::Identity()); };
+  const Vec3 middle = 0.5 * (mean_of(radar.transmitters) + mean_of(radar.receivers));
   AngleEstimates result;
   for (size_t i = 0; i < cells.size(); ++i) {
     for (const Peak& peak : found[i].peaks) {

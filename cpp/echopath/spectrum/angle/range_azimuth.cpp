@@ -28,7 +28,7 @@ int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
   return nearest - map.velocity.begin();
 }
 
-// Velocities [begin, end) of a map.
+// Names the velocities [begin, end) of a map.
 struct VelocityRows {
   int64_t begin, end;
 };

@@ -31,7 +31,7 @@ void require_axes(const RangeDoppler& map, const Radar& radar) {
           map.velocity.back() - map.velocity.front());
 }
 
-// Whether a list of steps, repeated from slot to slot, gives all chirps of a transmitter the same one.
+// Returns whether a list of steps, repeated from slot to slot, gives all chirps of a transmitter the same one.
 bool repeats_with(const std::vector<double>& steps, size_t num_tx) { return steps.empty() || num_tx % steps.size() == 0; }
 
 double repeated(const std::vector<double>& steps, size_t slot) { return steps.empty() ? 0.0 : steps[slot % steps.size()]; }

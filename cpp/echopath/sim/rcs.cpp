@@ -29,15 +29,13 @@ struct Target {
 Target target_of(const Scene& scene) {
   require(!scene.meshes().empty(), "scene", "must have a mesh, meshes", scene.meshes().size());
   const PosedScene pose(scene, 0.0);
-  Eigen::AlignedBox3d box;
   std::vector<Vec3> points;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     require(!node.material->mirror, "scene", "must have no mesh marked mirror, which has no cross section", node.name);
     for (const Vec3& vertex : pose.world_vertices(id)) points.push_back(vertex);
   }
-  for (const Vec3& point : points) box.extend(point);
-  Target target{box.center(), 0.0};
+  Target target{box_about(points).center(), 0.0};
   for (const Vec3& point : points) target.radius = std::max(target.radius, (point - target.centre).norm());
   return target;
 }

@@ -90,7 +90,7 @@ class GlintSearch {
     std::vector<FoundGlint> found;
     for (const Triangle& t : task.triangles) {
       const std::array<Vec3, 3> corners = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-      const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      const Vec3 normal = cross_of_sides(corners);
       std::optional<ReflectingTriangle> triangle;
       for (const size_t index : task.of.routes) {
         const GlintRoute& route = routes_[index];

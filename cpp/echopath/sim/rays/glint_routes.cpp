@@ -103,13 +103,13 @@ class RouteSorter {
     const auto& [mirror, only] = face;
     if (only != kWholeMesh) {
       const auto [a, b, c] = pose_.world_triangle(mirror, only);
-      return {a, (b - a).cross(c - a).normalized()};
+      return {a, cross_of_sides(a, b, c).normalized()};
     }
     const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
     Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
     for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
       const auto [a, b, c] = pose_.world_triangle(mirror, triangle);
-      const Vec3 normal = (b - a).cross(c - a);
+      const Vec3 normal = cross_of_sides(a, b, c);
       if (normal.squaredNorm() > largest.normal.squaredNorm()) largest = {a, normal};
     }
     largest.normal.normalize();

@@ -9,7 +9,7 @@
 
 #include "echopath/power/faint_paths.h"
 #include "echopath/power/received_power.h"
-#include "echopath/signal/noise.h"
+#include "echopath/radar/noise_power.h"
 #include "echopath/sim/rays/plan_foci.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/strata/fitted_strata.h"
@@ -228,7 +228,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   if (!kept) kept = &own;
   FittedStrata fitted;
   Job unseen(job);  // its progress is that of the trace
-  // Pilots have as many rays with and without what moves: to how many objects rays are aimed hangs on that.
+  // Pilots have as many rays with and without what moves: the number of objects at which rays are aimed depends on it.
   const auto pilot_of = [&](const SceneSnapshot& seen, KeptGeometry* geometry, FittedStrata* strata) {
     TraceSettings launch = settings;
     launch.num_rays = settings.num_rays / kPilotDivisor;

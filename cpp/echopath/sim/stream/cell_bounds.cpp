@@ -16,8 +16,8 @@ constexpr double kBeatSpare = 0.25;  // cells
 constexpr int kFine = 16;            // steps of a cell in which the response of a window is tabulated
 constexpr double kBetweenSteps = 1.01;
 
-// The largest responses of a window to tones within some cells of a bin, by the distance of a cell from it on the circle
-// of all cells; one table for each of 1, 2, 4, ... cells, the last as wide as the circle.
+// Holds the largest responses of a window to tones within some cells of a bin, by the distance of a cell from it on the
+// circle of all cells; there is one table for each of 1, 2, 4, ... cells, the last as wide as the circle.
 class WindowReach {
  public:
   WindowReach(const Window& window, int num_cells, int zero_pad) : num_cells_(num_cells) {
@@ -126,7 +126,7 @@ std::vector<double> CellBounds::bounds(std::span<const uint32_t> group, uint32_t
   }
   std::vector<double> bounds(num_groups * num_ranges);
   parallel_for(num_groups, [&](int64_t g) {
-    // Amplitudes by table and bin.
+    // These amplitudes are by table and bin.
     std::vector<std::vector<double>> bins(reach.num_tables(), std::vector<double>(static_cast<size_t>(num_cells)));
     for (const size_t path : paths_of[g]) {
       const double middle = 0.5 * (double{lowest_[path]} + highest_[path]);

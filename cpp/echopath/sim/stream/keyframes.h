@@ -35,8 +35,8 @@ struct Stretch {
 std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int count);
 
 // Returns the number of stretches to use: that of the settings, or what validity asks for (Validity::keyframes).
-int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings,
-                  SpecularPoints specular = SpecularPoints::kMaterial, Job* job = nullptr);
+int num_keyframes(const Paths& paths, const Radar& radar, const KeyframeSettings& settings, SpecularPoints specular,
+                  Job* job);
 
 // Makes the records of the stretches of a frame. The frame of a record starts with its stretch.
 class StretchRecords {

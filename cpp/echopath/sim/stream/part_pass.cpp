@@ -37,7 +37,7 @@ double sum_of_squares(const std::vector<std::complex<double>>& samples) {
 
 }  // namespace
 
-// Some sets of groups: the signal to which each group is added, and their paths.
+// Holds the signal to which each group of some sets is added, and the paths of these groups.
 struct PartPass::Sorted {
   std::vector<uint32_t> local;  // [num_groups], kNotAsked for others
   std::vector<int64_t> paths;   // set by set, ascending in each

@@ -43,7 +43,7 @@ struct ProbedChirp {
   double strongest = 0.0;  // W, of the strongest path that rays found
 
   // Adds the same chirp and samples of another record, whose echoes add up with these. Errors count by the power compared,
-  // so that those of a record that brings next to nothing do not stand for all.
+  // so that those of a record with hardly any power do not stand for all.
   void add(const ProbedChirp& other);
 };
 

@@ -48,6 +48,10 @@ std::string most_of(const Validity& report, double ValidityShares::* share) {
   return text.empty() ? text : text + ".";
 }
 
+std::string parts_of_frame(const Validity& report) {
+  return "each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
+}
+
 std::string slide_warning(const Validity& report) {
   const std::string found = percent(report.shares.slid) + " of the power is off by more than " + radians(kPhaseLimit) +
                             " of phase (at most " + radians(report.largest_phase_error) +
@@ -55,15 +59,13 @@ std::string slide_warning(const Validity& report) {
   const bool helps =
       report.specular == SpecularPoints::kMaterial && report.stepped_phase_error < 0.5 * report.largest_phase_error;
   const std::string step = "replay=\"fermat\" leaves at most " + radians(report.stepped_phase_error) + "; or trace ";
-  const std::string advice = found + (helps ? step : "Trace ");
+  const std::string lead = found + (helps ? step : "Trace ");
   if (report.motion_phase_error <= kPhaseLimit)
-    return advice + "parts of the array by themselves: it is too wide for one trace.";
-  return advice + "each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
+    return lead + "parts of the array by themselves: it is too wide for one trace.";
+  return lead + parts_of_frame(report);
 }
 
-std::string advice(const Validity& report) {
-  return "Trace each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
-}
+std::string advice(const Validity& report) { return "Trace " + parts_of_frame(report); }
 
 std::string missing_warning(const ObjectValidity& object, const Validity& report) {
   const std::string margin = with_digits(2, 10.0 * std::log10(object.seen_power / report.cell_noise));

@@ -36,8 +36,7 @@ bool is_lost(const PathState& state) { return state.left != 0 || state.blocked !
 
 // Returns centre and radius of a ball about a mesh at one time, in the world.
 std::pair<Vec3, double> ball_of(const PosedScene& pose, uint32_t mesh_id) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : pose.world_vertices(mesh_id)) box.extend(vertex);
+  const Box box = box_about(pose.world_vertices(mesh_id));
   return {box.center(), 0.5 * box.diagonal().norm()};
 }
 
@@ -84,7 +83,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
 FrameCheck::~FrameCheck() = default;
 
 void FrameCheck::find_sweeps() {
-  std::vector<Eigen::AlignedBox3d> centres(times_.of_mesh.size());
+  std::vector<Box> centres(times_.of_mesh.size());
   std::vector<double> radii(times_.of_mesh.size());
   for (int k = times_.num_base; k < std::ssize(times_.times); ++k) {
     const PosedScene pose(*paths_.scene, times_.times[k]);

@@ -43,9 +43,10 @@ struct Run {
   Part part;
 };
 
+constexpr int kMostHits = 58;  // of a run, whose events then fit into its kind
+
 // Returns all on which the legs of a run depend but the hits themselves: the order in which they are passed, whether the
 // last material point is posed with its triangle, and for inner legs which of the hits are images.
-constexpr int kMostHits = 58;  // hits of a run whose events fit beside the rest
 uint64_t kind_of(const LocalPath& path, const Run& run) {
   const bool has_cell = path.diffuse == 0 && run.last >= path.last_material;
   const uint64_t events =

@@ -43,7 +43,7 @@ struct SurfaceWalk::Surface {
   }
   Vec3 cross(uint32_t t, const std::vector<Vec3>& vertices) const {
     const auto [a, b, c] = corners(t, vertices);
-    return (b - a).cross(c - a);
+    return cross_of_sides(a, b, c);
   }
   bool is_smooth(uint32_t t, const std::vector<Vec3>& vertices) const {
     return normals && is_smooth_facet(cross(t, vertices).normalized(), corners(t, *normals));

@@ -10,7 +10,8 @@ from ..base.storage.files import written_whole
 
 # Of the detections, as PCD has them; LAS has them, and the ratio to the noise, as extra dimensions.
 _PLACE_AND_SPEED = ("velocity", "range", "azimuth", "elevation")
-_EXTRA = (*_PLACE_AND_SPEED, "snr_db")
+_EXTRA = {"velocity": "m/s, receding positive", "range": "m, from between the antennas", "azimuth": "rad, left positive",
+          "elevation": "rad, up positive", "snr_db": "dB over the noise"}  # with descriptions of at most 32 characters
 _LAS_STEP = 1e-4  # m
 _MEANINGS = ("radar detections: x ahead, y left, z up in m in the frame of the radar, NaN where no azimuth is known",
              "intensity in dB over the noise, velocity in m/s (receding positive), range in m from between the antennas,",
@@ -38,7 +39,7 @@ def write_las(detections, path) -> int:
     points = detections.points[is_placed]
     header = laspy.LasHeader(point_format=6, version="1.4")
     header.offsets, header.scales = np.zeros(3), np.full(3, _LAS_STEP)
-    header.add_extra_dims([laspy.ExtraBytesParams(name=name, type=np.float64) for name in _EXTRA])
+    header.add_extra_dims([laspy.ExtraBytesParams(name=name, type=np.float64, description=told) for name, told in _EXTRA.items()])
     cloud = laspy.LasData(header)
     cloud.x, cloud.y, cloud.z = points.T
     snr = np.nan_to_num(detections.snr_db[is_placed], posinf=655.35, neginf=0.0)

@@ -153,3 +153,5 @@ def test_las_files_are_read_by_their_library(detections, tmp_path):
     np.testing.assert_allclose(np.asarray(cloud.xyz), detections.points, atol=1e-4)
     np.testing.assert_allclose(cloud["velocity"], detections.velocity)
     np.testing.assert_allclose(cloud.intensity / 100.0, detections.snr_db, atol=0.01)
+    told = {one.name: one.description for one in cloud.point_format.extra_dimensions}
+    assert told["velocity"] == "m/s, receding positive" and told["azimuth"] == "rad, left positive" and all(told.values())

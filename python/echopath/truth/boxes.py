@@ -169,10 +169,7 @@ def _placed(node, time: float):
 
 
 def _moved(node, time: float):
-    """[4, 4], what the motion of a node does to what rests in the axes of its parent."""
-    back = np.eye(4)
-    back[:3, 3] = -node.placement[:3, 3]
-    step = node.motion.at(time)
-    forth = np.eye(4)
-    forth[:3, :3], forth[:3, 3] = step[:3, :3], node.placement[:3, 3] + step[:3, 3]
-    return forth @ back
+    """[4, 4], what the motion of a node makes of the axes of its parent about the place of the node."""
+    moved = np.array(node.motion.at(time))
+    moved[:3, 3] += node.placement[:3, 3]
+    return moved

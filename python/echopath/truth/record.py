@@ -28,9 +28,10 @@ class Truth:
 
     frame: i32 [N], index of the frame; time: [N] s, middle of the frame; name: [N] text, of the object
     position: [N, 3] m, world: the centre of the box; origin: [N, 3] m, world: the object's own origin, as its node is placed
-        and moved (by a Trajectory, say); of bodies without a motion of their own that deform, or whose parts move by themselves
-        (`speed=` of actors), as far on in these axes as the centroid of the surface has come since time 0, or since the nearest
-        time for which all their motions are made
+        and moved (by a Trajectory, say); of groups whose meshes share place and motion, as a wheel's tyre and rim do, that
+        place; of bodies without a motion of their own that deform, or whose parts move by themselves (`speed=` of actors), as
+        far on in these axes as the centroid of the surface has come since time 0, or since the nearest time for which all
+        their motions are made
     velocity: [N, 3] m/s, world: of the box's centre as part of the object's own axes, which node and motion carry; of
         bodies that deform, or whose parts move by themselves, plus the velocity of the centroid of the surface in these axes:
         a box whose faces go from limb to limb has no steady velocity of its own

@@ -188,6 +188,18 @@ def test_the_origin_goes_with_a_body_that_drives_by_itself(yaw):
             assert one.origin[0] == pytest.approx(start + speed * one.time[0] * ahead, abs=1e-3)  # m: spokes of wheels
 
 
+def test_the_origin_of_a_wheel_is_its_hub():
+    """It stays as high as the wheel's radius and goes with the car, while tyre and rim turn about it."""
+    way = ep.Trajectory([(8.0, -4.0), (8.0, 20.0)], speed=6.0)
+    scene = ep.Scene()
+    scene.add(ep.actors.car(trajectory=way), name="car")
+    one, other = (ep.truth(trace(scene, start_time=start, num_rays=50), objects={"wheel": "car/wheel/front_left"})
+                  for start in (0.2, 0.9))
+    assert one.origin[0] == pytest.approx(one.position[0], abs=0.02)  # the middle of the wheel's box
+    gone = 6.0 * (other.time[0] - one.time[0])
+    assert other.origin[0] - one.origin[0] == pytest.approx([0.0, gone, 0.0], abs=1e-4)
+
+
 def test_the_origin_of_what_follows_a_trajectory_is_on_it():
     """Also while a trailer swings out behind its truck, and while legs swing."""
     turn = ep.Trajectory([(10, -20), (40, -20), (40, 20)], turn_radius=12, speed=6)

@@ -6,11 +6,12 @@ import numpy as np
 import echopath as ep
 
 from ...model.frames.live_session import DEFAULT_RAYS
+from ..maps.ticks import nice_below, step_of
 from ..qt import Qt, QtCore, QtWidgets
 from .live_control import RADAR
 from .typed_box import TypedBox
 
-STEP, FARTHEST = 0.1, 1e4    # m
+STEP, FARTHEST = 0.1, 1e4    # m; less where cells of range are finer
 ROUGHEST, NUM_STEPS = 5e-3, 100  # m, of the slider, and its steps
 ALONE = "echoes of the scene alone, without noise, rain and other radars"
 FIRST = "as at the start"  # of the materials
@@ -114,6 +115,9 @@ class LivePanel(QtWidgets.QWidget):
             self.object_box.clear()
             self.object_box.addItems(self.control.objects())
             self.object_box.setCurrentIndex(min(1, self.object_box.count() - 1))
+        cell = step_of(self.session.parts.whole.spectrum.range)
+        for box in self.place_boxes:
+            box.setSingleStep(min(STEP, nice_below(cell)))
         self.rays_box.setValue(self.control.live.num_rays)
         self.start_button.setChecked(True)
         self._enable(True)

@@ -148,7 +148,7 @@ def test_an_object_is_dragged_with_shift(qtbot, live_window):
 def test_steps_of_places_are_no_coarser_than_cells_of_range(qtbot, live_window, moving_sequence):
     window = live_window
     assert {box.singleStep() for box in window.live_panel.place_boxes} == {0.1}  # cells are 0.25 m
-    fine = moving_sequence.radar.waveform.replace(bandwidth=6e9)  # 25 mm
+    fine = moving_sequence.radar.waveform.replace(bandwidth=6e9, num_samples=256)  # 25 mm
     live = ep.Live(moving_sequence.scene, moving_sequence.radar.replace(waveform=fine), num_rays=500, max_bounces=1)
     window.live_panel.stop()
     window.show_input(input_of_view(live, live.update()))

@@ -50,6 +50,19 @@ def pass_to(qtbot, window, place: int) -> None:
     assert not window.view3d.renderer.GetUseOIT()
 
 
+def test_what_becomes_live_ends_the_film_and_stays(qtbot, playing):
+    """The frame that is being read then had taken its place, and the panel had stopped without a word."""
+    window, panel = playing, playing.live_panel
+    panel.rays_box.setValue(500)
+    window.time_line.go(2)
+    panel.start_button.click()
+    assert window.live.is_on and not window.time_line.is_playing and not window.time_line.is_busy
+    settle(qtbot)
+    assert window.live.is_on and panel.start_button.isChecked()
+    panel.stop()
+
+
+
 def test_another_file_that_is_opened_is_drawn_whole(playing, stored_run):
     playing.open_file(stored_run.paths_of_files[0])
     assert not playing.time_line.is_playing and playing.view3d._pace is None

@@ -255,6 +255,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.keeping.done.connect(self._take_kept)
         self.time_line.read.connect(self._take_read)
         self.time_line.stopped.connect(self._end_passing)
+        self.live_panel.begins.connect(self.time_line.hold)  # the next frame of a film would end it at once
         self.live.shown.connect(self._take_live)
         self.live.failed.connect(self.show_message)
         self.live.stopped.connect(self._end_passing)

@@ -7,7 +7,7 @@ import echopath as ep
 
 from ...model.frames.live_session import DEFAULT_RAYS
 from ..maps.ticks import nice_below, step_of
-from ..qt import Qt, QtCore, QtWidgets
+from ..qt import Qt, QtCore, QtWidgets, Signal
 from .live_control import RADAR
 from .typed_box import TypedBox
 
@@ -21,6 +21,8 @@ HINT = "Start, then drag an object in the scene with Shift held, or change the n
 
 class LivePanel(QtWidgets.QWidget):
     """Tells the control what is to change, and shows whether what is seen is a preview."""
+
+    begins = Signal()  # a frame is about to become live
 
     def __init__(self, control, parent=None):
         """control: LiveControl"""
@@ -102,6 +104,7 @@ class LivePanel(QtWidgets.QWidget):
             self._enable(False)
             self.state_label.setText(HINT)
         elif not self.control.is_on:
+            self.begins.emit()
             self._begin(None)
 
     def _begin(self, live) -> None:

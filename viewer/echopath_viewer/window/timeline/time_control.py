@@ -90,6 +90,12 @@ class TimeControl(QtCore.QObject):
         """Ends the film at the frame on display."""
         self.bar.play_button.setChecked(False)
 
+    def hold(self) -> None:
+        """Ends the film and lets go of the frame that is being read: the one on display stays."""
+        self.work.stop()
+        self._wanted = None
+        self.pause()
+
     def step(self, by: int) -> None:
         """To a frame before or after; over those that cannot be read."""
         if self.line is not None:

@@ -100,6 +100,22 @@ def test_a_ghost_over_a_plane_seems_to_be_at_the_mirror_image():
     # y = 3, but for the size of the box, whose nearest faces are seen.
 
 
+def test_twins_of_what_was_read_as_one_object_leave_out_its_mirrors():
+    """A ground that is a part of the object had been painted over all of the scene."""
+    scene = ep.Scene()
+    scene.add(None, name="town")
+    road = ep.Mesh([[-60, -60, 0], [60, -60, 0], [60, 60, 0], [-60, 60, 0]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(road, name="road", parent="town", material=ep.Material.metal(mirror=True))
+    rough = ep.Material(reflectivity=0.8, scattering=1.0)
+    scene.add(ep.Mesh(*_box((10.0, 1.0, 1.0))), name="van", parent="town", material=rough)
+    radar = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=3e8, num_samples=64, sampling_rate=10e6, num_chirps=4,
+                                      chirp_interval=5e-5), transmitters=[ep.Antenna((0, 0, 1.5))],
+                     receivers=[ep.Antenna((0, 0.01, 1.5))])
+    session = Session(from_frame(ep.simulate(scene, radar, num_rays=2000, max_bounces=3)))
+    twins = ghost_twins(session.paths, session.columns)
+    assert twins and {session.mesh_names[mesh] for twin in twins for mesh in twin.meshes} == {"town/van"}
+
+
 def test_things_of_a_town_are_told_apart_as_its_labels_do():
     """All had been told of as the object that the town was read as: its ghosts had covered the scene."""
     scene = ep.Scene()

@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath import _core
 from echopath.arguments.objects import named_globs
 from echopath.paths.subset import strongest, subset
 from echopath.plots.labels import CLASSES
@@ -39,7 +40,7 @@ def ghost_twins(paths, columns, objects=None) -> list[GhostTwin]:
     Model: an echo seems to be at its range, half of the length of its path, in the direction in which it arrives: that of its
     last hit from the receiver. A family is where the mean of its strongest paths is, weighted by power.
     """
-    families, globs_of = ep.families(paths, objects), dict(named_globs(objects) or ())
+    families, meshes_of = ep.families(paths, objects), _meshes_of(paths, objects)
     own, ghosts = {}, []
     for number, family in enumerate(families.families):
         mask = families.family_of_path == number
@@ -51,12 +52,22 @@ def ghost_twins(paths, columns, objects=None) -> list[GhostTwin]:
     twins = []
     for power, family, mask in ghosts[:MOST_TWINS]:
         place, origin = _apparent_place(paths, columns, mask), own.get(family.object)
-        globs = globs_of.get(family.object, [family.object])
-        meshes = tuple(mesh.id for mesh in paths.scene.meshes if any(ep._core.glob_takes(glob, mesh.name) for glob in globs))
+        meshes = tuple(meshes_of.get(family.object, ()))
+        if not meshes:
+            continue
         origin = _centre(paths, meshes) if origin is None else origin
-        if place is not None and meshes:
+        if place is not None:
             twins.append(GhostTwin(name_of(family), family.object, family.ghost_type, meshes, place - origin, power))
     return twins
+
+
+def _meshes_of(paths, objects) -> dict:
+    """{object: IDs of its meshes}, those of mirrors among them only where a call names them: a town that is one object would
+    else be painted over by the twins of its ground."""
+    if objects is not None:
+        return _core.meshes_of_objects(paths.scene, named_globs(objects))
+    time = paths.frame.trace_time if paths.frame.objects_time is None else paths.frame.objects_time
+    return _core.meshes_of_usual_objects(paths.scene, paths.radar, time)
 
 
 def twin_rows(twins) -> tuple:

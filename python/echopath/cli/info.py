@@ -59,7 +59,7 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     if suffix == ".toml":
         return _describe_scene_file(load_scene(path))
     if (path / DATASET_FILE).exists():
-        return _describe_dataset(dataset.open(path))
+        return _describe_dataset(path, dataset.open(path))
     is_sequence_file = suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE
     if is_sequence_file and selections:
         raise ValueError(f"{path}: must be the file of one frame for --select, such as {path}/frames/000000 of these frames")
@@ -93,10 +93,10 @@ def _describe_sequence(stored) -> list[str]:
             *_describe_radar(stored.radar, float(stored.times[0]))]
 
 
-def _describe_dataset(opened) -> list[str]:
+def _describe_dataset(path, opened) -> list[str]:
     made = opened.template.settings
     shares = ", ".join(f"{name} {len(opened.split(name))}" for name in made.split)
-    return [str(opened.folder), "dataset", report.line("scenes", f"{made.scenes}, {len(opened.scenes)} done"),
+    return [str(path), "dataset", report.line("scenes", f"{made.scenes}, {len(opened.scenes)} done"),
             report.line("frames", f"{len(opened)}, {made.frames} of each scene"), report.line("kept", made.keep),
             report.line("frames of splits", shares)]
 

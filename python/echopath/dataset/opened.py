@@ -207,7 +207,7 @@ def open(folder: str | os.PathLike[str]) -> Dataset:
     """
     if is_address(os.fspath(folder)):
         raise _core.FileError(f"{folder}: is an address; copy it to a folder first, as `get` of fsspec.core.url_to_fs does")
-    folder = Path(folder)
+    folder = Path(folder).absolute()  # frames are read later, maybe in another working folder
     template = open_template(folder)
     frames = template.settings.frames
     done = [scene for scene in range(template.settings.scenes) if read_record(folder, scene).state == "done"]

@@ -42,8 +42,9 @@ class StoredSequence(Row[Frame | FrameMaps]):
     """
 
     def __init__(self, path: Path):
-        self._store = store_of(path_rule("path", path))
-        self.path = self._store.path
+        path = path_rule("path", path)
+        self.path = store_of(path).path
+        self._store = store_of(Path(path).absolute())  # frames are read later, maybe in another working folder
         contents = self._store.contents()
         self.radar, self.settings = contents.radar, contents.settings
         self._scene = contents.scene

@@ -24,6 +24,14 @@ def path(tmp_path) -> Path:
     return written(tmp_path)
 
 
+def test_frames_are_read_in_any_working_folder(small_dataset, tmp_path, monkeypatch):
+    folder = small_dataset[1]
+    monkeypatch.chdir(folder.parent)
+    opened = dataset.open(folder.name)
+    monkeypatch.chdir(tmp_path)
+    assert opened[1].frame.labels == dataset.open(folder)[1].frame.labels
+
+
 def test_info_tells_what_a_folder_holds(small_dataset):
     told = "\n".join(describe_file(small_dataset[1]))
     assert "6, 6 done" in told and "12, 2 of each scene" in told and "labels" in told

@@ -64,6 +64,14 @@ def test_what_is_stored_travels(folders):
     assert len(stored) == 3 and stored[0] == pickle.loads(pickle.dumps(ep.load_sequence(folders["maps"])[1]))
 
 
+def test_frames_are_read_in_any_working_folder(folders, tmp_path, monkeypatch):
+    monkeypatch.chdir(folders["all"].parent)
+    stored = ep.load_sequence(folders["all"].name)
+    monkeypatch.chdir(tmp_path)
+    assert stored.is_done.all() and np.array_equal(stored[1].cube, ep.load_sequence(folders["all"])[1].cube)
+    assert repr(stored).startswith(f"StoredSequence('{folders['all'].name}', 4 frames")
+
+
 def test_damaged_settings_are_told_by_their_file(folders, tmp_path):
     path = tmp_path / "sequence.h5"
     path.write_bytes((folders["maps"] / "sequence.h5").read_bytes())

@@ -186,16 +186,15 @@ TEST(DefaultAngles, AreOnTheSideToWhichTheAntennasLook) {
     const std::vector<double> azimuths = default_azimuths(virtual_array(radar));
     return 0.5 * (azimuths.front() + azimuths.back());
   };
-  constexpr double kRounding = 1e-12;
   const Vec3 ahead(kHalf, 0, 0), left(0, kHalf, 0);
-  EXPECT_NEAR(middle(ahead, 0.5 * kPi), 0.5 * kPi, kRounding);
-  EXPECT_NEAR(middle(ahead, -1.2), -0.5 * kPi, kRounding);  // on that side, not aslant: +-90 degrees about the line's normal
+  EXPECT_NEAR(middle(ahead, 0.5 * kPi), 0.5 * kPi, kTurned);
+  EXPECT_NEAR(middle(ahead, -1.2), -0.5 * kPi, kTurned);  // on that side, not aslant: +-90 degrees about the line's normal
   EXPECT_EQ(middle(left, 0.4), 0.0);
   EXPECT_EQ(middle(left, 0.4, 3), 0.0);
-  EXPECT_NEAR(std::abs(middle(left, 3.0)), kPi, kRounding);
+  EXPECT_NEAR(std::abs(middle(left, 3.0)), kPi, kTurned);
   EXPECT_EQ(middle(left, 0.0), 0.0);
   EXPECT_EQ(middle(ahead, 0.0), 0.0);  // along the line neither side is nearer
-  EXPECT_NEAR(middle(kHalf * Vec3(-0.6, 0.8, 0), 0.0), std::atan2(0.6, 0.8), kRounding);
+  EXPECT_NEAR(middle(kHalf * Vec3(-0.6, 0.8, 0), 0.0), std::atan2(0.6, 0.8), kTurned);
 }
 
 TEST(DefaultAngles, AreRefusedWhereThereWouldBeMillions) {

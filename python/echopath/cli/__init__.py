@@ -44,7 +44,7 @@ def _run(arguments) -> int:
                 print(f"echopath: {error}", file=sys.stderr)
             return EXIT_UNREAD
     except (ValueError, OSError, ModuleNotFoundError, DeviceError) as error:
-        print(f"echopath: {with_typed_name(str(error), options)}", file=sys.stderr)
+        print(f"echopath: {with_typed_name(_text_of(error), options)}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except MemoryError:
         print("echopath: not enough memory; fewer rays (--rays), samples and chirps need less", file=sys.stderr)
@@ -52,6 +52,12 @@ def _run(arguments) -> int:
     finally:
         _let_go_of_unread_outputs()
     return 0
+
+
+def _text_of(error: Exception) -> str:
+    """Errors of the system begin with the name of the file, as others do."""
+    told = [str(part) for part in (getattr(error, "filename", None), getattr(error, "strerror", None)) if part]
+    return ": ".join(told) or str(error)
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """What is in a file or a folder: scene, template, frame, mesh; frames in time, dataset."""
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +46,7 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
     """
     path = Path(path)
-    if (path / FRAME_NAME).exists():
+    if os.path.exists(path / FRAME_NAME):
         path = path / FRAME_NAME
     suffix = file_and_group(path)[0].suffix.lower()
     selections = [ep.Selection(selection) for selection in selections]

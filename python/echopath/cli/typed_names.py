@@ -6,6 +6,8 @@ from argparse import Namespace
 # Arguments of functions that have another name on the command line. Others are called alike: seed is --seed.
 _TYPED_AS = {"num_rays": "rays", "path": "out", "dynamic_range_db": "dynamic_range", "noise_margin_db": "noise_margin",
              "objects": "object"}
+# What a command is given without a name, as its usage calls it.
+_UNNAMED = {"file": "FILE", "scene": "SCENE.toml", "frame": "FRAME.h5", "template": "DATASET.toml"}
 
 
 def with_typed_name(message: str, options: Namespace) -> str:
@@ -14,8 +16,9 @@ def with_typed_name(message: str, options: Namespace) -> str:
     options: of the command
     """
     argument, colon, rest = message.partition(": ")
-    if argument == "path" and hasattr(options, "file"):  # which has no name on the command line
-        return f"FILE{colon}{rest}"
+    unnamed = next((name for name in _UNNAMED if hasattr(options, name)), "")
+    if unnamed and argument in ("path", unnamed) and f"'{getattr(options, 'out', None)}'" not in rest:
+        return f"{_UNNAMED[unnamed]}{colon}{rest}"
     typed = _TYPED_AS.get(argument, argument)
     return f"--{typed.replace('_', '-')}{colon}{rest}" if colon and typed in _typed(options) else message
 

@@ -337,6 +337,9 @@ def test_bad_input_gives_one_clear_line_and_code_2(name):
     (("scene", "SCENE", "--out", "a.toml"), "FILE: must be a file of the kinds .glb"),
     (("scene", "MESH", "--out", "a.toml", "--unit", "-1"), "--unit: must be "),
     (("view", "FRAME", "--scale", "0"), "--scale: must be a whole number"),
+    (("run", "a" * 300 + ".toml", "--out", "out"), "SCENE.toml: must be the name of a file that can be"),
+    (("dataset", "a" * 300 + ".toml", "--out", "out"), "DATASET.toml: must be the name of a file that can be"),
+    (("info", "a" * 300 + ".h5"), "a" * 300 + ".h5: File name too long"),
 ])
 def test_faults_name_what_was_typed(finished_run, tmp_path, monkeypatch, arguments, message):
     """And not what the functions behind the options call it."""

@@ -1,7 +1,9 @@
 """Pictures, maps, films and pages of what the window shows."""
 from __future__ import annotations
 
+import base64
 import contextlib
+import io
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -11,10 +13,11 @@ from PIL import Image
 
 import echopath as ep
 from echopath.base.storage.film import write_film
-from echopath_viewer.model import Session, from_paths
+from echopath_viewer.model import WHOLE, Session, from_paths
 from echopath_viewer.scene_builder.export import export_rays
 from echopath_viewer.scene_builder.web_page import MESH_OPACITY, MIRROR_OPACITY, ScenePage
 from echopath_viewer.window.files.exporting import export
+from echopath_viewer.window.qt import QtCore, QtGui
 from support import shapes
 
 NUM_PICTURES = 4  # of the film, of a frame of more chirps
@@ -45,6 +48,25 @@ def test_maps_are_drawings(qtbot, window, tmp_path):
     assert any(text.startswith("every") and text.endswith("eived") for text in texts)  # cut in the middle, if at all
     assert (tmp_path / "maps.pdf").read_bytes().startswith(b"%PDF")
     assert window.map_area.palette() == before
+
+
+def test_drawn_maps_show_the_part_that_is_seen(qtbot, window, tmp_path):
+    """Whole maps had been drawn over the axes of the part."""
+    area = window.map_area
+    panel = area.panels[WHOLE, WHOLE]
+    ranges, velocities = panel.range_axis, panel.velocity_axis
+    step, slow = ranges[1] - ranges[0], velocities[1] - velocities[0]
+    area.set_view(QtCore.QRectF(ranges[9] + 0.3 * step, velocities[4] + 0.3 * slow, 12.0 * step, 8.0 * slow))
+    export(window, tmp_path / "maps.svg")
+    drawn = next(node for node in ElementTree.parse(tmp_path / "maps.svg").iter() if node.tag.endswith("image"))
+    data = next(value for name, value in drawn.attrib.items() if name.endswith("href"))
+    image = Image.open(io.BytesIO(base64.b64decode(data.partition(",")[2]))).convert("RGB")
+    for distance in range(11, 21):
+        for velocity in range(6, 12):
+            at = ((ranges[distance] - panel.view.left()) / panel.view.width() * image.width,
+                  (panel.view.bottom() - velocities[velocity]) / panel.view.height() * image.height)
+            assert image.getpixel(tuple(map(int, at))) == QtGui.QColor(
+                panel.image.pixel(distance, len(velocities) - 1 - velocity)).getRgb()[:3]
 
 
 @contextlib.contextmanager

@@ -15,6 +15,7 @@ from .ticks import axis_ticks, step_of, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 8, 20, 32  # pixels around the map
 MARKER_REACH, MARKER_RADIUS = 8, 4.0     # pixels
+FILE_SCALE = 4.0  # pixels of maps in files to one of the screen
 BOX_COLOUR, RAY_COLOUR = QtGui.QColor("#56b4e9"), QtGui.QColor("#7bff7b")
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s"
 
@@ -142,7 +143,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
 
     def paint(self, painter) -> None:
         """Draws the panel with the painter of a file."""
-        self._paint_base(painter)
+        self._paint_base(painter, is_file=True)
         self._paint_over(painter)
 
     def _paint_over(self, painter) -> None:
@@ -154,7 +155,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         self._paint_marks(painter)
         painter.restore()
 
-    def _paint_base(self, painter) -> None:
+    def _paint_base(self, painter, is_file: bool = False) -> None:
         painter.fillRect(self.rect(), self.palette().window())
         if self.image is None or self.view.isEmpty():
             return
@@ -162,20 +163,23 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         painter.fillRect(rect, QtGui.QColor(*map(int, colour_table(self._colours)[self._outside])))
         painter.save()
         painter.setClipRect(rect)
-        self._paint_image(painter, rect, self.image)
+        self._paint_image(painter, rect, self.image, is_file)
         if self._overlay is not None:
-            self._paint_image(painter, rect, self._overlay)
+            self._paint_image(painter, rect, self._overlay, is_file)
         painter.restore()
         self._paint_axes(painter, rect)
 
-    def _paint_image(self, painter, rect, image) -> None:
-        """What is seen of it, cut out: painters of files know no clipping."""
+    def _paint_image(self, painter, rect, image, is_file: bool) -> None:
+        """What is seen of it. is_file: cut out before, as painters of files draw whole images or whole cells of them."""
         everything = self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1))
         seen = everything.intersected(rect)
         across, down = image.width() / everything.width(), image.height() / everything.height()
         source = QtCore.QRectF((seen.left() - everything.left()) * across, (seen.top() - everything.top()) * down,
                                seen.width() * across, seen.height() * down)
-        painter.drawImage(seen, image, source)
+        if is_file:
+            painter.drawImage(seen, _cut_out(image, source, seen.size()))
+        else:
+            painter.drawImage(seen, image, source)
 
     def _paint_markers(self, painter) -> None:
         seen = self.plot_rect()
@@ -262,6 +266,16 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)
+
+
+def _cut_out(image, source: QtCore.QRectF, size: QtCore.QSizeF) -> QtGui.QImage:
+    """A part of an image, `size` large in pixels of the screen, whose cells are cut where the part ends."""
+    part = QtGui.QImage((FILE_SCALE * size).toSize().expandedTo(QtCore.QSize(1, 1)), QtGui.QImage.Format.Format_ARGB32)
+    part.fill(Qt.GlobalColor.transparent)
+    painter = QtGui.QPainter(part)
+    painter.drawImage(QtCore.QRectF(part.rect()), image, source)
+    painter.end()
+    return part
 
 
 @functools.cache

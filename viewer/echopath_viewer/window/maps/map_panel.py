@@ -170,7 +170,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         self._paint_axes(painter, rect)
 
     def _paint_image(self, painter, rect, image, is_file: bool) -> None:
-        """What is seen of it. is_file: cut out before, as painters of files draw whole images or whole cells of them."""
+        """What is seen of it. is_file: cut out before, as painters of SVG files draw whole images."""
         everything = self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1))
         seen = everything.intersected(rect)
         across, down = image.width() / everything.width(), image.height() / everything.height()

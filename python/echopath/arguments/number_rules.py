@@ -33,8 +33,14 @@ def _range_words(low: float, high: float, unit: str = "") -> str:
         return f" in {unit}" if unit else ""
     unit = f" {unit}" if unit else ""
     if math.isinf(high):
-        return f" of at least {low:.15g}{unit}"
-    return f" from {low:.15g} to {high:.15g}{unit}" if math.isfinite(low) else f" of at most {high:.15g}{unit}"
+        return f" of at least {_written(low)}{unit}"
+    return f" from {_written(low)} to {_written(high)}{unit}" if math.isfinite(low) else f" of at most {_written(high)}{unit}"
+
+
+def _written(limit: float) -> str:
+    """All its digits, without the zeros of large powers of ten: 1000000, 1e+14."""
+    short = f"{limit:.12g}"
+    return short if float(short) == limit else f"{limit:.15g}"
 
 
 def count(least: int = 0, most: int | None = None) -> Rule:
@@ -57,7 +63,7 @@ def real(low: float = -math.inf, high: float = math.inf, unit: str = "", *, abov
     """A finite number of [low, high], or one that is larger than `above`."""
     rule = "a finite number" + (_range_words(low, high, unit) if above is None else f" above {above:g} {unit}".rstrip())
     if above is not None and math.isfinite(high):
-        rule += f", at most {high:.15g}"
+        rule += f", at most {_written(high)}"
 
     def check(argument: str, value) -> float:
         number = _scalar(value)

@@ -20,7 +20,7 @@ def _scene(scale=1.0, name="car"):
     return scene
 
 
-CARRIER = r"must be a finite number from 1000000 to 1e\+15 Hz \(77 GHz are 77e9\)"
+CARRIER = r"must be a finite number from 1000000 to 1e\+14 Hz \(77 GHz are 77e9\)"
 
 
 @pytest.mark.parametrize("make, says", [

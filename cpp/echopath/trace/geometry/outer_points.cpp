@@ -12,15 +12,15 @@ constexpr double kFlat = 1e-12;   // of the cube of the longest edge: volume of 
 constexpr size_t kFewPoints = 32;
 
 // The directions are those to the faces, edges and corners of a cube, numbered by their components -1, 0, 1 as digits.
-constexpr int kDirections = 27, kNowhere = 13;
+constexpr int kNumOutward = 27, kNowhere = 13;
 constexpr std::array<int, 3> kSteps{1, 3, 9};
 
 // By the number of the direction: index of the outermost point, the first of equals; nowhere, another's.
-using Outermost = std::array<size_t, kDirections>;
+using Outermost = std::array<size_t, kNumOutward>;
 
 Outermost outermost_of(const std::vector<Vec3>& points) {
   Outermost found{};
-  for (int at = 0; at < kDirections; ++at) {
+  for (int at = 0; at < kNumOutward; ++at) {
     const Vec3 outward(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
     double farthest = outward.dot(points.front());
     for (size_t i = 1; i < points.size(); ++i) {
@@ -39,9 +39,9 @@ Outermost outermost_of(const std::vector<Vec3>& points) {
 class InnerPolytope {
  public:
   InnerPolytope(const std::vector<Vec3>& points, const Outermost& outermost) {
-    for (int at = 0; at < kDirections; ++at) {
+    for (int at = 0; at < kNumOutward; ++at) {
       corners_[at] = points[outermost[at]];
-      middle_ += corners_[at] / kDirections;
+      middle_ += corners_[at] / kNumOutward;
     }
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
@@ -72,7 +72,7 @@ class InnerPolytope {
     if (std::abs(edges.determinant()) > kFlat * longest * longest * longest) inverses_.push_back(edges.inverse());
   }
 
-  std::array<Vec3, kDirections> corners_;
+  std::array<Vec3, kNumOutward> corners_;
   Vec3 middle_ = Vec3::Zero();
   std::vector<Mat3> inverses_;  // offset from the middle -> shares of the three corners
 };

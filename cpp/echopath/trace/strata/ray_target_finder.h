@@ -19,7 +19,7 @@ class TargetMeshes {
 
   // Returns the vertices of all its meshes, which are put together when they are first asked for.
   const std::vector<Vec3>& vertices();
-  // Returns those that its outline may depend on, from wherever it is seen; they are looked for when they are first asked for.
+  // Returns those that its outline may depend on, from wherever it is seen. They are found when they are first asked for.
   const std::vector<Vec3>& outer_vertices();
 
   int object, node;

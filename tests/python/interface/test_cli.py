@@ -16,7 +16,7 @@ import echopath as ep
 from echopath.base.storage.files import require_writable
 from echopath.cli import main
 from echopath.scene_file import load_scene
-from support.background import heed_ctrl_c
+from support.background import heed_ctrl_c, heed_signals
 from support.files.scene_text import ANTENNAS, WAVEFORM
 from support.pictures import plain
 
@@ -468,7 +468,7 @@ cli.parser.work.info = write
 sys.exit(cli.main(["info", "any"]))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60,
-                          preexec_fn=ignore_ctrl_c if ignored else heed_ctrl_c)
+                          preexec_fn=ignore_ctrl_c if ignored else heed_signals)
     assert (done.returncode, done.stderr.strip()) == (128 + number, "echopath: stopped; no file was left half written")
     assert list((tmp_path / "out").iterdir()) == []
 

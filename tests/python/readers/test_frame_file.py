@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 import h5py
 import numpy as np
@@ -271,6 +272,16 @@ def test_a_link_stays_a_link_to_the_file_that_is_written(frame, tmp_path):
         frame.paths.save(link)
         assert link.is_symlink() and [one.name for one in (tmp_path / "large").iterdir()] == ["frame.h5"]
     assert ep.Paths.load(link).num_paths == frame.paths.num_paths
+
+
+def test_a_link_to_where_nothing_can_be_written_is_told_with_its_target(frame, tmp_path):
+    (tmp_path / "disk").write_text("a file, no folder")
+    link = tmp_path / "frame.h5"
+    link.symlink_to("disk/frame.h5")
+    told = re.escape(f"{link}: cannot be written (a link to {(tmp_path / 'disk' / 'frame.h5').resolve()}: ")
+    with pytest.raises(ep.FileError, match=told):
+        frame.paths.save(link)
+    assert link.is_symlink()
 
 
 def test_no_file_takes_the_place_of_a_pipe(frame, tmp_path):

@@ -42,7 +42,8 @@ def _written(path: Path, suffix: str | None):
         os.replace(temporary, place)
         flush(place.parent)
     except OSError as error:
-        raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
+        where = "" if place == path else f"a link to {place}: "
+        raise _core.FileError(f"{path}: cannot be written ({where}{error.strerror or error})") from None
     finally:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)

@@ -15,7 +15,7 @@ from .warned import warnings_in_lines
 
 EXIT_BAD_INPUT = 2
 EXIT_UNREAD = 141  # what a shell reports of other programs that write to a closed pipe
-SHELL_OF_SIGNAL = 128  # and of those that a signal ended, with its number
+EXIT_BY_SIGNAL = 128  # and the number of the signal is what a shell reports of other programs that a signal ends
 
 
 def main(arguments=None) -> int:
@@ -23,7 +23,7 @@ def main(arguments=None) -> int:
     where nobody reads its output before its work is done."""
     with _outputs_that_are_there(), ends_as_by_ctrl_c() as ended_by:
         code = _run(arguments)
-    return SHELL_OF_SIGNAL + ended_by[0] if ended_by and code == EXIT_INTERRUPTED else code
+    return EXIT_BY_SIGNAL + ended_by[0] if ended_by and code == EXIT_INTERRUPTED else code
 
 
 def _run(arguments) -> int:

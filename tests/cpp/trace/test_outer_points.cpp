@@ -1,4 +1,4 @@
-// Points that outlines may hang on.
+// Points that outlines may depend on.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -83,7 +83,7 @@ TEST(OuterPoints, OfABoxItsCornersAreLeftHoweverItIsCut) {
   expect_same_hull(all, 12 * kOnFace);
 }
 
-TEST(OuterPoints, NothingThatAHullHangsOnIsLeftOut) {
+TEST(OuterPoints, NothingThatAHullDependsOnIsLeftOut) {
   expect_same_hull(vertices_of_ball(3000), 0.0);
   expect_same_hull(vertices_of_cloud(5000), 0.0);
   EXPECT_LT(outer_points_of_hull(vertices_of_cloud(5000)).size(), 1000u);

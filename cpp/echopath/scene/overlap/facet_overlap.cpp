@@ -56,7 +56,7 @@ bool is_apart(const Corners& seen, double distance) {
 }
 
 bool is_parallel(const Corners& seen) {
-  const Vec3 normal = cross_of_sides(seen[0], seen[1], seen[2]);
+  const Vec3 normal = cross_of_sides(seen);
   return std::abs(normal.z()) > kMinCosine * normal.norm();
 }
 

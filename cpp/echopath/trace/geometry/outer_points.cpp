@@ -3,19 +3,22 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace echopath {
 namespace {
 
-constexpr double kOnFace = 1e-6;  // of the distance from the middle of the polytope
-constexpr double kFlat = 1e-12;   // of the cube of the longest edge: volume of a tetrahedron whose sides cannot be told
-constexpr size_t kFewPoints = 32;
+constexpr double kOnFace = 1e-6;   // of the distance from the middle of the polytope
+constexpr double kFlat = 1e-12;    // of the cube of the longest edge: a tetrahedron of less volume counts as flat
+constexpr size_t kFewPoints = 32;  // so few are all kept, as sorting them out saves nothing
 
-// The directions are those to the faces, edges and corners of a cube, numbered by their components -1, 0, 1 as digits.
+// Directions from the centre of a cube to its faces, edges and corners have the components -1, 0 and 1. Their numbers have
+// these as digits to the base 3, and kSteps are the values of the digits of x, y and z; kNowhere is the number of (0, 0, 0).
 constexpr int kNumOutward = 27, kNowhere = 13;
 constexpr std::array<int, 3> kSteps{1, 3, 9};
 
-// By the number of the direction: index of the outermost point, the first of equals; nowhere, another's.
+// Holds, by the number of the direction, the index of the outermost point, the first of several that are equally far out.
+// At kNowhere stands the point of another direction, so that all entries are outermost points.
 using Outermost = std::array<size_t, kNumOutward>;
 
 Outermost outermost_of(const std::vector<Vec3>& points) {

@@ -47,7 +47,7 @@ bool all_within(const std::vector<Vec3>& directions, const Vec3& axis) {
 }
 
 // Points toward the middle of the box of the vertices, or where that is too far aside toward the middle of their directions.
-// Neither depends on vertices within the hull of the others.
+// Neither depends on vertices within the hull of the others, as long as there are fewer than kSampledVertices.
 std::optional<Vec3> axis_toward(const std::vector<Vec3>& vertices, const Vec3& apex, const std::vector<Vec3>& directions) {
   const Vec3 line = box_about(vertices).center() - apex;
   const Vec3 toward_box = line.norm() > 0 ? Vec3(line.normalized()) : directions.front();

@@ -63,7 +63,7 @@ TEST(MotionCuts, AreTheTimesOfKeyframesWithinTheFrame) {
   EXPECT_TRUE(cuts[cuts.of_mesh(0)].breakpoints.empty());
 }
 
-// The radar's are in all sets, and those of a mesh do not hang on other meshes.
+// The radar's are in all sets, and those of a mesh do not depend on other meshes.
 TEST(MotionCuts, OfMeshesAreThoseOfTheirMotionsAndOfTheRadar) {
   const std::vector<Vec3> places = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitX()};
   const auto stops_at = [&](double time) {

@@ -1,4 +1,4 @@
-// Shares of rays that hang little on other objects: their sum, their proportions, and how many change with the scene.
+// Shares of rays that depend little on other objects: their sum, their proportions, and how many change with the scene.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,6 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
+pytest.importorskip("radar_scenes", reason="radar_scenes, which bootstrap.sh installs, is not installed")
 from radar_scenes.coordinate_transformation import transform_detections_sequence_to_car
 from radar_scenes.labels import ClassificationLabel, Label
 from radar_scenes.sequence import Sequence, get_training_sequences, get_validation_sequences

@@ -323,6 +323,18 @@ def test_traces_of_osi_are_read_by_its_own_tool(written):
         dataset.write_osi(dataset.open(written / "made"), written / "osi")
 
 
+@pytest.mark.parametrize("pitch", [90.0, -90.0, 89.9])
+def test_what_looks_straight_down_or_up_has_angles_of_its_axes(pitch):
+    """Yaw and roll are then turns about one axis, of which a radar on a ceiling has rounding alone to tell them apart."""
+    messages = pytest.importorskip("osi3.osi_object_pb2")
+    pose, host = np.eye(4), messages.MovingObject()
+    pose[:3, :3] = Rotation.from_euler("ZYX", [20.0, pitch, 50.0], degrees=True).as_matrix()
+    osi_ground_truth.set_pose(host.base, pose)
+    told = host.base.orientation
+    turned = Rotation.from_euler("ZYX", [told.yaw, told.pitch, told.roll]).as_matrix()
+    np.testing.assert_allclose(turned, pose[:3, :3], atol=1e-9)
+
+
 def _check_message(place: int, message) -> None:
     """The balls are where they are, and echoes of the walker's stand-in name it."""
     radar, = message.feature_data.radar_sensor

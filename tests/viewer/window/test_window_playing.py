@@ -62,7 +62,6 @@ def test_what_becomes_live_ends_the_film_and_stays(qtbot, playing):
     panel.stop()
 
 
-
 def test_another_file_that_is_opened_is_drawn_whole(playing, stored_run):
     playing.open_file(stored_run.paths_of_files[0])
     assert not playing.time_line.is_playing and playing.view3d._pace is None

@@ -14,8 +14,8 @@ SOURCE = "echopath"  # whose names of objects `source_reference` has
 _OTHER, _VEHICLE, _PEDESTRIAN, _ANIMAL = 1, 2, 3, 4  # MovingObject.Type
 _TYPES: dict[ClassName, int] = {"pedestrian": _PEDESTRIAN, "pedestrian_group": _PEDESTRIAN, "animal": _ANIMAL, "other": _OTHER}
 _VEHICLES: dict[ClassName, int] = {"car": 4, "van": 6, "truck": 7, "motorcycle": 10, "cyclist": 11, "bus": 12, "train": 14}
-_NO_VEHICLE_OF_THESE = 1  # both: VehicleClassification.Type
-_UPRIGHT = 1e-9  # cosine of the pitch of what looks straight up or down: its roll is its yaw
+_NO_VEHICLE_OF_THESE = 1  # VehicleClassification.Type, as the numbers of _VEHICLES are
+_UPRIGHT = 1e-9  # cosine of the pitch below which something looks straight up or down: roll and yaw are then one turn
 
 
 def set_host(host: Any, radar: Any, time: float) -> None:
@@ -28,7 +28,8 @@ def set_host(host: Any, radar: Any, time: float) -> None:
 
 
 def set_road_user(message: Any, name: str, kind: ClassName, truth: Truth | None) -> None:
-    """Fills the MovingObject of an object. truth: of it in the frame, a row or none; None: not known"""
+    """Fills the MovingObject of an object. truth: of the object in the frame, a row, or none where it is not there; None: the
+    template has no [truth]"""
     source = message.source_reference.add()
     source.type = SOURCE
     source.identifier.append(name)
@@ -65,9 +66,12 @@ def _set_motion(base: Any, rotation: NDArray[np.float64], velocity: NDArray[np.f
 
 
 def _angles(rotation: NDArray[np.float64]) -> tuple[float, float, float]:
-    """(yaw, pitch, roll) in rad."""
-    return (float(np.arctan2(rotation[1, 0], rotation[0, 0])), float(np.arcsin(np.clip(-rotation[2, 0], -1.0, 1.0))),
-            float(np.arctan2(rotation[2, 1], rotation[2, 2])))
+    """(yaw, pitch, roll) in rad; what looks straight up or down has the roll 0."""
+    level = np.hypot(rotation[0, 0], rotation[1, 0])
+    pitch = float(np.arctan2(-rotation[2, 0], level))
+    if level < _UPRIGHT:
+        return float(np.arctan2(-rotation[0, 1], rotation[1, 1])), pitch, 0.0
+    return float(np.arctan2(rotation[1, 0], rotation[0, 0])), pitch, float(np.arctan2(rotation[2, 1], rotation[2, 2]))
 
 
 def _angular_velocity(rotation: NDArray[np.float64], rate: NDArray[np.float64]) -> NDArray[np.float64]:

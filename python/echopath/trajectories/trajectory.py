@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..arguments.checks import anything, array, checked, choice, flag, one_of, optional, positive, real, refused, text, vector
+from ..base.numerics.rotations import product
 from .arguments import (
     GOES_ON,
     LATEST,
@@ -172,8 +173,8 @@ class Trajectory(_core.CurveMotion):
 
         def rotations(times):
             (values, changes), (angle, rate) = track.rotations(times, has_pitch), turn(times)
-            turned = _turned_about_z(values, angle)
-            return turned, _turned_about_z(changes, angle) + 0.5 * rate[:, None] * _turned_about_z(values, angle + np.pi)
+            turned, turning = _about_z(angle, rate)
+            return product(values, turned), product(changes, turned) + product(values, turning)
 
         junctions = track.junctions_with(axle)
         return _core.CurveMotion(curve_through(places, junctions, TOLERANCE),
@@ -286,11 +287,10 @@ class Trajectory(_core.CurveMotion):
         return f"Trajectory({kind}{self.length:.6g} m from {self.begin:g} to {self.end:g} s)"
 
 
-def _turned_about_z(values, angles):
-    """Quaternions [N, 4] (w, x, y, z) times those of turns about z by angles [N] in rad."""
-    c, s = np.cos(0.5 * angles), np.sin(0.5 * angles)
-    w, x, y, z = values.T
-    return np.stack([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s], axis=-1)
+def _about_z(angle, rate):
+    """(unit quaternions [N, 4] (w, x, y, z) of turns about z by angles [N] in rad, their rates [N, 4] per s)."""
+    c, s, zero = np.cos(0.5 * angle), np.sin(0.5 * angle), np.zeros_like(angle)
+    return np.stack([c, zero, zero, s], axis=-1), 0.5 * rate[:, None] * np.stack([-s, zero, zero, c], axis=-1)
 
 
 def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):

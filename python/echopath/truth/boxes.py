@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..base.numerics.rates import rate_of, step_within
+from ..base.numerics.rotations import angular_velocity
 from ..base.numerics.triangles import areas_of
 
 
@@ -85,8 +86,7 @@ class _Body:
             velocity = velocity + rotation @ rate_of(self._own_centroid, time, step)
             if self._node < 0 or self._nodes[self._node].motion is None:  # what carries itself along
                 gone = rotation @ (self._own_centroid(time) - self._own_centroid(self._reference_time()))
-        turning = rate[:3, :3] @ rotation.T
-        spin = 0.5 * np.array([turning[2, 1] - turning[1, 2], turning[0, 2] - turning[2, 0], turning[1, 0] - turning[0, 1]])
+        spin = angular_velocity(rotation, rate[:3, :3])
         return origin + rotation @ centre, high - low, rotation, velocity, spin, origin + gone
 
     def _frame(self, time: float):

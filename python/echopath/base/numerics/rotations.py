@@ -55,6 +55,12 @@ def product(p, q) -> np.ndarray:
                      w * c - x * d + y * a + z * b, w * d + x * c - y * b + z * a], axis=-1)
 
 
+def angular_velocity(rotation, rate) -> np.ndarray:
+    """[3] rad/s, in the axes to which a rotation [3, 3] leads, from its rate [3, 3] per s."""
+    turning = rate @ rotation.T
+    return 0.5 * np.array([turning[2, 1] - turning[1, 2], turning[0, 2] - turning[2, 0], turning[1, 0] - turning[0, 1]])
+
+
 def _entries(angle):
     angle = np.asarray(angle, dtype=float)
     return np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.numerics.rates import radar_rate
+from ...base.numerics.rotations import angular_velocity
 from ...truth.record import Truth
 from ..classes import ClassName
 
@@ -22,7 +23,7 @@ def set_host(host: Any, radar: Any, time: float) -> None:
     """Fills the MovingObject of the host vehicle, whose frame is that of the radar: a point at the origin of its axes."""
     world, rate = np.array(radar.world_from_radar(time)), radar_rate(radar, time)
     set_pose(host.base, world)
-    _set_motion(host.base, world[:3, :3], rate[:3, 3], _angular_velocity(world[:3, :3], rate[:3, :3]))
+    _set_motion(host.base, world[:3, :3], rate[:3, 3], angular_velocity(world[:3, :3], rate[:3, :3]))
     _set_vector(host.vehicle_attributes.bbcenter_to_rear, np.zeros(3))
     host.type, host.vehicle_classification.type = _VEHICLE, _NO_VEHICLE_OF_THESE
 
@@ -72,12 +73,6 @@ def _angles(rotation: NDArray[np.float64]) -> tuple[float, float, float]:
     if level < _UPRIGHT:
         return float(np.arctan2(-rotation[0, 1], rotation[1, 1])), pitch, 0.0
     return float(np.arctan2(rotation[1, 0], rotation[0, 0])), pitch, float(np.arctan2(rotation[2, 1], rotation[2, 2]))
-
-
-def _angular_velocity(rotation: NDArray[np.float64], rate: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[3] rad/s in world axes, of a rotation [3, 3] and its rate per s."""
-    turning = rate @ rotation.T
-    return np.array([turning[2, 1], turning[0, 2], turning[1, 0]])
 
 
 def _set_vector(message: Any, values: NDArray[np.float64]) -> None:

@@ -1,6 +1,7 @@
 #include "echopath/label/expressions/expression.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace echopath {

@@ -1,8 +1,9 @@
 #pragma once
 // Sorts out which small meshes share a tree.
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
+
+#include "echopath/base/geometry.h"
 
 namespace echopath {
 

@@ -24,7 +24,7 @@ using Outermost = std::array<size_t, kNumOutward>;
 Outermost outermost_of(const std::vector<Vec3>& points) {
   Outermost found{};
   for (int at = 0; at < kNumOutward; ++at) {
-    const Vec3 outward(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
+    const Vec3 outward = Eigen::Vector3i(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1).cast<double>();
     double farthest = outward.dot(points.front());
     for (size_t i = 1; i < points.size(); ++i) {
       const double distance = outward.dot(points[i]);

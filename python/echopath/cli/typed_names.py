@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 
+from ..arguments.shown import shown
+
 # Arguments of functions that have another name on the command line. Others are called alike: seed is --seed.
 _TYPED_AS = {"num_rays": "rays", "path": "out", "dynamic_range_db": "dynamic_range", "noise_margin_db": "noise_margin",
              "objects": "object"}
@@ -17,7 +19,7 @@ def with_typed_name(message: str, options: Namespace) -> str:
     """
     argument, colon, rest = message.partition(": ")
     unnamed = next((name for name in _UNNAMED if hasattr(options, name)), "")
-    if unnamed and argument in ("path", unnamed) and f"'{getattr(options, 'out', None)}'" not in rest:
+    if unnamed and argument in ("path", unnamed) and shown(str(getattr(options, "out", None))) not in rest:
         return f"{_UNNAMED[unnamed]}{colon}{rest}"
     typed = _TYPED_AS.get(argument, argument)
     return f"--{typed.replace('_', '-')}{colon}{rest}" if colon and typed in _typed(options) else message

@@ -135,7 +135,7 @@ def test_wrong_options_are_named(scene_path, tmp_path, capsys, options, told):
 
 @pytest.mark.usefixtures("blank_pictures")
 def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
-    out = tmp_path / "out"
+    out = tmp_path / ("out" * 20)  # longer than messages repeat it
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 0
     scene_path.write_text(SCENE.replace("speed = 2.0", "speed = 3.0"))
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 2

@@ -19,7 +19,9 @@ def with_typed_name(message: str, options: Namespace) -> str:
     """
     argument, colon, rest = message.partition(": ")
     unnamed = next((name for name in _UNNAMED if hasattr(options, name)), "")
-    if unnamed and argument in ("path", unnamed) and shown(str(getattr(options, "out", None))) not in rest:
+    out = str(getattr(options, "out", None))
+    is_of_out = f"'{out}'" in rest or shown(out) in rest  # messages of files repeat names whole, others may cut them
+    if unnamed and argument in ("path", unnamed) and not is_of_out:
         return f"{_UNNAMED[unnamed]}{colon}{rest}"
     typed = _TYPED_AS.get(argument, argument)
     return f"--{typed.replace('_', '-')}{colon}{rest}" if colon and typed in _typed(options) else message

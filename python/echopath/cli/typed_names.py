@@ -2,14 +2,27 @@
 from __future__ import annotations
 
 from argparse import Namespace
-
-from ..arguments.shown import shown
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 # Arguments of functions that have another name on the command line. Others are called alike: seed is --seed.
 _TYPED_AS = {"num_rays": "rays", "path": "out", "dynamic_range_db": "dynamic_range", "noise_margin_db": "noise_margin",
              "objects": "object"}
-# What a command is given without a name, as its usage calls it.
-_UNNAMED = {"file": "FILE", "scene": "SCENE.toml", "frame": "FRAME.h5", "template": "DATASET.toml"}
+
+
+@contextmanager
+def told_as(**names: str) -> Iterator[None]:
+    """Errors "argument: rule, got value" within the block name an argument as the usage of the command does.
+
+    names: by argument, as path="SCENE.toml" where a file is read: elsewhere a `path` is that of --out
+    """
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        argument, _, rest = str(error).partition(": ")
+        if argument not in names:
+            raise
+        raise type(error)(f"{names[argument]}: {rest}") from None
 
 
 def with_typed_name(message: str, options: Namespace) -> str:
@@ -18,11 +31,6 @@ def with_typed_name(message: str, options: Namespace) -> str:
     options: of the command
     """
     argument, colon, rest = message.partition(": ")
-    unnamed = next((name for name in _UNNAMED if hasattr(options, name)), "")
-    out = str(getattr(options, "out", None))
-    is_of_out = f"'{out}'" in rest or shown(out) in rest  # messages of files repeat names whole, others may cut them
-    if unnamed and argument in ("path", unnamed) and not is_of_out:
-        return f"{_UNNAMED[unnamed]}{colon}{rest}"
     typed = _TYPED_AS.get(argument, argument)
     return f"--{typed.replace('_', '-')}{colon}{rest}" if colon and typed in _typed(options) else message
 

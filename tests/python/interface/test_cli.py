@@ -13,6 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 import echopath as ep
+from echopath.base.storage.data_folder import data_folder
 from echopath.base.storage.files import require_writable
 from echopath.cli import main
 from echopath.scene_file import load_scene
@@ -339,13 +340,17 @@ def test_bad_input_gives_one_clear_line_and_code_2(name):
     (("view", "FRAME", "--scale", "0"), "--scale: must be a whole number"),
     (("run", "a" * 300 + ".toml", "--out", "out"), "SCENE.toml: must be the name of a file that can be"),
     (("dataset", "a" * 300 + ".toml", "--out", "out"), "DATASET.toml: must be the name of a file that can be"),
+    (("dataset", "TEMPLATE", "--out", "s3://bucket/out"), "--out: must be no address where there is no scheduler"),
+    (("dataset-report", "a" * 300), "DIR: must be the name of a file that can be"),
+    (("view", "a" * 300 + ".h5"), "FRAME.h5: must be the name of a file that can be"),
     (("info", "a" * 300 + ".h5"), "a" * 300 + ".h5: File name too long"),
 ])
 def test_faults_name_what_was_typed(finished_run, tmp_path, monkeypatch, arguments, message):
     """And not what the functions behind the options call it."""
     scene, folder = finished_run
     monkeypatch.chdir(tmp_path)
-    files = {"SCENE": scene, "FRAME": folder / "frame.h5", "MESH": scene.parent / "plate.obj"}
+    files = {"SCENE": scene, "FRAME": folder / "frame.h5", "MESH": scene.parent / "plate.obj",
+             "TEMPLATE": data_folder("datasets") / "ghosts.toml"}
     done = call(*(files.get(argument, argument) for argument in arguments))
     assert done.returncode == 2 and done.stderr.startswith(f"echopath: {message}"), done.stderr
 

@@ -143,9 +143,10 @@ def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> 
     if not (moves and hidden):
         return set()
     appearing = set()
+    globs = dict(named_globs(objects) or ())
     hidden = set(_core.may_appear_in_frame(paths, radar, named_globs(objects), sorted(hidden), FRAME_PLACES, HIDDEN_SHARE))
     for share in FRAME_PLACES:
-        rest = {name: objects[name] if isinstance(objects, dict) else name for name in sorted(hidden - appearing)}
+        rest = {name: globs.get(name, name) for name in sorted(hidden - appearing)}  # usual objects are their own globs
         if rest:
             time = paths.frame.start_time + share * radar.frame_duration
             seen = _as_objects(_core.visibility_in_trace(paths, radar, named_globs(rest), time, DIRECTIONS_OF_PLACES, progress))

@@ -96,6 +96,8 @@ def test_what_appears_within_a_frame_leaves_the_next_trace_as_it_is():
     assert hidden == {"bared", "hidden"}
     assert 400.0 * middle > 1.5  # beyond what hides the plate
     assert appearing_in_frame(paths, radar, hidden) == {"bared"}
+    named = ep.LabelSettings(objects={"plate": "bar*", "screen": "screen"}).objects  # whose name is no glob of its meshes
+    assert appearing_in_frame(paths, radar, {"plate"}, named) == {"plate"}
     again = ep.trace(scene, radar, num_rays=500, start_time=-middle)
     assert again.num_paths == paths.num_paths > 0
     for one, other in ((paths.mesh_id, again.mesh_id), (paths.u, again.u), (paths.v, again.v)):

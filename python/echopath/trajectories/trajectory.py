@@ -275,9 +275,10 @@ class Trajectory(_core.CurveMotion):
         return _remade, (*self._made, self._details)
 
     def __eq__(self, other: object) -> bool:
-        return super().__eq__(other) and (not isinstance(other, Trajectory) or
-                                          (self.kind, self.is_person, self.lifetime) ==
-                                          (other.kind, other.is_person, other.lifetime))
+        if isinstance(other, Trajectory) and (self.kind, self.is_person, self.lifetime) != (
+                other.kind, other.is_person, other.lifetime):
+            return False
+        return super().__eq__(other)
 
     def __hash__(self) -> int:
         return super().__hash__()

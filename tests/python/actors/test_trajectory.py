@@ -218,6 +218,13 @@ def test_copies_are_equal_and_change():
         != corner(speed=5.0, kind="bus")
 
 
+@pytest.mark.parametrize("other", [None, 5.0, "bus", ep.LinearMotion(velocity=(5.0, 0.0, 0.0))])
+def test_it_equals_nothing_else(other):
+    one = corner(speed=5.0)
+    assert one != other and not one == other and other != one and one not in [other]
+    assert one == one.motion() and one.motion() == one  # what scenes keep of it
+
+
 def test_a_scene_and_a_radar_take_it():
     one, scene = corner(speed=5.0), ep.Scene()
     scene.add(ep.actors.plate(1, 1), name="plate", material="metal", motion=one, position=(0, 1, 0))

@@ -39,3 +39,9 @@ def test_a_child_is_as_tall_as_asked_and_has_the_shorter_legs(height):
     assert parts["leg_left/thigh"][:, 2].max() < grown["leg_left/thigh"][:, 2].max()
     assert np.ptp(parts["head"][:, 1]) > np.ptp(grown["head"][:, 1])
     assert parts["head"][:, 2].min() < parts["neck"][:, 2].max()
+
+
+@pytest.mark.parametrize("name, value", [("speed", 1.0), ("start_time", 0.0), ("duration", 9.0), ("phase", 0.3)])
+def test_what_a_trajectory_says_is_said_once(name, value):
+    with pytest.raises(ValueError, match=f"^{name}: must be left out beside trajectory, got {value}"):
+        ep.actors.child(trajectory=ep.Trajectory([[0, 0], [5, 0]], speed=1.0), **{name: value})

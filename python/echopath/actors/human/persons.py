@@ -82,7 +82,8 @@ def child(*, height: float = 1.15, speed: float | None = None, start_time: float
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
     body = ChildProportions(height)
-    refuse_beside_trajectory(trajectory, speed=(speed, None))
+    refuse_beside_trajectory(trajectory, speed=(speed, None), start_time=(start_time, -0.5), duration=(duration, 2.5),
+                             phase=(phase, 0.0))
     looks = {"edge": edge, "clothing": "clothing", "skin": "skin"}
     if speed == 0.0:
         return standing_body(body, **looks)

@@ -70,6 +70,8 @@ def test_solids_have_their_sizes(tmp_path):
     assert ball.area == pytest.approx(np.pi, rel=0.02) and tube.area == pytest.approx(2 * np.pi * 2 * 3, rel=0.01)
     assert disk.area == pytest.approx(np.pi, rel=0.01) and cube.area == pytest.approx(24) and cube.is_closed
     assert tube.vertices[:, 2].min() == pytest.approx(1.0) and tube.vertices[:, 2].max() == pytest.approx(4.0)
+    a, b, c = disk.vertices[disk.triangles].transpose(1, 0, 2)
+    assert np.all(np.cross(b - a, c - a)[:, 2] > 0.0)  # its normal is (0, 0, 1)
 
 
 def test_materials_by_id_by_type_and_by_value(tmp_path):

@@ -62,6 +62,18 @@ def test_a_capsule_of_two_radii_ends_with_two_half_spheres(tmp_path):
     assert np.allclose(plain.world_vertices(0, 0.0), equal.world_vertices(0, 0.0))
 
 
+@pytest.mark.parametrize("axis", "XYZ")
+def test_a_plane_lies_where_usd_says_and_looks_along_its_axis(tmp_path, axis):
+    _, scene = loaded(tmp_path, solid("Plane", axis, width=4.0, length=1.0))
+    points, (corners, *_) = scene.world_vertices(0, 0.0), scene.meshes[0].triangles
+    stage = Usd.Stage.Open(str(tmp_path / "stage.usda"))
+    plane = UsdGeom.Boundable(stage.GetPrimAtPath("/solid"))
+    extent = UsdGeom.Boundable.ComputeExtentFromPlugins(plane, Usd.TimeCode.Default())
+    assert np.allclose([points.min(axis=0), points.max(axis=0)], extent, atol=SINGLE)
+    a, b, c = points[corners]
+    assert np.allclose(np.cross(b - a, c - a) / 4.0, np.eye(3)["XYZ".index(axis)])
+
+
 MOVING = '''def Xform "cart"
 {
     double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 4: (8, 0, 0), 10: (2, 0, 0), }

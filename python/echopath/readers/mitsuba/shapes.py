@@ -80,4 +80,4 @@ def _cylinder(shape: Element):
 
 
 _FORMS = {"rectangle": lambda _: forms.rectangle(2.0, 2.0), "cube": lambda _: forms.box([2.0, 2.0, 2.0]),
-          "disk": lambda _: forms.revolved([(1.0, 0.0), (0.0, 0.0)]), "sphere": _sphere, "cylinder": _cylinder}
+          "disk": lambda _: forms.revolved([(0.0, 0.0), (1.0, 0.0)]), "sphere": _sphere, "cylinder": _cylinder}

@@ -174,12 +174,13 @@ def _solid(prim, time):
         return forms.box([number("size")] * 3)
     if kind == "Sphere":
         return forms.sphere(number("radius"))
-    if kind == "Plane":
-        points, triangles = forms.rectangle(number("width"), number("length"))
+    axis = str(prim.GetAttribute("axis").Get(time))
+    if kind == "Plane":  # the width of one that looks along x lies along z, that of others along x
+        sides = number("width"), number("length")
+        points, triangles = forms.rectangle(*(sides[::-1] if axis in "XY" else sides))
     elif kind.endswith("_1"):  # whose ends have radii of their own
         form = getattr(forms, kind.removesuffix("_1").lower())
         points, triangles = form(number("radiusBottom"), number("height"), radius_above=number("radiusTop"))
     else:
         points, triangles = getattr(forms, kind.lower())(number("radius"), number("height"))
-    turn = _TURNS.get(str(prim.GetAttribute("axis").Get(time)), _TURNS["Z"])
-    return points[:, turn], triangles
+    return points[:, _TURNS.get(axis, _TURNS["Z"])], triangles

@@ -62,7 +62,7 @@ def _joined(blocks) -> tuple:
     for block in blocks:
         if block.ndim != 2 or block.dtype.kind not in "iu":
             raise ValueError(f"source: faces must be integers [F, corners], got {block.dtype} {list(block.shape)}")
-    corners = [np.zeros(0, np.int64), *(block.ravel() for block in blocks)]
+    corners = [np.zeros(0, np.int64), *(block.ravel().astype(np.int64) for block in blocks)]
     counts = [np.zeros(0, np.int64), *(np.full(len(block), block.shape[1]) for block in blocks)]
     return np.concatenate(corners), np.concatenate(counts)
 

@@ -23,6 +23,8 @@ def test_a_box_of_trimesh_is_that_box():
     mesh = ep.mesh_from(box)
     assert mesh.is_closed and mesh.area == pytest.approx(box.area, rel=ROUNDING) == pytest.approx(AREA)
     assert np.allclose(sorted(map(tuple, centroids(mesh))), sorted(map(tuple, box.triangles_center)), atol=ROUNDING)
+    unsigned = SimpleNamespace(vertices=box.vertices, faces=np.asarray(box.faces, np.uint64))
+    assert ep.mesh_from(unsigned) == mesh
 
 
 def test_quads_of_meshio_are_cut_and_name_their_faces():

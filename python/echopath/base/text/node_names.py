@@ -27,7 +27,7 @@ def fit_paths(names: Iterable[str]) -> list[str]:
     """
     paths = ["/".join(fit_name(part, "part") for part in name.split("/")) for name in names]
     above = {path[:end] for path in paths for end in range(len(path)) if path[end] == "/"}
-    taken: dict[str, int] = {}
+    taken = dict.fromkeys(above, 1)
     return [unique(f"{path}/{path.rpartition('/')[2]}" if path in above else path, taken) for path in paths]
 
 

@@ -96,10 +96,11 @@ def test_groups_of_a_mesh_file_are_meshes_of_their_own(write, tmp_path):
 
 def test_groups_may_have_any_names_and_groups_of_their_own(write, tmp_path):
     """As modellers write them: a group with faces beside groups below it, and signs that globs have for themselves."""
-    names = "car", "car/Bob's_wheel", "car/wheel?", "car/wheel*", "door"
+    names = "car", "car/Bob's_wheel", "car/wheel?", "car/wheel*", "door", "van", "van/van/wheel", "a?", "a*", "a__2/b"
     faces = "".join(f"g {name}\nf 1 2 {3 + number % 2}\n" for number, name in enumerate(names))
     (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + faces)
-    expected = ["car/car", "car/Bob_s_wheel", "car/wheel_", "car/wheel__2", "door"]
+    expected = ["car/car", "car/Bob_s_wheel", "car/wheel_", "car/wheel__2", "door", "van/van_2", "van/van/wheel", "a_", "a__3",
+                "a__2/b"]
     scene = ep.load_scene(write(mesh_object('material = "metal"'))).scene
     assert [mesh.name for mesh in scene.meshes] == [f"quad/{name}" for name in expected]
     own = ep.Scene()

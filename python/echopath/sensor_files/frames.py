@@ -53,12 +53,13 @@ def plans_of(lines: Lines) -> list[FramePlan]:
 def _subframes(lines: Lines) -> list[FramePlan]:
     frame = lines.one("advFrameCfg")
     given = {command["subframe"]: command for command in lines.of("subFrameCfg")}
-    plans, start = [], 0.0
-    interval = sum(1e-3 * _from_zero(command, "period_ms") for command in given.values())
+    commands = []
     for index in range(_positive(frame, "num_subframes", frame["num_subframes"])):
         if index not in given:
             raise frame.error(f"num_subframes: subFrameCfg {index} is missing")
-        command = given[index]
+        commands.append(given[index])
+    plans, start, interval = [], 0.0, sum(1e-3 * _from_zero(command, "period_ms") for command in commands)
+    for index, command in enumerate(commands):
         if command["num_bursts"] * command["num_burst_loops"] != 1:
             raise command.error("num_bursts, num_burst_loops: must be 1, other bursts are not known")
         plans.append(FramePlan(command, index, command["first"], _num_chirps(command, "num_chirps", command["num_chirps"]),

@@ -21,7 +21,7 @@ from .transmitters import chain_settings
 if TYPE_CHECKING:
     from ..sequence.sequence import Sequence
 
-# kHz, corners of the two high-pass filters by their codes (mmWave SDK, profileCfg).
+# Hz, corners of the two high-pass filters by their codes (mmWave SDK, profileCfg).
 HIGH_PASS_1, HIGH_PASS_2 = (175e3, 235e3, 350e3, 700e3), (350e3, 700e3, 1.4e6, 2.8e6)
 BITS = (12, 14, 16)
 _RF_GAIN_BITS = 0x3F  # of the gain; what is above tells how it is shared

@@ -83,6 +83,8 @@ def test_sub_frames_are_radars_that_begin_one_after_the_other(written):
     assert ep.load_radar(written(text), subframe=1) == second
     with pytest.raises(ValueError, match="^subframe: must be below 2"):
         ep.load_radar(written(text), subframe=2)
+    one = ep.load_sensor(written(text.replace("advFrameCfg 2", "advFrameCfg 1")))  # the line of the second one is left over
+    assert one.radars == (first,) and one.interval == pytest.approx(0.02)
 
 
 def test_chirps_that_differ_become_steps(written):

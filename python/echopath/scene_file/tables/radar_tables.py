@@ -99,9 +99,9 @@ class RadarTable(Table):
                 if getattr(self, key) is None:
                     raise broken_rule(key, "must be given, or a sensor", None)
             return self
-        beside = {*own, "pattern", "polarization", "multiplexing", "empty_slots", "code_phases"}
-        for key in beside & self.model_fields_set:
-            raise broken_rule(key, "must not stand beside sensor", key)
+        for key in (*own, "pattern", "polarization", "multiplexing", "empty_slots", "code_phases"):
+            if key in self.model_fields_set:
+                raise broken_rule(key, "must not stand beside sensor", getattr(self, key))
         return self
 
 

@@ -214,6 +214,13 @@ def test_a_file_that_is_missing_is_told_with_the_key_that_names_it(write, text, 
         ep.load_scene(path)
 
 
+def test_the_first_key_beside_a_sensor_is_told_with_its_value(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text('[radar]\nsensor = "radar.cfg"\nempty_slots = 2\nmultiplexing = "cdm"\npolarization = [0.0, 1.0, 0.0]\n')
+    with pytest.raises(ValueError, match=told_with(path, "radar.polarization: must not stand beside sensor, got [0.0, 1.0, 0.0]")):
+        ep.load_scene(path)
+
+
 @pytest.mark.parametrize("place, key", [("radar", "radar.pattern.file"), ("transmitter", "radar.transmitters[0].pattern.file")])
 def test_a_missing_pattern_is_told_with_the_radar_or_the_antenna_that_has_it(write, place, key):
     path, pattern = write(""), 'pattern = {kind = "table", file = "gone.csv"}\n'

@@ -17,10 +17,10 @@ def _attenuation(case: Case):
         return attenuation > 0, _of_paths(case.paths, attenuation) if attenuation > 0 else _why_off(case)
     if case.weather is None:
         return False, "the scene has no weather"
+    if not is_on(case.settings.effects, ATTENUATION, True, ""):
+        return False, "effects has it off"
     parts = case.weather.attenuation_db_per_km(case.radar)
-    text = f"{sum(parts.values()):.2g} dB/km: " + ", ".join(f"{name} {value:.2g}" for name, value in parts.items())
-    is_modelled = is_on(case.settings.effects, ATTENUATION, True, "")
-    return is_modelled, text if is_modelled else f"effects has it off; it would be {text}"
+    return True, f"{sum(parts.values()):.2g} dB/km: " + ", ".join(f"{name} {value:.2g}" for name, value in parts.items())
 
 
 def _of_paths(paths, attenuation: float) -> str:

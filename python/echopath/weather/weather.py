@@ -18,6 +18,7 @@ from .gas import gas_attenuation, saturation_pressure
 from .rain import rain_attenuation
 
 DB_PER_NEPER = 20.0 / math.log(10.0)
+BAND = 1e9, 1e12  # Hz, in which the recommendations hold: fits to them go anywhere beyond
 
 
 def _wind(argument: str, value) -> tuple[float, float, float]:
@@ -61,9 +62,12 @@ class Weather(Settings):
     def attenuation_db_per_km(self, radar: _core.Radar) -> dict[str, float]:
         """{"gases", "fog", "rain"}: dB/km one way at the middle of the radar's band, for its first transmitter's polarisation.
 
-        radar: whose echoes are weakened. Raises TypeError or ValueError naming the argument.
+        radar: whose echoes are weakened. Raises TypeError or ValueError naming the argument, also beyond 1 GHz to 1 THz.
         """
         frequency = radar.waveform.centre_frequency
+        if not BAND[0] <= frequency <= BAND[1]:
+            raise refused(ValueError, "radar", f"of {BAND[0]:g} to {BAND[1]:g} Hz for attenuation by weather, which "
+                          f"effects={{{ATTENUATION!r}: False}} leaves out", frequency)
         vapour = self.humidity * saturation_pressure(self.temperature, 1e-2 * self.pressure)
         return {"gases": gas_attenuation(frequency, self.temperature, 1e-2 * self.pressure - vapour, vapour),
                 "fog": fog_attenuation(frequency, self.fog_g_per_m3, self.temperature) if self.fog_g_per_m3 else 0.0,

@@ -233,6 +233,15 @@ def test_effects_say_what_the_weather_takes_and_carries():
     assert effect(frame.effects, RAIN_ECHOES).modelled and "dB of the power" in effect(frame.effects, ATTENUATION).reason
 
 
+@pytest.mark.parametrize("frequency", [0.3e9, 1.1e12])
+def test_beyond_the_band_of_the_recommendations_nothing_is_told(frequency):
+    radar = build_radar(num_chirps=4, start_frequency=frequency, bandwidth=1e6)
+    for call in (WET.attenuation_db_per_km, lambda one: ep.trace(ball_scene(WET), one, num_rays=50)):
+        with pytest.raises(ValueError, match="^radar: must be of 1e[+]09 to 1e[+]12 Hz for attenuation by weather"):
+            call(radar)
+    assert not effect(ep.effects(ball_scene(WET), radar, effects={ATTENUATION: False}), ATTENUATION).modelled
+
+
 @pytest.mark.parametrize(("choices", "error", "text"), [
     ({"rain": True}, ValueError, "has no 'rain'"), ({RAIN_ECHOES: 2}, ValueError, "echoes of rain"),
     ("rain", TypeError, "effects: must be"), ({RAIN_ECHOES: True}, ValueError, "needs Scene.weather")])

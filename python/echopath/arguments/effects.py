@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from .checks import refused, shown
+from .checks import flag_or_auto, refused, shown
 
 ATTENUATION, RAIN_ECHOES, INTERFERENCE = "attenuation by weather", "echoes of rain", "interference"
 SWITCHED = (ATTENUATION, RAIN_ECHOES, INTERFERENCE)
@@ -15,13 +15,11 @@ Choices = Mapping[str, Choice] | tuple[tuple[str, Choice], ...]
 def effects_rule(argument: str, value) -> tuple[tuple[str, Choice], ...]:
     """Pairs (name, True, False or "auto") in the order of SWITCHED, of a mapping or of pairs."""
     pairs = _pairs(argument, value)
-    for name, choice in pairs.items():
+    for name in pairs:
         if name not in SWITCHED:
             raise ValueError(f"{argument}: has no {shown(name)}, it takes {', '.join(map(repr, SWITCHED))}; other effects "
                              "have keywords of their own or follow from the scene")
-        if not (choice is True or choice is False or choice == "auto"):
-            raise refused(ValueError, f"{argument}[{name!r}]", 'True, False or "auto"', choice)
-    return tuple((name, pairs[name]) for name in SWITCHED if name in pairs)
+    return tuple((name, flag_or_auto(f"{argument}[{name!r}]", pairs[name])) for name in SWITCHED if name in pairs)
 
 
 def _pairs(argument: str, value) -> dict:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ParamSpec, TypeVar
 
 from .. import _core
-from .shown import shown
+from .shown import shown, writable
 
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
@@ -23,7 +23,7 @@ def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str],
     known, words = list(known), list(words)
     for word in words:
         if word not in known:
-            readable = str(word).encode("utf-8", "backslashreplace").decode("utf-8")
+            readable = writable(str(word))
             if homes := [f"{name}={{'{word}': ...}}" for name, keys in (within or {}).items() if word in keys]:
                 raise TypeError(f"{callee}: unknown keyword '{readable}', it belongs to {' or '.join(homes)}")
             left = [name for name in known if name not in words and name != "self"]

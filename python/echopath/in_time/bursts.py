@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Selection
-from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
+from ..arguments.checks import COMMON, ArrayLike, array, refused, row_of_channel, shown
 from ..arguments.iterables import iterable
 from ..arguments.part_names import BESIDE
 from ..arguments.settings import FRAME_KEYWORDS
@@ -25,7 +25,7 @@ Channel = tuple[int, int] | None
 
 ANY = "any"
 
-_CUBE = array("[T, R, C, S]", kind="complex")
+_CUBE = COMMON["cube"]
 _RULE = "a Frame, a cube [tx, rx, chirp, sample], or some of either"
 
 

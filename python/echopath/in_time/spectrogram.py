@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from .. import _core
-from ..arguments.checks import ArrayLike, MapWindow, an, anything, array, checked, count, flag, optional, refused
+from ..arguments.checks import ArrayLike, MapWindow, an, anything, array, checked, count, flag_or_auto, optional
 from ..arguments.gates import gate
 from ..arguments.settings import LabelSettings, SignalSettings
 from ..labels.request import as_label_settings
@@ -24,17 +24,7 @@ IN_TIME_RULES = {
     "window_length": optional(count(1, MOST_CHIRPS)), "hop": optional(count(1, MOST_CHIRPS))}
 
 
-def _span_rule(argument: str, value) -> SpanFrames:
-    """True, False or "auto"."""
-    if isinstance(value, str) and value == "auto":
-        return "auto"
-    try:
-        return flag(argument, value)
-    except (TypeError, ValueError):
-        raise refused(TypeError, argument, "True, False or 'auto'", value) from None
-
-
-@checked(**IN_TIME_RULES, range_gate=gate, span_frames=_span_rule, labels=anything)
+@checked(**IN_TIME_RULES, range_gate=gate, span_frames=flag_or_auto, labels=anything)
 def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_length: int | None = None, hop: int | None = None,
                 window: MapWindow = SignalSettings.window, range_gate: ArrayLike | None = None, part: Part = None,
                 channel: Channel = None, zero_pad: int = SignalSettings.zero_pad, span_frames: SpanFrames = "auto",

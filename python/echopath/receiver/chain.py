@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
+from ..arguments.checks import COMMON, ArrayLike, checked, optional, real, refused, seed as seed_rule
 from ..base.numerics.analytic import as_samples, turned
 from ..base.numerics.past import models_of
-from ..transmit import code_of, is_coded, radar_of_noise
+from ..transmit import code_of, is_coded, radar_of_noise, signal_shape
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
 from .converter import converted, jittered, noise_of_branch, warn_of_levels
 from .filters import filtered, has_filters
@@ -41,10 +41,7 @@ class Reception:
         return f"Reception(cube {list(self.cube.shape)}, codes: {codes}{gain})"
 
 
-_CUBE = array("[T, R, C, S]", kind="complex")
-
-
-@checked(start_time=real(unit="s"), seed=optional(seed_rule), interference=optional(_CUBE))
+@checked(start_time=real(unit="s"), seed=optional(seed_rule), interference=optional(COMMON["cube"]))
 def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time: float = 0.0,
             interference: ArrayLike | None = None) -> Reception:
     """What the receiver of a radar makes of the ideal signal: noise, and the faults of `radar.receiver` in their order.
@@ -68,14 +65,12 @@ def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time
 def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time: float,
               interference: np.ndarray | None = None) -> Reception:
     """`receive` of complex128 that nobody needs to check: the signal of a frame, over which a check would go once more."""
-    noisy_radar, receiver = radar_of_noise(radar), radar.receiver
-    waveform = noisy_radar.waveform
-    shape = (len(noisy_radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples)
-    if cube.shape != shape:
+    receiver = radar.receiver
+    if cube.shape != (shape := signal_shape(radar)):
         raise refused(ValueError, "cube", f"of the shape {shape}", cube)
     if receiver is None:
         cube = cube if interference is None else cube + interference
-        return Reception(cube if seed is None else _noise(cube, noisy_radar, seed, start_time))
+        return Reception(cube if seed is None else _noise(cube, radar, seed, start_time))
     require_channels(receiver, radar)
     return _received(cube, radar, receiver, seed, start_time, interference)
 
@@ -87,7 +82,7 @@ def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: flo
     cube, leaked = chain.amplified(chain.coupled(cube)), chain.leaked()
     cube = cube if leaked is None else cube + leaked
     if seed is not None:
-        cube = _noise(cube, radar_of_noise(radar), seed, start_time)
+        cube = _noise(cube, radar, seed, start_time)
     gain = compression(cube, radar, receiver)
     cube = cube if gain is None else compressed(cube, gain, radar)
     cube = chain.unbalanced(chain.filtered(cube, chain.models_of(cube)))
@@ -169,7 +164,7 @@ class Chain:
 
 
 def _noise(cube, radar, seed: int, start_time: float):
-    return _core.add_noise(cube, radar, seed=seed, start_time=start_time)
+    return _core.add_noise(cube, radar_of_noise(radar), seed=seed, start_time=start_time)
 
 
 def transmitted_code(radar) -> np.ndarray:

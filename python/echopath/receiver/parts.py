@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule, text
+from ..arguments.checks import COMMON, ArrayLike, anything, checked, optional, real, refused, seed as seed_rule, text
 from ..arguments.part_names import CONVERTER, INTERFERENCE, LEAKAGE, NOISE, OF_RECEIVER, OFFSET, require_free
 from ..transmit import radar_of_noise, signal_shape
 from .chain import Chain
@@ -15,7 +15,7 @@ from .converter import converted
 from .imbalance import compressed, compression, with_offset
 from .settings import Receiver
 
-_CUBE = array("[T, R, C, S]", kind="complex")
+_CUBE = COMMON["cube"]
 
 
 @checked(parts=anything, seed=optional(seed_rule), start_time=real(unit="s"), interference=optional(_CUBE))

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from .. import _core
 from ..arguments.checks import refused
+from ..arguments.shown import writable
 from ..base.storage.data_folder import data_folder
 
 
@@ -44,8 +45,7 @@ class MaterialLibrary(Mapping[str, _core.Material]):
         try:
             return self._entries[name]
         except (KeyError, TypeError):
-            word = str(name).encode("utf-8", "backslashreplace").decode("utf-8")  # lone surrogates too
-            nearest = ", ".join(_core.nearest_names(word, list(self)))
+            nearest = ", ".join(_core.nearest_names(writable(str(name)), list(self)))
             raise KeyError(f"unknown material {name!r}, the nearest known ones are {nearest}") from None
 
     @cached_property

@@ -8,7 +8,7 @@ from typing import Any
 
 from .. import _core, actors
 from ..actors.laid_line import usual_speed
-from ..arguments.checks import an, anything, checked, optional, real, refused, text
+from ..arguments.checks import an, checked, optional, real, refused, text
 from ..arguments.names import first_names
 from ..arguments.objects import listed
 from ..arguments.shown import writable
@@ -146,7 +146,7 @@ def _globs_rule(argument: str, value) -> list[str]:
 
 
 @checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, exclude=_globs_rule,
-         during=optional_span, parent=optional(text), time=optional(anything))
+         during=optional_span, parent=optional(text), time=optional(real(unit="s")))
 def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | ActorOfKinds | None = None,
                 exclude: str | Iterable[str] = (), during: tuple[float, float] | None = None, parent: str | None = None,
                 time: float | None = None) -> Traffic:
@@ -170,7 +170,6 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     name, as after the same call before; nothing is added then. Warns (RuntimeWarning) of a span in which nobody is on the way,
     and of globs that take no kind of the trajectories.
     """
-    time = None if time is None else real(unit="s")("time", time)
     maker = actor_of if callable(actor_of) else usual_actor
     if isinstance(maker, MakerOfKinds):
         warn_of_unused_kinds("actor_of", maker.makers, (one.kind for one in trajectories.values()))

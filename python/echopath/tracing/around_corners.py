@@ -16,7 +16,7 @@ from ..base.radar.antennas import polarization_of
 from ..base.radar.chirps import start_with_middle
 from ..base.text.mesh_names import object_of
 from ..paths.absent import NO_MESH
-from ..paths.resolution import Interval
+from ..paths.resolution import Interval, interval_of
 from ..paths.surface_points import SurfacePoints, surface_points
 from ..scene.lifetimes import scene_in_frame
 from .traces import trace
@@ -207,5 +207,4 @@ def level_of(alone, radar, time, num_rays, progress=None) -> Interval:
     begin = start_with_middle(radar, time)  # rays see the scene at the middle of a frame
     paths = trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin, edges=True, faint_power=0.0,
                   progress=progress)
-    power = _core.received_power(paths, progress=progress)
-    return Interval(power.power, power.low, power.high)
+    return interval_of(_core.received_power(paths, progress=progress))

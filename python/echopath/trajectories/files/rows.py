@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ... import _core
+from ...base.storage.files import file_state
 from .fcd import read_fcd
 from .gpx import read_gpx
 from .markup import PACKED
@@ -63,23 +64,14 @@ class KeptRows:
     """Rows of files that are read again and again, as for the scenes of a dataset: each once, until it changes."""
 
     def __init__(self):
-        self._kept: dict[Path, tuple[tuple, Rows]] = {}
+        self._kept: dict[Path, tuple[tuple | None, Rows]] = {}
 
     def of(self, path: Path) -> Rows:
         """Those of a file. Raises FileError."""
-        state = _state_of(path)
+        state = file_state(path)
         if path not in self._kept or self._kept[path][0] != state:
             self._kept[path] = state, read_rows(path)
         return self._kept[path][1]
 
     def __getstate__(self) -> dict:
         return {"_kept": {}}  # another process reads them itself
-
-
-def _state_of(path: Path) -> tuple:
-    """What differs once a file is written anew; of one that cannot be read nothing."""
-    try:
-        state = path.stat()
-    except OSError:
-        return ()
-    return state.st_ino, state.st_mtime_ns, state.st_size

@@ -135,7 +135,7 @@ def test_windows_stay_within_frames_whose_scatterers_are_their_own():
 def test_windows_go_on_over_frames_without_speckle(pendulum):
     assert len(ep.spectrogram(pendulum).trains) == 1  # a smooth ball
     assert len(ep.spectrogram(list(rough_plate("rays", smooth=True)), window_length=64).trains) == 1
-    with pytest.raises(TypeError, match="span_frames: must be True, False or 'auto', got 'always'"):
+    with pytest.raises(ValueError, match="span_frames: must be True, False or 'auto', got 'always'"):
         ep.spectrogram(pendulum, span_frames="always")
 
 

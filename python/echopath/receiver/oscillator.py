@@ -91,8 +91,9 @@ class Oscillator:
         beat frequency in Hz, a number or [..., 1]."""
         count = self._count
         line = np.fft.fftfreq(4 * count, 0.25 / count) + beat / self._line_distance
-        lowest = -2 * int(count * NEGATIVE_SHARE)
-        in_band = (line >= lowest) & (line < lowest + (count if self._waveform.real else 2 * count))
+        # A mixer of real samples folds what lies below 0, and its filter is as wide there.
+        lowest = 1 - count if self._waveform.real else -2 * int(count * NEGATIVE_SHARE)
+        in_band = (line >= lowest) & (line < lowest + 2 * count)
         return np.fft.ifft(np.fft.fft(signal) * in_band)[..., 2 * count::2]
 
     def _phases(self, generator) -> np.ndarray:

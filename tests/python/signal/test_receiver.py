@@ -98,6 +98,17 @@ def test_frequency_errors_act_by_the_delay_of_each_echo():
     assert beat - cell * RATE / COUNT == pytest.approx(1e-3 * SLOPE * delay, rel=SHARE)
 
 
+@pytest.mark.parametrize("cell", [3, 120, 240])
+def test_a_frequency_that_is_off_turns_real_samples_by_the_delay_at_all_ranges(cell):
+    """By 2 pi c0 d; 512 real samples have 256 cells, of which the last eighth had been silent."""
+    error = 1e6
+    radar = one_channel(real=True, receiver=ep.Receiver(frequency_error=(error,)))
+    out = ep.receive(np.sqrt(2.0) * tone(cell).real, radar, seed=None).cube
+    turned = tone(cell) * np.exp(2j * np.pi * error * cell * RATE / COUNT / SLOPE)
+    inner = slice(32, -32)  # the signal is taken to repeat, which its ends feel
+    np.testing.assert_allclose(out[..., inner], np.sqrt(2.0) * turned.real[..., inner], atol=SHARE)
+
+
 def test_a_curved_frequency_law_bends_the_phase_of_an_echo():
     """c2 t^2: the phase is 2 pi c2 (t^3 - (t - d)^3) / 3."""
     cell, bend = 100, 2e16
@@ -329,6 +340,8 @@ def test_filters_of_real_samples_have_the_response_of_complex_ones():
     out = ep.receive(cube, radar, seed=None).cube
     complex_out = received(tone(37), high_pass=[350e3], low_pass=3e6, low_pass_poles=2).cube
     np.testing.assert_allclose(out, np.sqrt(2.0) * complex_out.real, atol=SETTLED)
+    fastest = ep.receive(tone(COUNT // 2).real, radar, seed=None).cube  # at half the sampling rate, where no phase is known
+    np.testing.assert_allclose(fastest.imag, 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("gain_db, phase", [(0.5, 0.0), (0.0, 0.05), (-0.3, -0.03)])

@@ -135,7 +135,7 @@ def test_tells_of_a_tolerance_that_is_not_kept(paths):
 
 def test_tells_of_polynomials_of_too_low_an_order():
     scene = ep.Scene()
-    scene.add(ep.actors.box((0.6, 0.04, 0.01)), name="rotor", position=(8, 0, 2),
+    scene.add(ep.actors.box((0.6, 0.04, 0.01)), name="rotor", position=(4, 0, 2),
               motion=ep.LinearMotion(angular_velocity=(0, 0, 800)), material=ep.Material(reflectivity=0.6, scattering=0.8))
     paths = ep.trace(scene, make_radar(chirps=128, chirp_interval=20e-6), num_rays=3000)
     probe = ep.SignalProbe()

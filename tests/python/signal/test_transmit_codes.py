@@ -4,6 +4,7 @@ import pytest
 
 import echopath as ep
 from echopath.base.radar.chirps import chirp_period, chirps_duration
+from echopath.transmit import doppler_division
 from support.radars import build_radar
 
 C = ep.speed_of_light
@@ -117,6 +118,25 @@ def test_noise_keeps_its_level_and_its_false_alarms_through_doppler_division():
     assert levels[0] == pytest.approx(levels[1], abs=0.2)
     rate = np.mean(ep.cfar(spectrum, radar, false_alarm_rate=1e-2).mask)
     assert 0.3e-2 < rate < 3e-2
+
+
+@pytest.mark.parametrize("num_tx, shares, num_rx", [(3, 4, 1), (3, 4, 4), (8, 10, 2)])
+def test_noise_alone_seems_to_have_a_target_at_the_rate_that_is_promised(num_tx, shares, num_rx):
+    random, chirps, samples = np.random.default_rng(11), 64 * shares, 128
+    taper = np.outer(*(0.54 - 0.46 * np.cos(2.0 * np.pi * np.arange(count) / count) for count in (chirps, samples)))
+    noise = random.standard_normal((2, num_rx, chirps, samples))
+    power = doppler_division._smoothed_power(np.fft.fft2((noise[0] + 1j * noise[1]) * taper))
+    limits = doppler_division._limits_of_noise(num_tx, shares, num_rx)
+    rate = np.mean(doppler_division._found(power, num_tx, shares).is_target(limits))
+    assert 0.6e-2 < rate < 1.2e-2
+
+
+@pytest.mark.parametrize("velocities, ranges", [(16, 64), (4, 64), (64, 16)])
+def test_transmitters_have_noise_of_their_own_in_empty_cells(velocities, ranges):
+    """Eight, of which each takes another cell of a share's, whether it has more velocities or more ranges."""
+    cells = np.arange(velocities * ranges).reshape(1, velocities, ranges)
+    taken = np.sort([doppler_division._from_nearby(cells, tx) for tx in range(8)], axis=0)
+    assert np.all(np.diff(taken, axis=0) > 0)
 
 
 def ddm_tones(radar, shares, cells, snr_db):

@@ -164,7 +164,7 @@ def _labels_of(spectrum, cells, power, makers: _Makers, echoes, progress) -> dic
     elif parts is not None:
         found.take_parts(*labelling.part_powers(parts | beside, cells, gains), power)
     elif beside:
-        found.take_beside(*labelling.part_powers(beside, cells, gains)[:2])
+        found.take_beside(*labelling.part_powers(beside, cells, gains)[:2], power)
     found.leave((*BESIDE, *beside))
     return found.columns()
 

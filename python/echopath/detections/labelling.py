@@ -147,9 +147,10 @@ class CellLabels:
         self._part, self._share = _strongest_part(names, powers)
         self._echoes, self._measured = whole, measured
 
-    def take_beside(self, names, powers) -> None:
-        """names: [K] of what no path makes; powers: [K, N] W: beside the echoes of paths, which have no part's name."""
-        echoes = np.zeros(powers.shape[1]) if self._echoes is None else self._echoes
+    def take_beside(self, names, powers, measured) -> None:
+        """names: [K] of what no path makes; powers: [K, N] W: beside the echoes of paths, which have no part's name, or else
+        beside what the map has more of; measured: [N] W, of the map."""
+        echoes = np.maximum(measured - powers.sum(axis=0), 0.0) if self._echoes is None else self._echoes
         self._part, self._share = _strongest_part(["", *names], np.concatenate([echoes[None], powers]))
         self._share = np.where(self._part == "", np.nan, self._share)
         self._echoes = None if self._echoes is None else echoes + powers.sum(axis=0)

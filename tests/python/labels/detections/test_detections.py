@@ -17,6 +17,7 @@ PLACE = 0.05
 BEARING = 0.01        # rad: a 25th of a beam of eight antennas
 ROUNDING = 1e-9       # m, of places from ranges and angles
 LEVEL_DB = 0.5        # of peaks between cells, over noise; 0.1 found
+NOISE_DB = 1.0        # of the noise about a target 48 dB above it, of whose skirts there is some; 0.7 found
 SLOT_BEARING = 5e-4   # rad; 2e-4 found: the phase left between slots made 5e-3 of a speed half a cell beside the cell's
 SPEED = 0.01          # m/s: with noise 30 dB below; 0.001 found
 SHIFT_LEFT = 0.005    # m: of the 18 mm by which a speed of 9 m/s shifts the range
@@ -36,7 +37,6 @@ def test_targets_are_found_once_where_they_are_and_with_their_speed(spheres):
         assert found.azimuth[i] == pytest.approx(azimuth, abs=BEARING) and np.isnan(found.elevation[i])
         expected = at(found.range[i], found.azimuth[i]) + [0, 3.5 * WAVELENGTH / 4, 0]  # from the middle of the antennas
         np.testing.assert_allclose(found.points[i], expected, atol=ROUNDING)
-        assert found.snr_db[i] > 25.0
     assert set(found.part) == set(found.object) == {""} and np.isnan(found.share).all()
 
 
@@ -47,7 +47,9 @@ def test_power_is_what_the_radar_equation_gives(spheres):
     for name, (distance, _, speed) in TARGETS.items():
         range_now = distance + speed * 0.5 * radar.frame_duration
         expected = radar.transmit_power * WAVELENGTH ** 2 * np.pi * RADIUS ** 2 / ((4 * np.pi) ** 3 * range_now ** 4)
-        assert 10 * np.log10(found.power[nearest(found, name)] / expected) == pytest.approx(0.0, abs=LEVEL_DB), name
+        i = nearest(found, name)
+        assert 10 * np.log10(found.power[i] / expected) == pytest.approx(0.0, abs=LEVEL_DB), name
+        assert found.snr_db[i] == pytest.approx(10 * np.log10(expected / ep.noise_power(radar)), abs=NOISE_DB), name
 
 
 def test_parts_label_their_own_targets(spheres):
@@ -59,6 +61,21 @@ def test_parts_label_their_own_targets(spheres):
         i = nearest(found, name)
         assert found.part[i] == part and found.share[i] > 0.99
     assert np.array_equal(found.part, of_maps.part) and np.array_equal(found.share, of_maps.share)
+
+
+@pytest.mark.parametrize("with_paths", [False, True])
+def test_what_no_path_makes_has_the_cells_where_it_is_the_most(spheres, with_paths):
+    """A tone of another radar, faint beside the targets' echoes and 30 dB above the noise in a cell of its own."""
+    radar, paths, _ = spheres
+    place = 2.0 * np.pi * np.add.outer(0.25 * np.arange(radar.waveform.num_chirps), 0.6 * np.arange(radar.waveform.num_samples))
+    echoes = ep.synthesize(paths, radar)
+    other = np.broadcast_to(np.sqrt(1e3 * ep.noise_power(radar)) * np.exp(1j * place), echoes.shape)
+    spectrum = ep.range_doppler(ep.add_noise(echoes + other, radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, beside={"interference": other}, paths=paths if with_paths else None)
+    by_range = np.argsort(found.range)
+    assert found.part[by_range].tolist() == [""] * len(TARGETS) + ["interference"]
+    assert found.share[by_range[-1]] > 0.99 and np.isnan(found.share[by_range[:-1]]).all() and not found.is_noise.any()
+    assert found.range.max() == pytest.approx(0.6 * radar.waveform.max_range, abs=0.1)
 
 
 def test_labels_of_cells_are_taken_over(spheres):
@@ -210,6 +227,8 @@ def test_one_antenna_gives_no_directions(spheres):
     spectrum = ep.range_doppler(ep.add_noise(np.zeros((1, 1, 64, 256), complex), radar, seed=1), radar)
     found = ep.detect(spectrum, radar, false_alarm_rate=1e-3)
     assert len(found) and np.isnan(found.azimuth).all() and np.isnan(found.points).any()
+    with pytest.raises(ValueError, match="^detections: must have azimuths, which the radar's antennas cannot tell"):
+        ep.track([found], [0.0])
 
 
 def test_a_fast_radar_finds_what_stands_where_it_is_by_the_turns_of_its_transmitters():

@@ -7,6 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath.tracks.assignment import assigned, hungarian
+from echopath.tracks.track import _outline_distances
 from support.radars import build_radar
 
 STEP, FRAMES = 0.1, 40
@@ -68,11 +69,22 @@ def test_what_passes_a_rail_is_none_of_its_posts():
     assert set(beside.object) == {"passing"}
 
 
+def test_objects_are_as_far_as_their_outlines_are():
+    """From a box of 4 m by 2 m that is turned by 30 degrees: a corner, both kinds of sides, within."""
+    own = np.array([[5.0, 5.0], [3.5, 0.3], [-0.7, -2.25], [1.9, 0.9]])
+    turn = np.array([[np.cos(np.pi / 6), -np.sin(np.pi / 6)], [np.sin(np.pi / 6), np.cos(np.pi / 6)]])
+    found = _outline_distances(own @ turn.T + [7.0, -3.0], np.array([[7.0, -3.0, 1.0]]), np.array([np.pi / 6]),
+                               np.array([[4.0, 2.0, 1.5]]))
+    assert found[:, 0] == pytest.approx([5.0, 1.5, 1.25, 0.0], abs=1e-9)
+
+
 def test_the_truth_of_other_times_is_refused():
     positions = crossing()
     truth = truth_of(positions, ["up", "down"])
     with pytest.raises(ValueError, match=r"^truth: must be of the times of the detections, got .* s for frame \d+ of .* s$"):
         ep.track(list(positions), TIMES + 5.0, truth=truth, merge_distance=0.0)
+    with pytest.raises(ValueError, match=r"^truth: must be of the times .*, got 3.9 s for frame 39 of 4.9 s$"):
+        ep.track(list(positions), np.append(TIMES[:-1], TIMES[-1] + 1.0), truth=truth, merge_distance=0.0)
     early = TIMES - 0.4 * np.diff(TIMES).min()  # starts of the frames, whose middles the truth has
     assert set(ep.track(list(positions), early, truth=truth, merge_distance=0.0).object) == {"up", "down"}
 

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.signals import measures
 from echopath import _core
 
 C = 299792458.0
@@ -106,3 +107,17 @@ def test_bad_noise_input_is_an_error():
         ep.add_noise(np.zeros((1, 1, 16, 511)), radar, seed=1)
     with pytest.raises(ValueError, match="^seed: .*-1"):
         ep.add_noise(np.zeros((1, 1, 16, 512)), radar, seed=-1)
+
+
+def test_powers_of_cubes_and_of_their_chirps_are_means_of_squares():
+    """1 uW is -30 dBm, and as much more as 20 log10 of an amplitude's factor."""
+    cube = np.zeros((2, 3, 4, 8), complex)
+    cube[1, 2] = np.sqrt(1e-6) * np.array([1.0, 10.0, 0.1, 0.0])[:, None] * np.exp(1j * np.arange(8))
+    assert ep.power_by_chirp(cube, tx=1, rx=2) == pytest.approx([-30.0, -10.0, -50.0, -2970.0])
+    assert ep.power_by_chirp(cube) == pytest.approx([-2970.0] * 4)
+    assert measures.power_dbm(cube) == pytest.approx(10.0 * np.log10(1e-3 * 101.01 / 24.0))
+    assert measures.power_dbm(0.0 * cube) == -np.inf
+    assert measures.residual(cube, {"half": 0.5 * cube, "fifth": 0.2 * cube}) == pytest.approx(0.3)
+    for name, size in (("tx", 2), ("rx", 3)):
+        with pytest.raises(IndexError, match=f"^{name}: must be below {size}, the number of its antennas, got {size}"):
+            ep.power_by_chirp(cube, **{name: size})

@@ -203,6 +203,8 @@ def test_rain_speckles_and_moves_with_the_wind():
     velocity = ep.range_doppler(cube, radar).velocity
     mean = (first.sum(1) * velocity).sum() / first.sum()
     assert mean == pytest.approx(5.0 * 0.85, abs=0.6)  # along the beam, less toward its sides
+    drops = rain_echoes._velocities(blown, np.full(20_000, 4.0), np.random.default_rng(1))
+    assert drops.mean(axis=0) == pytest.approx([5.0, 0.0, -4.0], abs=0.01) and drops.std(axis=0) == pytest.approx(0.3, rel=0.02)
     one_chirp = np.abs(np.fft.fft(cube[0, 0], axis=-1))[:, 10:110]**2 * np.arange(10, 110)**2
     assert np.std(one_chirp) / np.mean(one_chirp) == pytest.approx(1.0, abs=0.2)
 

@@ -29,6 +29,7 @@ def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, 
     Returns [N, A], linear, at least 1. Raises TypeError, ValueError or IndexError naming the argument.
     """
     warn_of_mixed_polarisations(radar, "music")
+    _core.beamform(spectrum, radar, [0.0], [0.0], cells=np.empty((0, 2), np.int64))  # of no cell: checks that they fit
     values = _core.compensate_tdm(spectrum, radar, 0).values if not spectrum.is_tdm_compensated else spectrum.values
     values = values.reshape(-1, *values.shape[2:])
     if num_sources >= len(values):

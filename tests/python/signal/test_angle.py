@@ -376,7 +376,9 @@ def test_axes_may_be_numbers_lists_or_left_to_the_array():
 def test_bad_input_names_the_argument():
     radar = three_by_four()
     kilometres = mimo([(0, 0), (1, 0), (1e7, 0)], [(0, 0)])
+    slower = radar.replace(waveform=radar.waveform.replace(chirp_interval=2.0 * radar.waveform.chirp_interval))
     spectrum = noise_map(radar)
+    compensated = ep.compensate_tdm(spectrum, radar)
     for call, error, text in [
             (lambda: ep.beamform(spectrum, radar, method="music"), ValueError, "^method: must be 'bartlett' or 'capon'"),
             (lambda: ep.beamform(spectrum, radar, [0.2, 0.1]), ValueError, "^azimuth: must be ascending"),
@@ -391,7 +393,9 @@ def test_bad_input_names_the_argument():
             (lambda: ep.range_azimuth(spectrum, radar, velocity=99.0), ValueError, "^velocity: .*got 99"),
             (lambda: ep.angle_fft(spectrum, radar, windows="hann"), TypeError, "nearest right one is 'window'"),
             (lambda: ep.angle_fft(spectrum, four_by_eight()), ValueError, "^spectrum: must have the radar's 4 x 8"),
+            (lambda: ep.music(compensated, four_by_eight(), [0.1], cells=[[0, 0]]), ValueError, "^spectrum: .* 4 x 8 channels"),
+            (lambda: ep.music(compensated, slower, [0.1], cells=[[0, 0]]), ValueError, "^spectrum: .*whose velocities span"),
             (lambda: ep.estimate_angles(spectrum, radar, cells=[[0, 0]], folds=2), ValueError, "^folds: "),
-            (lambda: ep.compensate_tdm(ep.compensate_tdm(spectrum, radar), radar), ValueError, "^spectrum: ")]:
+            (lambda: ep.compensate_tdm(compensated, radar), ValueError, "^spectrum: ")]:
         with pytest.raises(error, match=text):
             call()

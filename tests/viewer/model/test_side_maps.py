@@ -34,6 +34,14 @@ def test_beams_have_the_power_of_beamforming(frame):
             assert found == pytest.approx(power[:, range_index], rel=1e-6, abs=0)
 
 
+@pytest.mark.parametrize("change", [{"extra_idle": (0.0, 2e-5)}, {"frequency_steps": (0.0, 10e6)}], ids=str)
+def test_beams_know_when_and_at_which_carrier_each_slot_is_sent(frame, change):
+    radar = frame.radar.replace(waveform=frame.radar.waveform.replace(**change))
+    spectrum = ep.range_doppler(ep.add_noise(np.zeros(frame.cube.shape), radar, seed=1), radar)
+    power = ep.beamform(spectrum, radar, 0.3, 0.0).power[0, 0, :, 30]
+    assert np.abs(beam_values(spectrum, radar, 30, 0.3, 0.0)) ** 2 == pytest.approx(power, rel=1e-9, abs=0)
+
+
 def test_a_beam_is_the_sum_of_its_contributions(session):
     session.attribution = Attribution(session.signals)
     session.select_beam(45, 0.1, 0.0)

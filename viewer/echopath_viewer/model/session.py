@@ -221,7 +221,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
             weights = np.zeros(spectrum.values.shape[:2])
             weights[self.channel] = 1.0
         else:
-            weights = beam_weights(self.radar, *self.beam, float(spectrum.velocity[self.cell[1]]))
+            weights = beam_weights(spectrum, self.radar, self.cell[0], *self.beam)[:, :, self.cell[1]]
         return self.attribution.of_cell(spectrum, *self.cell, weights)
 
     def select_ray(self, path: int | None) -> None:

@@ -6,6 +6,8 @@ import numpy as np
 import echopath as ep
 from echopath.paths.subset import subset
 
+from ..frames.maps_input import with_values
+
 LEAST_GAIN = 0.5  # of the amplitude, that a path in a beam keeps: half of the width at -6 dB on each side
 
 
@@ -14,19 +16,17 @@ def direction(azimuth: float, elevation: float):
     return np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
 
 
-def beam_weights(radar, azimuth: float, elevation: float, velocity: float):
-    """Complex [tx, rx]: the beam of a cell is the sum of its channels times these; an echo from there passes unchanged.
+def beam_weights(spectrum, radar, range_index: int, azimuth: float, elevation: float):
+    """Complex [tx, rx, V]: the beam of a cell is the sum of its channels times these; an echo from there passes unchanged.
 
-    Model: plane waves at the positions of the virtual array (`ep.beamform`), the phase that motion adds between transmit slots
-    taken out (`ep.compensate_tdm`), channels at one position averaged.
-    azimuth, elevation: rad; velocity: m/s of the cell
+    Model: plane waves at the positions of the virtual array (`ep.beamform`), the phase between transmit slots taken out
+    (`ep.compensate_tdm`), channels at one position averaged.
+    azimuth, elevation: rad
     """
-    positions = np.asarray(ep.virtual_array(radar).positions, float)
-    waveform = radar.waveform
-    turns = positions @ direction(azimuth, elevation) / waveform.wavelength
-    slots = np.arange(positions.shape[0])[:, None] if radar.multiplexing == "tdm" else np.zeros((positions.shape[0], 1))
-    motion = 2.0 * velocity / waveform.wavelength * slots * waveform.mean_interval
-    return np.exp(2j * np.pi * (turns - motion)) * _shares(positions, waveform.wavelength)
+    positions, wavelength = np.asarray(ep.virtual_array(radar).positions, float), radar.waveform.wavelength
+    steering = np.exp(2j * np.pi / wavelength * positions @ direction(azimuth, elevation)) * _shares(positions, wavelength)
+    slots = ep.compensate_tdm(with_values(spectrum, np.ones(spectrum.values.shape[2:])), radar).values[..., range_index]
+    return steering[:, :, None] * slots
 
 
 def _shares(positions, wavelength: float):
@@ -39,7 +39,7 @@ def _shares(positions, wavelength: float):
 
 def beam_values(spectrum, radar, range_index: int, azimuth: float, elevation: float):
     """The beam at a range, complex [V] in sqrt(W)."""
-    weights = np.stack([beam_weights(radar, azimuth, elevation, float(velocity)) for velocity in spectrum.velocity], axis=2)
+    weights = beam_weights(spectrum, radar, range_index, azimuth, elevation)
     return np.einsum("trv,trv->v", weights, spectrum.values[:, :, :, range_index])
 
 

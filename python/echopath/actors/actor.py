@@ -47,9 +47,9 @@ class Actor:
         names = [part.name for part in self.parts]
         for name in names:
             if not name or any(not step for step in name.split("/")):
-                raise ValueError(f"parts must have names without empty steps, got {name!r}")
+                raise refused(ValueError, "parts", "of names without empty steps", name)
             if names.count(name) > 1:
-                raise ValueError(f"parts must have different names, got {name!r} twice")
+                raise refused(ValueError, "parts", "of different names", name)
 
     @property
     def num_triangles(self) -> int:
@@ -81,8 +81,6 @@ class PartArrays:
 
     def build(self):
         """The Part with its Mesh and motion."""
-        from echopath import _core
-
         motion = None
         if self.rates is not None:
             curves = [_core.Curve(self.times, values, "hermite", in_tangents=rates, out_tangents=rates)

@@ -78,7 +78,8 @@ def _blade(radius, angle):
         middle = np.array([share * radius, 0.0, 0.0])
         rings.append([middle - across - up, middle - across + up, middle + across - up, middle + across + up])
     pieces = [solids.hexahedron(np.array(rings[n] + rings[n + 1])) for n in range(3)]
-    return _turned(_without_inner_walls(*joined(*pieces))[0], angle), _without_inner_walls(*joined(*pieces))[1]
+    vertices, triangles = _without_inner_walls(*joined(*pieces))
+    return _turned(vertices, angle), triangles
 
 
 def _without_inner_walls(vertices, triangles):

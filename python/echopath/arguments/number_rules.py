@@ -96,4 +96,5 @@ def seed(argument: str, value) -> int:
 _seed = count(0, LARGEST_SEED)
 
 
+unit_rule = real(1e-12, 1e9, "m")  # of a unit of a file
 start_time_rule = real(-LONGEST_TIME, LONGEST_TIME, unit="s")

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arguments.checks import array
-from ..arguments.shown import shown
+from ..arguments.checks import array, refused
 
 FLAT = 1e-6  # of the mouth's extent, how far a corner may lie beside its plane
 
@@ -31,10 +30,10 @@ class Cavity:
     def __post_init__(self):
         names = (self.walls,) if isinstance(self.walls, str) else self.walls
         if not isinstance(names, (list, tuple)) or not names or not all(isinstance(name, str) for name in names):
-            raise TypeError(f"walls: must be a name of the scene or several, got {shown(self.walls)}")
+            raise refused(TypeError, "walls", "a name of the scene or several", self.walls)
         corners = np.asarray(_CORNERS("mouth", self.mouth), float)
         if not _is_convex(corners):
-            raise ValueError("mouth: must be the corners of a flat convex polygon in their order")
+            raise refused(ValueError, "mouth", "the corners of a flat convex polygon in their order", self.mouth)
         object.__setattr__(self, "walls", tuple(names))
         object.__setattr__(self, "mouth", tuple(tuple(map(float, corner)) for corner in corners))
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import Rule, carrier, checked, choice, flag, optional, path as file_or_folder, real, refused, text
+from ..arguments.number_rules import unit_rule
 from ..base.process.callers import warn_user
-from ..scene.meshes import UNIT
 from .material_names import Meaning, checked_materials, note_of_unused
 from .model import Model
 from .options import ReadOptions
@@ -27,8 +27,8 @@ READERS: dict[str, str] = {
 
 # rules of what load_model and load_scene may be told of a file
 READ_RULES: dict[str, Rule] = {
-    "unit": optional(UNIT), "up": optional(choice("x", "y", "z")), "materials": checked_materials, "animation": optional(text),
-    "loop": flag, "offset": real(unit="s"), "smooth": optional(flag), "frequency": optional(carrier),
+    "unit": optional(unit_rule), "up": optional(choice("x", "y", "z")), "materials": checked_materials,
+    "animation": optional(text), "loop": flag, "offset": real(unit="s"), "smooth": optional(flag), "frequency": optional(carrier),
 }
 
 

@@ -5,13 +5,13 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import anything, checked
-from .meshes import UNIT
+from ..arguments.number_rules import unit_rule
 
 _SURFACES = {"triangle": 3, "quad": 4}         # cells of meshio by the number of their corners
 _NO_SURFACES = ("vertex", "line")              # left out, as lines of files are
 
 
-@checked(source=anything, unit=UNIT)
+@checked(source=anything, unit=unit_rule)
 def mesh_from(source: object, *, unit: float = 1.0) -> _core.Mesh:
     """A Mesh of an object of trimesh, meshio or pyvista, or of any that has the same arrays.
 

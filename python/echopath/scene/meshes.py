@@ -4,13 +4,12 @@ from __future__ import annotations
 import os
 
 from .. import _core
-from ..arguments.checks import checked, real
+from ..arguments.checks import checked
+from ..arguments.number_rules import unit_rule
 from ..base.text.node_names import fit_paths
 
-UNIT = real(1e-12, 1e9, "m")
 
-
-@checked(unit=UNIT)
+@checked(unit=unit_rule)
 def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     """All faces of a mesh file as one mesh.
 
@@ -21,7 +20,7 @@ def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     return _core.load_mesh(path, unit)
 
 
-@checked(unit=UNIT)
+@checked(unit=unit_rule)
 def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[str, _core.Mesh]]:
     """The groups of a mesh file.
 

@@ -145,7 +145,7 @@ def test_unknown_keyword_names_the_nearest_right_one():
 
 def test_actor_refuses_equal_and_empty_names():
     part = ep.actors.Part("a/b", ep.actors.plate(1.0, 1.0), "clothing")
-    with pytest.raises(ValueError, match="different names, got 'a/b' twice"):
+    with pytest.raises(ValueError, match="^parts: must be of different names, got 'a/b'"):
         ep.actors.Actor([part, part])
-    with pytest.raises(ValueError, match="without empty steps"):
+    with pytest.raises(ValueError, match="^parts: must be of names without empty steps, got 'a//b'"):
         ep.actors.Actor([ep.actors.Part("a//b", part.mesh, "clothing")])

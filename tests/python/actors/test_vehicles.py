@@ -144,7 +144,7 @@ def test_the_row_has_as_many_cars_side_by_side():
     assert {part.name.split("/")[0] for part in row.parts} == {"car_1", "car_2", "car_3"}
     size, _ = extent(row, lambda name: "mirror" not in name)
     assert 2 * 2.6 + 1.6 < size[1] < 2 * 2.6 + 2.2
-    with pytest.raises(ValueError, match="spacing: must be a finite number of at least 2.3 m, got 1.0"):
+    with pytest.raises(ValueError, match="spacing: must be a finite number from 2.3 to 10000 m, got 1.0"):
         ep.actors.parked_row(spacing=1.0)
 
 

@@ -6,12 +6,11 @@ import numpy as np
 from ... import _core
 from ...arguments.checks import checked, positive, real, refused
 from ...arguments.number_rules import start_time_rule
-from ...base.numerics.rotations import about_y, about_z, quaternions
+from ...base.numerics.rotations import about_y, about_z, matrices, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
-from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
-from ..human.gait import Frames
-from ..human.pedestrian import keyframe_times
+from ..following import refuse_beside_trajectory, trajectory_rule
+from ..keyframes import Frames, key_times, keyframe_times, with_rates
 from ..laid_line import LaidLine, usual_speed
 from ..limits import size_rule
 from ..shapes import capsule, ellipsoid
@@ -194,8 +193,5 @@ def _arrays(height: float, frames: dict, times) -> list:
 
 def _at_rest(part):
     """The same without motion, as it stands at the first instant."""
-    w, _, y, _ = part.rotations[0]
-    c, s = w * w - y * y, 2.0 * w * y
-    rotation = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-    return PartArrays(part.name, np.asarray(part.vertices) @ rotation.T + part.translations[0], part.triangles, part.material,
-                      smooth=True)
+    vertices = np.asarray(part.vertices) @ matrices(part.rotations[0]).T + part.translations[0]
+    return PartArrays(part.name, vertices, part.triangles, part.material, smooth=True)

@@ -9,17 +9,17 @@ import numpy as np
 
 from ... import _core
 from ...arguments.checks import checked, choice, optional, positive, real
+from ...arguments.number_rules import unit_rule
 from ...base.numerics.rotations import about_z, quaternions
-from ...scene.meshes import UNIT
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
-from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
+from ..following import refuse_beside_trajectory, trajectory_rule
+from ..keyframes import Frames, key_times, with_rates
 from ..surfaces import edge_length
 from .anthropometry import ANKLE_HEIGHT, HIP_HEIGHT, Proportions
 from .body import surface
 from .captured_along import CaptureAlong, cycle_of
 from .captured_joints import find_joints, missing_joints
-from .gait import Frames
 from .motion_capture import POSE_HELD, read_capture
 from .pedestrian import HEIGHTS, SKIN_PARTS, material_rule
 
@@ -34,7 +34,7 @@ TRAVEL = 0.5            # m from which on the way of the body is its direction
 KEYFRAME_RATE = 120.0   # 1/s, along a trajectory
 
 
-@checked(height=optional(real(*HEIGHTS, unit="m")), unit=optional(UNIT), up=optional(choice("x", "y", "z")),
+@checked(height=optional(real(*HEIGHTS, unit="m")), unit=optional(unit_rule), up=optional(choice("x", "y", "z")),
          offset=real(unit="s"), edge=positive("m"), clothing=material_rule, skin=material_rule, trajectory=trajectory_rule)
 def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = None, unit: float | None = None,
                         up: str | None = None, offset: float = 0.0, edge: float = 0.018,

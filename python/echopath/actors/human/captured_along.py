@@ -12,7 +12,7 @@ import numpy as np
 from ... import _core
 from ...base.numerics.rotations import about_z, matrices, product, quaternions
 from ...trajectories.path import second_derivatives
-from .gait import Frames
+from ..keyframes import Frames
 
 MOST_FRAMES = 400        # that are held against each other
 SHORTEST = 0.4           # s, of a cycle

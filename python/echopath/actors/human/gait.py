@@ -5,11 +5,10 @@ are bent so that they reach them. Two numbers are left to choose: the height of 
 needs to be straighter than MIN_KNEE for, and the feet are planted that far ahead of the hips that the pelvis can be
 highest. Axes of the actor: x forward, y left, z up, floor at z = 0.
 """
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...base.numerics.rotations import about_x, about_y, about_z
+from ..keyframes import Frames
 from .boulic import LIMIT, Cycle, Walk
 from .foot import Sole
 from .steps import Steps
@@ -19,14 +18,6 @@ PELVIS_EARLIER = 0.03          # phase by which the pelvis rises earlier than in
 ARM_ABDUCTION = np.radians(7.0)
 SEARCH_PHASES = 400            # per cycle, in the search for the pelvis height
 LEADS = np.linspace(0.10, 0.30, 81)   # tried distances from hips to the flat ankle at its strike, in cycle lengths
-
-
-@dataclass(frozen=True)
-class Frames:
-    """A body part over time: its proximal joint and its axes (part to actor)."""
-
-    origin: np.ndarray     # [T, 3] m
-    rotation: np.ndarray   # [T, 3, 3]
 
 
 class Gait:

@@ -8,8 +8,9 @@ import numpy as np
 
 from ...arguments.checks import refused
 from ...base.numerics.rotations import about_y, about_z
+from ..keyframes import Frames
 from ..laid_line import LaidLine
-from .gait import MIN_KNEE, Frames, bend_leg
+from .gait import MIN_KNEE, bend_leg
 
 LEAST_ROOM = 0.3        # m, of a leg under a hip
 

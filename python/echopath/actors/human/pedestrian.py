@@ -9,15 +9,15 @@ from ...arguments.number_rules import start_time_rule
 from ...base.numerics.rotations import quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
-from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
+from ..following import refuse_beside_trajectory, trajectory_rule
+from ..keyframes import Frames, key_times, keyframe_times, with_rates
 from ..laid_line import usual_speed
 from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface
-from .gait import Frames, Gait, relative_speed_limit
+from .gait import Gait, relative_speed_limit
 from .gait_along import GaitAlong
 
-MOST_KEYS = 200_000           # of a part
 HEIGHTS = (0.5, 2.5)          # m
 MIN_SPEED = 0.1               # m/s
 MIN_KEYFRAME_RATE = 60.0      # 1/s: fewer do not follow the landing of a foot
@@ -119,14 +119,3 @@ def body_arrays(body, frames, times, *, edge, clothing, skin):
             parts.append(PartArrays(name, vertices, triangles, material, times, frame.origin, quaternions(frame.rotation),
                                     smooth=True))
     return parts
-
-
-def keyframe_times(start_time, duration, rate):
-    """Times [T] in s, evenly from start_time over `duration`, at least `rate` a second and at least 4.
-
-    Raises ValueError naming duration where these are more than MOST_KEYS.
-    """
-    if duration * rate > MOST_KEYS:
-        raise refused(ValueError, "duration", f"at most {MOST_KEYS / rate:g} s at a keyframe_rate of {rate:g}", duration)
-    count = max(4, int(np.ceil(duration * rate - 1e-9)) + 1)
-    return start_time + duration * np.linspace(0.0, 1.0, count)

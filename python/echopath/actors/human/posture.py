@@ -1,11 +1,12 @@
 """Postures: where the parts of a body are when its joints are given, standing or on a bicycle.
 
-Frames are those of gait.py: T instants, axes x forward, y left, z up.
+Frames are those of keyframes.py: T instants, axes x forward, y left, z up.
 """
 import numpy as np
 
 from ...base.numerics.rotations import about_x, about_y, about_z
-from .gait import ARM_ABDUCTION, Frames, bend_leg
+from ..keyframes import Frames
+from .gait import ARM_ABDUCTION, bend_leg
 
 STANDING_KNEE = np.radians(8.0)
 STANDING_ELBOW = np.radians(12.0)

@@ -11,12 +11,12 @@ from ...arguments.number_rules import start_time_rule
 from ...base.numerics.rotations import about_y, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
-from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
+from ..following import refuse_beside_trajectory, trajectory_rule
 from ..human.anthropometry import Proportions
 from ..human.foot import Sole
-from ..human.gait import Frames
-from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, keyframe_times, material_rule
+from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, material_rule
 from ..human.posture import leg, reaching_arm, trunk
+from ..keyframes import Frames, key_times, keyframe_times, with_rates
 from ..solids import block
 from ..surfaces import edge_length
 from .bicycle import CRANK, DEVELOPMENT, GRIP, PEDAL, Ride, bicycle_parts, pedal_corners, seat_point

@@ -13,9 +13,9 @@ from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import trajectory_rule
 from ..human.anthropometry import Proportions
-from ..human.gait import Frames
 from ..human.pedestrian import body_arrays
 from ..human.posture import leg, reaching_arm, trunk
+from ..keyframes import Frames
 from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
 from ..solids import tube
@@ -30,7 +30,7 @@ from .wheel import Wheel, wheel_parts
 WHEELBASE, SEAT_HEIGHT = 1.40, 0.805     # m
 FRONT_WHEEL = Wheel(0.600, 0.120, 0.44, num_spokes=5, spoke_width=0.04)
 REAR_WHEEL = Wheel(0.630, 0.180, 0.44, num_spokes=5, spoke_width=0.04)
-FRONT_AXLE, REAR_AXLE = 0.70, -0.70
+FRONT_AXLE, REAR_AXLE = 0.5 * WHEELBASE, -0.5 * WHEELBASE
 HEAD = np.array([0.40, 0.0, 0.92])       # the steering head
 GRIP = np.array([0.28, 0.33, 1.04])
 FOOT_REST = np.array([-0.16, 0.22, 0.36])

@@ -6,15 +6,16 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from ...arguments.checks import checked, count, seed as seed_rule
+from ...arguments.checks import checked, count, real, seed as seed_rule
 from ..actor import Actor
-from ..limits import row_rule
+from ..limits import LONGEST_ROW
 from .cars import CARS, car
 
+CLOSEST = 2.3  # m from middle to middle, so that mirrors do not meet
 SHARES = {"small": 0.2, "compact": 0.3, "saloon": 0.15, "estate": 0.15, "suv": 0.2}   # of the classes
 
 
-@checked(number=count(1, 100), spacing=row_rule, seed=seed_rule)
+@checked(number=count(1, 100), spacing=real(CLOSEST, LONGEST_ROW, unit="m"), seed=seed_rule)
 def parked_row(*, number: int = 5, spacing: float = 2.5, seed: int = 1) -> Actor:
     """Cars of mixed classes side by side along y, as in a car park; they face along +x or -x.
 
@@ -23,8 +24,6 @@ def parked_row(*, number: int = 5, spacing: float = 2.5, seed: int = 1) -> Actor
     directions and small differences in place.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    if spacing < 2.3:
-        raise ValueError(f"spacing: must be a finite number of at least 2.3 m, got {spacing!r}")
     random = np.random.default_rng(seed)
     parts, made = [], {}
     for n in range(number):

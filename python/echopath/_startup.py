@@ -1,8 +1,8 @@
 """What the command line answers while the package is still loading; in other programs nothing here does anything.
 
-Loading takes most of a second, and any entry point `echopath.cli:main` runs `echopath/__init__.py` first. So that module asks
-here, before its imports: Ctrl-C ends in one line and exit code 130, not in the stack of an import; the bare command
-`echopath --version` is answered and ends the process (SystemExit 0), without the extension and without NumPy.
+Loading takes a fifth of a second, more from a slow disk, and any entry point `echopath.cli:main` runs `echopath/__init__.py`
+first. So that module asks here, before its imports: Ctrl-C ends in one line and exit code 130, not in the stack of an import;
+the bare command `echopath --version` is answered and ends the process (SystemExit 0), without the extension and without NumPy.
 """
 import os
 import signal

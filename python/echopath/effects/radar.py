@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from ..base.radar.antennas import antennas_of, are_crossed
+from ..base.text.counts import counted
 from ..tracing.polarization import FIELD_VECTORS, need_of_field_vectors
 from .rules import Case, rule
 
@@ -16,7 +17,7 @@ def _patterns(case: Case):
 @rule("gain tables", "AntennaPattern.table_gain")
 def _tables(case: Case):
     count = sum(antenna.pattern.kind == "table" for antenna in antennas_of(case.radar))
-    return count > 0, f"of {count} antenna" + "s" * (count > 1) if count else "no pattern is a table"
+    return count > 0, f"of {counted(count, 'antenna')}" if count else "no pattern is a table"
 
 
 @rule("antenna phases", "AntennaPattern.table_phase")
@@ -38,7 +39,7 @@ def _turns(case: Case):
     count = len(case.radar.transmitters)
     if case.radar.multiplexing != "tdm":
         return False, "they send at once"
-    return count > 1, f"{count} transmitter" + "s" * (count > 1)
+    return count > 1, counted(count, "transmitter")
 
 
 @rule("transmitters send at once by a code", "Radar.empty_slots", "Radar.code_phases")

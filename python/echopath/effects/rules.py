@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.effects import Choices
 from ..arguments.names import MOST_NAMES, first_names
-from ..arguments.settings import Edges, FaintPower
+from ..arguments.settings import Edges, FaintPower, Polarization
 from ..base.classes.made_by import made_by
+from ..base.text.counts import counted
 from ..scene.interferers import interferers_of
 from ..tracing.polarization import COHERENT_SHARE, chosen_model, coherent_share
 from ..weather.weather import weather_of
@@ -34,7 +35,7 @@ class Settings:
 
     max_bounces: int
     footprint: str
-    polarization: str
+    polarization: Polarization
     sampler: str
     batches: int
     target_error_db: float | None
@@ -68,8 +69,7 @@ class Case:
     @cached_property
     def model(self) -> str:
         """Of the polarisation: "scalar" or "jones"."""
-        return chosen_model(self.settings.polarization, self.scene, self.wavelength, self.radar, self.time,
-                            argument="polarization")
+        return chosen_model(self.settings.polarization, self.scene, self.wavelength, self.radar, self.time)
 
     @cached_property
     def time(self) -> float:
@@ -129,7 +129,7 @@ class Case:
     def named(self, meshes) -> str:
         """Count of meshes and the first of their names."""
         names = first_names(_core.mesh_names(self.scene, meshes[:MOST_NAMES]), len(meshes))
-        return f"{len(meshes)} mesh{'es' * (len(meshes) > 1)}: {names}"
+        return f"{counted(len(meshes), 'mesh')}: {names}"
 
 
 @dataclasses.dataclass(frozen=True)

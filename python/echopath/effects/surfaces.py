@@ -213,7 +213,7 @@ def _planes(case: Case):
     if count == 0:
         return False, "no plane covers its Fresnel zone where it would mirror"
     corners = f"; orders of over {MOST_AT_CORNER} bounces about one corner may count twice"
-    return True, (f"{count} plane{'s' * (count > 1)} of {case.named(meshes)}; their Fresnel zones are covered"
+    return True, (f"{counted(count, 'plane')} of {case.named(meshes)}; their Fresnel zones are covered"
                   f"{corners if case.settings.max_bounces > MOST_AT_CORNER else ''}")
 
 

@@ -156,4 +156,4 @@ class KeptSignal:
     def _model(self, scene: _core.Scene, radar: _core.Radar) -> str:
         wavelength = _core.speed_of_light / radar.waveform.start_frequency
         middle = radar.middle_of_frame(self._trace_keywords["start_time"])
-        return chosen_model(self._trace_keywords["polarization"], scene, wavelength, radar, middle, argument="polarization")
+        return chosen_model(self._trace_keywords["polarization"], scene, wavelength, radar, middle)

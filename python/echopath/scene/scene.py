@@ -22,8 +22,6 @@ from .placements import ORIGIN, motion_ahead, placement
 from .seams import without_seams, without_seams_between
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
-
-
 _WEATHER = optional(an(Weather))
 
 
@@ -102,13 +100,12 @@ class Scene(_core.Scene):
         material: a Material or a name in `materials`; each mesh needs one, an actor's parts bring theirs (one given
             here replaces them)
         motion: LinearMotion, KeyframeMotion, CurveMotion, or for a mesh a VertexSequence, MorphTargets or a Skin; None: at
-            rest. A mesh with a Skin
-            becomes a node with a child for each joint that dominates any of its triangles, named after the joint
-            (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart. The velocities, translations
-            and turns of a motion are in the axes of the parent (of the world, for an object without one) and about the
-            object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. A Trajectory is a motion, too,
-            which may bring a lifetime (`SceneNode.lifetime`); an actor that was made with one brings it. Only the parts of an
-            object have its axes for their parent's, so a pedestrian of `actors` walks where its yaw points
+            rest. A mesh with a Skin becomes a node with a child for each joint that dominates any of its triangles, named
+            after the joint (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart. The velocities,
+            translations and turns of a motion are in the axes of the parent (of the world, for an object without one) and
+            about the object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. A Trajectory is a
+            motion, too, which may bring a lifetime (`SceneNode.lifetime`); an actor that was made with one brings it. Only the
+            parts of an object have its axes for their parent's, so a pedestrian of `actors` walks where its yaw points
         speed: m/s, instead of motion: straight ahead, along the object's own +x as yaw or transform turn it; what parts of
             an actor do by themselves, such as walking, adds to it
         position [3] in m, yaw in rad about z (left positive): placement at rest (time 0 of `speed`) relative to the parent

@@ -158,8 +158,7 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
         `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car; persons of SUMO
         are no vehicles. Or a dict {glob of kinds: such a callable, a Model, whose meshes all share, the name of an actor, or
-        None: no object}, of which the first that takes the kind counts, in whatever case; kinds that none takes are as
-        usual:
+        None: no object}, of which the first that takes the kind counts, in whatever case; kinds that none takes are as usual:
         `{"police*": ep.load_model("police.glb"), "taxi": "car", "tram*": None}`
     exclude: globs of names that are left out, such as the car that carries the radar; each must take one
     during: (begin, end) in s, outside of which nothing is of interest: who is on the way at no time of it is left out, and the

@@ -5,7 +5,7 @@ import numpy as np
 
 from ..scene.boxes import box_of
 from ..scene.scene import Scene
-from .sight import Sight, best_sight
+from .sight import Sight, best_sight, eroded
 
 BAND = 1.2, 1.6    # m above the lowest point: what is there on all sides is a wall, tables and seats are below
 CLEAR = 1.35       # m to all sides of a place that a room has, and the inside of a vehicle, of 2.6 m at most, has not
@@ -63,8 +63,7 @@ def _enclosed(blocked):
 def _shrunk(free, cells: float):
     """Cells from which so many steps from cell to cell lead to free ones alone."""
     for _ in range(int(np.ceil(cells))):
-        free = np.pad(free, 1, constant_values=False)
-        free = free[1:-1, 1:-1] & free[:-2, 1:-1] & free[2:, 1:-1] & free[1:-1, :-2] & free[1:-1, 2:]
+        free = eroded(free)
     return free
 
 

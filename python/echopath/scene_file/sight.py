@@ -14,6 +14,12 @@ DIRECTIONS = 72       # that are tried
 SECTOR = np.radians(50.0)  # to either side of the radar's axis
 
 
+def eroded(free):
+    """Which cells [n, m] are free with all four neighbours; beyond the border nothing is."""
+    grown = np.pad(free, 1, constant_values=False)
+    return free & grown[:-2, 1:-1] & grown[2:, 1:-1] & grown[1:-1, :-2] & grown[1:-1, 2:]
+
+
 class Sight(NamedTuple):
     """row, column: of the cell where the radar stands; yaw: rad; reach: m to the farthest of the things that it looks at."""
 

@@ -42,7 +42,6 @@ class Trajectories:
         ends = {name: getattr(table, name, None) for name in ("goes_on", "outside")}
         return chosen.replace(**{name: value for name, value in ends.items() if value is not None})
 
-
     def _file(self, path: Path) -> TrackFile:
         if path not in self._files:
             self._files[path] = TrackFile(path, rows=self._rows.of(path))

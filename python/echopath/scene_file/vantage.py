@@ -10,7 +10,7 @@ from ..scene.boxes import box_of
 from ..scene.found_objects import Things
 from ..scene.scene import Scene
 from .room import sight_in_room
-from .sight import SPACE, Sight, best_sight
+from .sight import SPACE, Sight, best_sight, eroded
 
 TOWN = 30.0          # m, extent from which on the radar stands within the scene
 HEIGHT = 1.5         # m above the ground
@@ -108,8 +108,7 @@ def _clearance(blocked, most: int):
     clear, free = np.zeros(blocked.shape, int), ~blocked
     for _ in range(most):
         clear += free
-        grown = np.pad(free, 1, constant_values=False)
-        free = free & grown[:-2, 1:-1] & grown[2:, 1:-1] & grown[1:-1, :-2] & grown[1:-1, 2:]
+        free = eroded(free)
     return clear
 
 

@@ -5,12 +5,12 @@ import numpy as np
 
 from .. import _core
 from ..arguments.names import MOST_NAMES, first_names
+from ..arguments.settings import Polarization
 from ..base.radar.antennas import antennas_of, are_crossed, polarization_of
 
 COHERENT_SHARE = 0.01  # of the reflected power, below it a surface has no coherent echo
 ALONG_NORMAL = 0.3     # of a polarisation, above it a tenth of the power is TM where a mirror is met
 AUTO, SCALAR, FIELD_VECTORS = "auto", "scalar", "jones"
-MODELS = (AUTO, SCALAR, FIELD_VECTORS)
 
 
 def coherent_share(material, wavelength: float) -> float:
@@ -67,14 +67,11 @@ def _named(scene, mesh_ids) -> str:
     return first_names(_core.mesh_names(scene, mesh_ids[:MOST_NAMES]), len(mesh_ids))
 
 
-def chosen_model(model: str, scene, wavelength: float, radar=None, time: float = 0.0, *, argument: str) -> str:
-    """"scalar" or "jones" for one of MODELS.
+def chosen_model(model: Polarization, scene, wavelength: float, radar=None, time: float = 0.0) -> str:
+    """"scalar" or "jones", as asked for, or as the scene asks for.
 
-    wavelength: m; radar: whose antennas count, as it stands at a time in s, None: none; argument: what the model was given as
-    Raises ValueError for another word.
+    wavelength: m; radar: whose antennas count, as it stands at a time in s, None: none
     """
-    if model not in MODELS:
-        raise ValueError(f"{argument}: must be 'auto', 'scalar' or 'jones', got {model!r}")
     if model != AUTO:
         return model
     if _core.coherent_meshes(scene, wavelength, COHERENT_SHARE):  # their names take longer

@@ -113,8 +113,7 @@ def traced(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, o
     if is_first:
         warn_of_bodies(scene, radar, start_time)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
-    model = chosen_model(settings.polarization, scene, wavelength, radar, radar.middle_of_frame(start_time),
-                         argument="polarization")
+    model = chosen_model(settings.polarization, scene, wavelength, radar, radar.middle_of_frame(start_time))
     paths = _core.trace(scene, radar, num_rays=settings.num_rays, max_bounces=settings.max_bounces, seed=settings.seed,
                         start_time=start_time, polarization=model, footprint=settings.footprint, sampler=settings.sampler,
                         num_batches=settings.batches or 1, target_error_db=settings.target_error_db,
@@ -208,7 +207,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     """
     scene = scene_at(scene, 0.0)
     warn_of_coarse_meshes(scene, frequency)
-    chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")
+    chosen = chosen_model(model, scene, _core.speed_of_light / frequency)
     is_one = not isinstance(polarization, list) and np.shape(polarization) == (3,)
     if not is_one and model == SCALAR:
         raise ValueError(f"model: 'scalar' takes one vector for both antennas as polarization, got {shown(polarization)}")

@@ -267,7 +267,7 @@ def test_of_a_town_the_first_names_stand_for_all():
     plate = ep.actors.plate(1.0, 1.0)
     for index in range(1000):
         scene.add(plate, name=f"house_{index}", material=SPECULAR, position=(5.0, 2.0 * index, 0.0))
-    assert found(scene)["perfect conductors"].reason == "1000 meshes: house_0, house_1, house_2 and 997 more"
+    assert found(scene)["perfect conductors"].reason == "1,000 meshes: house_0, house_1, house_2 and 997 more"
 
 
 def crowd_of_plates(count: int):

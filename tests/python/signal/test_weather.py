@@ -261,7 +261,7 @@ def test_beyond_the_band_of_the_recommendations_nothing_is_told(frequency):
 
 
 @pytest.mark.parametrize(("choices", "error", "text"), [
-    ({"rain": True}, ValueError, "has no 'rain'"), ({RAIN_ECHOES: 2}, ValueError, "echoes of rain"),
+    ({"rain": True}, ValueError, "has no 'rain'"), ({RAIN_ECHOES: 2}, TypeError, "echoes of rain"),
     ("rain", TypeError, "effects: must be"), ({RAIN_ECHOES: True}, ValueError, "needs Scene.weather")])
 def test_wrong_choices_are_refused(choices, error, text):
     with pytest.raises(error, match=text):

@@ -15,9 +15,9 @@ def analytic(cube: np.ndarray, real: bool) -> np.ndarray:
     count = cube.shape[-1]
     spectrum = np.fft.fft(cube.real, axis=-1) * np.sqrt(2.0)
     spectrum[..., 0] *= 0.5
-    spectrum[..., (count + 1) // 2:] = 0.0
     if count % 2 == 0:
-        spectrum[..., count // 2] = np.fft.fft(cube.real, axis=-1)[..., count // 2] / np.sqrt(2.0)
+        spectrum[..., count // 2] *= 0.5  # half of the highest frequency is negative
+    spectrum[..., count // 2 + 1:] = 0.0
     return np.fft.ifft(spectrum, axis=-1)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..numerics.rates import radar_rate
+from ..numerics.rotations import matrices
 
 NO_PART = 1e-9       # of a polarisation: what rounding leaves of its part across a way along it
 CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
@@ -85,6 +86,4 @@ def _part_across(vectors, ways) -> np.ndarray:
 
 def _turned(orientation, vector) -> np.ndarray:
     """A vector [3] turned by a unit quaternion (w, x, y, z)."""
-    real, imaginary = orientation[0], orientation[1:]
-    cross = np.cross(imaginary, vector)
-    return vector + 2.0 * (real * cross + np.cross(imaginary, cross))
+    return matrices(orientation) @ vector

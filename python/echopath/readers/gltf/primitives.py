@@ -12,7 +12,7 @@ from .document import Document
 from .item import Item
 from .packed import DRACO, draco_mesh
 
-TRIANGLES, STRIP, FAN = 4, 5, 6
+TRIANGLES, FAN = 4, 6  # modes; 5 is a strip
 POINTS_OR_LINES = (0, 1, 2, 3)
 
 

@@ -1,4 +1,4 @@
-"""Scenes and radars in HDF5 groups (layout: data/README.md)."""
+"""Scenes in HDF5 groups (layout: data/README.md)."""
 from __future__ import annotations
 
 import numpy as np
@@ -18,18 +18,17 @@ class _Pool:
     """Objects that several nodes share, each kept once, and first those that others are parts of."""
 
     def __init__(self, items=()):
-        self.items = []
+        self.items, self._index = [], {}
         for item in items:
             self.index(item)
 
     def index(self, item) -> int:
         if item is None:
             return NONE
-        for index, known in enumerate(self.items):
-            if known is item:
-                return index
-        self.items.append(item)
-        return len(self.items) - 1
+        if id(item) not in self._index:  # of what `items` keeps alive
+            self._index[id(item)] = len(self.items)
+            self.items.append(item)
+        return self._index[id(item)]
 
 
 def write_scene(group, scene) -> None:

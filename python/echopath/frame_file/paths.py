@@ -33,6 +33,10 @@ LATER_FRAME_VALUES = ("objects_time",)  # which older files do not have, nor fra
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_frusta")
 LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes", "num_faint_paths")  # which older files do not have
+STRATUM_FIELDS = {"axis": (np.float64, (3,)), "versine": (np.float64, ()), "ray_density": (np.float64, ()),
+                  "num_rays": (np.int64, ()), "across": (np.float64, (3,)), "num_mirrors": (np.int64, ()),
+                  "object": (np.int64, ()), "focus_of": (np.int64, ())}
+STRIP = ("half_azimuth", "low", "high")  # of a stratum, one column in files
 OLDER_NAMES = {"num_unfollowed_frusta": "num_unfollowed_beams"}
 
 
@@ -127,19 +131,12 @@ def _write_frame(group, frame) -> None:
     write_array(group, "receiver", frame.receiver, unit="m")
     for name in STATISTICS + LATER_STATISTICS:
         write_attribute(group, name, getattr(frame.statistics, name))
-    strata = list(frame.strata)
-    write_texts(group, "stratum_name", [stratum.name for stratum in strata])
-    write_array(group, "stratum_axis", np.array([stratum.axis for stratum in strata], np.float64).reshape(-1, 3))
-    write_array(group, "stratum_versine", np.array([stratum.versine for stratum in strata], np.float64))
-    densities = np.array([stratum.ray_density for stratum in strata], np.float64)
-    write_array(group, "stratum_ray_density", densities, unit="1/sr")
-    write_array(group, "stratum_num_rays", np.array([stratum.num_rays for stratum in strata], np.int64))
-    write_array(group, "stratum_across", np.array([stratum.across for stratum in strata], np.float64).reshape(-1, 3))
-    write_array(group, "stratum_num_mirrors", np.array([stratum.num_mirrors for stratum in strata], np.int64))
-    write_array(group, "stratum_object", np.array([stratum.object for stratum in strata], np.int64))
-    write_array(group, "stratum_focus_of", np.array([stratum.focus_of for stratum in strata], np.int64))
-    strips = [[stratum.half_azimuth, stratum.low, stratum.high] for stratum in strata]
-    write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
+    write_texts(group, "stratum_name", [stratum.name for stratum in frame.strata])
+    for name, (dtype, shape) in STRATUM_FIELDS.items():
+        values = np.array([getattr(stratum, name) for stratum in frame.strata], dtype).reshape(-1, *shape)
+        write_array(group, f"stratum_{name}", values, unit="1/sr" if name == "ray_density" else "")
+    strips = [[getattr(stratum, name) for name in STRIP] for stratum in frame.strata]
+    write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, len(STRIP)))
 
 
 def _read_settings(group) -> dict[str, object]:
@@ -157,23 +154,18 @@ def _read_statistics(group):
     return _core.TraceStatistics(**values)
 
 
+def _read_strata(group) -> list:
+    names = read_texts(group, "stratum_name")
+    columns = [read_array(group, f"stratum_{name}", dtype, (len(names), *shape)).tolist()
+               for name, (dtype, shape) in STRATUM_FIELDS.items()]
+    strips = read_array(group, "stratum_strip", np.float64, (len(names), len(STRIP))).tolist()
+    return [_core.Stratum(name=name, **dict(zip(STRIP, strip)), **dict(zip(STRATUM_FIELDS, values)))
+            for name, strip, *values in zip(names, strips, *columns)]
+
+
 @blames_group
 def _read_frame(group):
-    names = read_texts(group, "stratum_name")
-    axis = read_array(group, "stratum_axis", np.float64, (len(names), 3))
-    versine = read_array(group, "stratum_versine", np.float64, (len(names),))
-    ray_density = read_array(group, "stratum_ray_density", np.float64, (len(names),))
-    num_rays = read_array(group, "stratum_num_rays", np.int64, (len(names),))
-    across = read_array(group, "stratum_across", np.float64, (len(names), 3))
-    mirrors = read_array(group, "stratum_num_mirrors", np.int64, (len(names),))
-    aimed_at = read_array(group, "stratum_object", np.int64, (len(names),))
-    focus_of = read_array(group, "stratum_focus_of", np.int64, (len(names),))
-    strip = read_array(group, "stratum_strip", np.float64, (len(names), 3))
-    strata = [_core.Stratum(axis=axis[i], versine=float(versine[i]), num_rays=int(num_rays[i]),
-                            ray_density=float(ray_density[i]), name=names[i], across=across[i],
-                            half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
-                            object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
-              for i in range(len(names))]
+    strata = _read_strata(group)
     statistics = _read_statistics(group)
     values = {name: read_attribute(group, name, float) for name in FRAME_VALUES + LATER_FRAME_VALUES
               if name in group.attrs or name in FRAME_VALUES}

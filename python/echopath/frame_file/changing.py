@@ -65,7 +65,7 @@ def changing(path, num_bytes: int = 0) -> Iterator:
     with interrupts_are_kept(), _failures_of(path):
         handle = os.open(path, os.O_RDWR)
         try:
-            end = _end_in(handle)
+            end = end_in(handle)
             if end is None:
                 raise OSError(errno.EINVAL, "not in the layout of HDF5 1.10 that this program writes")
             with _cut_back(path, handle, end):
@@ -146,7 +146,7 @@ def _mend(path) -> None:
         os.close(handle)
 
 
-def _end_in(handle: int) -> int | None:
+def end_in(handle: int) -> int | None:
     """Where the file ends by what it says itself; None: it is of another layout."""
     return _end_of(os.pread(handle, END_OF_FILE + 8, 0))
 
@@ -154,8 +154,8 @@ def _end_in(handle: int) -> int | None:
 def _end_of(head: bytes) -> int | None:
     """The end of a file by its first bytes."""
     is_known = head[:8] == b"\x89HDF\r\n\x1a\n" and head[8:9] in (b"\x02", b"\x03") and head[9:10] == b"\x08"
-    starts_at_0 = head[12:20] == bytes(8)
-    return int.from_bytes(head[END_OF_FILE:END_OF_FILE + 8], "little") if is_known and starts_at_0 else None
+    starts_at_0, end = head[12:20] == bytes(8), head[END_OF_FILE:END_OF_FILE + 8]
+    return int.from_bytes(end, "little") if is_known and starts_at_0 and len(end) == 8 else None
 
 
 def _write_journal(path, draft: _Draft, handle: int) -> None:
@@ -165,7 +165,7 @@ def _write_journal(path, draft: _Draft, handle: int) -> None:
     """
     numbers = sorted(draft.pages)
     pages = np.frombuffer(b"".join(draft.pages[number] for number in numbers), np.uint8).reshape(-1, PAGE)
-    before = _end_in(handle)
+    before = end_in(handle)
     ends = [before, _end_of(draft.pages[0]) if 0 in draft.pages else before]
     with written_whole(_journal_of(path)) as temporary:
         with open(temporary, "wb") as file:
@@ -197,7 +197,7 @@ def _carry_out(path, handle: int) -> None:
 
 def _is_of(journal: dict[str, np.ndarray], handle: int) -> bool:
     found, size, ends = os.fstat(handle), int(journal["size"]), journal["ends"].tolist()
-    return found.st_ino == int(journal["inode"]) and found.st_size in (size, max(size, ends[0])) and _end_in(handle) in ends
+    return found.st_ino == int(journal["inode"]) and found.st_size in (size, max(size, ends[0])) and end_in(handle) in ends
 
 
 def _drop_journal(path) -> None:

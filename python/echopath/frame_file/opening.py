@@ -9,7 +9,7 @@ from shlex import quote
 
 from .. import _core
 from ..base.process.interrupts import interrupts_are_kept
-from .changing import has_journal, mend
+from .changing import end_in, has_journal, mend
 from .h5 import FAULTS, first_line, read_group
 from .h5_items import library
 
@@ -30,13 +30,11 @@ def file_and_group(path) -> tuple[Path, str]:
 def is_cut_off(path: Path) -> bool:
     """Whether a file of ours has lost its end, as on a disk that was full or pulled out: by what its head says of its length.
 
-    A look at 48 bytes, for thousands of files in a second; what else may be damaged is found by who reads the file.
+    A look at its first bytes, for thousands of files in a second; what else may be damaged is found by who reads the file.
     """
     with open(path, "rb") as file:
-        head, size = file.read(48), os.fstat(file.fileno()).st_size
-    # The superblock of HDF5, whose versions 2 and 3 have the end of the file in bytes 28 to 35.
-    is_known = len(head) == 48 and head[:8] == b"\x89HDF\r\n\x1a\n" and head[8] in (2, 3)
-    return not is_known or size < int.from_bytes(head[28:36], "little")
+        end = end_in(file.fileno())
+        return end is None or os.fstat(file.fileno()).st_size < end
 
 
 @contextmanager

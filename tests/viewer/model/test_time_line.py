@@ -37,6 +37,13 @@ def test_folders_patterns_and_lists_are_lines_in_the_order_of_time(stored_run, w
     assert second.paths.frame.start_time == stored_run.times[1] and second.paths.num_paths == stored_run[1].paths.num_paths
 
 
+def test_frames_of_one_time_go_by_the_numbers_in_their_names(stored_run, tmp_path):
+    names = ["seed9.h5", "seed9²3.h5", "seed10.h5"]
+    for name in names:
+        shutil.copy(stored_run.paths_of_files[0], tmp_path / name)
+    assert [moment.name for moment in time_line_of(tmp_path).moments] == names
+
+
 def test_one_file_is_no_line(stored_run):
     assert time_line_of(stored_run.paths_of_files[0]) is None
 

@@ -184,7 +184,7 @@ def _moments_of(files) -> list[Moment]:
             found.append(Moment(path.name, start_time_of(path), path))
         except ep.FileError:
             continue
-    return sorted(found, key=lambda one: (one.start_time, [int(word) if word.isdigit() else word
+    return sorted(found, key=lambda one: (one.start_time, [int(word) if word.isdecimal() else word
                                                            for word in re.split(r"(\d+)", one.name)]))
 
 

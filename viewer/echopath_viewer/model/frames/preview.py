@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from echopath.frame_file.container import our_file
+from echopath.frame_file.frame import without_lists
 from echopath.frame_file.h5 import read_array, read_attribute, read_group
 from echopath.frame_file.radar import read_radar
 from echopath.frame_file.scene import read_scene
@@ -35,9 +36,7 @@ def preview_of(path) -> ViewInput | None:
         start_time, seed = read_attribute(head, "start_time", float), read_attribute(head, "seed", int)
         settings = json.loads(read_attribute(spectra, "settings", str))
         values = read_array(spectra, "values", np.complex128, (len(radar.transmitters), len(radar.receivers), None, None))
-    window = settings.get("window")
-    settings |= {"window": tuple(window)} if isinstance(window, list) else {}
-    signals = Signals(no_paths(scene, radar, start_time, seed), settings)
+    signals = Signals(no_paths(scene, radar, start_time, seed), {name: without_lists(value) for name, value in settings.items()})
     cube = signals.whole()
     spectrum = with_values(signals.map_of(cube), values)
     return ViewInput(signals.paths, PartSet(whole_part(spectrum)), signals, cube, str(path), note=READING)

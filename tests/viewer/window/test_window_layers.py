@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model.maps.layers import BOX_EDGES, LAYERS, Marker, box_corners
+from echopath_viewer.model.maps.layers import BOX_EDGES, LAYERS, Marker
 from echopath_viewer.window.qt import QtCore
 from support.window import LEFT, panel_of, settle
 
@@ -72,7 +72,7 @@ def test_detections_and_true_boxes_stand_in_the_scene(qtbot, layered, frame):
     assert known._points.GetMapper().GetInput().GetNumberOfPoints() == np.count_nonzero(has_place) > 0
     truth = frame.truth
     assert known._boxes.GetMapper().GetInput().GetNumberOfLines() == 12 * len(truth.name) > 0
-    lengths = np.linalg.norm(np.diff(box_corners(truth)[:, BOX_EDGES], axis=2)[:, :, 0], axis=-1)
+    lengths = np.linalg.norm(np.diff(truth.corners[:, BOX_EDGES], axis=2)[:, :, 0], axis=-1)
     assert np.sort(lengths, axis=1) == pytest.approx(np.sort(np.repeat(truth.size, 4, axis=1), axis=1))
     crosses = [marker for marker in panel_of(layered, *WHOLE).markers if marker.kind == "truth"]
     assert [marker.range for marker in crosses] == pytest.approx(list(truth.range))

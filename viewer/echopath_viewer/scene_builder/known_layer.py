@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.maps.layers import BOX_EDGES, DETECTIONS, TRUTH, box_corners, detection_rgb
+from ..model.maps.layers import BOX_EDGES, DETECTIONS, TRUTH, detection_rgb
 from .polydata import coloured_actor, lines_of, set_point_colours, vertices_of
 
 POINT_SIZE, BOX_WIDTH = 9.0, 1.8  # pixels
@@ -50,7 +50,7 @@ class KnownLayer:
         if truth is None or not len(truth.name):
             self._set_names("boxes", [], [])
             return
-        corners = box_corners(truth)
+        corners = truth.corners
         self._set_names("boxes", corners.max(axis=1), [str(name) for name in truth.name])
         edges = (BOX_EDGES[None] + 8 * np.arange(len(corners))[:, None, None]).reshape(-1, 2)
         poly = lines_of(corners.reshape(-1, 3), edges)

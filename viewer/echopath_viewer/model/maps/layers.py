@@ -123,10 +123,5 @@ def _true_speed(velocity: float, seen: float) -> str:
     return "" if velocity == seen else for_pictures(f", {velocity:+z.1f} m/s, beyond the velocities of the map")
 
 
-def box_corners(truth):
-    """Corners of the true boxes in the world, m: [N, 8, 3], those that differ in one axis being neighbours in its bit."""
-    signs = np.array([[1 if corner >> axis & 1 else -1 for axis in range(3)] for corner in range(8)]) * 0.5
-    return truth.position[:, None, :] + np.einsum("nij,ncj->nci", truth.rotation, signs[None] * truth.size[:, None, :])
-
-
+# Of ep.Truth.corners, whose corners that differ in one axis are neighbours in its bit.
 BOX_EDGES = np.array([(corner, corner | 1 << axis) for axis in range(3) for corner in range(8) if not corner >> axis & 1])

@@ -9,9 +9,9 @@ import pyvista as pv
 import echopath as ep
 from echopath.base.process.callers import warn_user
 from echopath.base.storage.origin import mark_png, origin_texts
-from echopath.scene.lifetimes import scene_in_frame
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
+from .model.frames.inputs import check_scene
 from .off_screen import ASKED, lacking, needs_renderer, renderer
 from .scene_builder import SceneBuilder
 from .scene_builder.web_page import ScenePage
@@ -91,10 +91,7 @@ def _draw_plainly(scene, paths, selection, num_rays: int, screenshot) -> None:
 
 def _session_of(scene, paths) -> Session:
     """A session without signals: of the maps only the axes."""
-    there = None if scene is None else scene_in_frame(scene, paths.radar, paths.frame.start_time)
-    if there is not None and len(there.meshes) != len(paths.scene.meshes):
-        raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
-                         f"got one with {len(there.meshes)}")
+    check_scene(scene, paths)
     radar = paths.radar
     shape = len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples
     cube = np.zeros(shape, complex)

@@ -106,15 +106,20 @@ def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate=
     window, zero_pad: of the maps; evaluate, retrace, keyframes: of the signals, as in `synthesize`
     Raises ValueError for another scene and for parts of another radar.
     """
-    there = None if scene is None else scene_in_frame(scene, paths.radar, paths.frame.start_time)
-    if there is not None and len(there.meshes) != len(paths.scene.meshes):
-        raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
-                         f"got one with {len(there.meshes)}")
+    check_scene(scene, paths)
     signals = Signals(paths, {"window": window, "zero_pad": zero_pad}, evaluate, retrace, keyframes)
     made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, signals)]
     cube = signals.whole()
     return ViewInput(paths, PartSet(whole_part(signals.map_of(cube)), made), signals, cube, title,
                      weather=_weather_of(scene, paths))
+
+
+def check_scene(scene, paths) -> None:
+    """Raises ValueError for a scene, unless it is None, that is not the one of the paths."""
+    there = paths.scene if scene is None else scene_in_frame(scene, paths.radar, paths.frame.start_time)
+    if len(there.meshes) != len(paths.scene.meshes):
+        raise ValueError(f"scene: must be the one that was traced, with {len(paths.scene.meshes)} meshes, "
+                         f"got one with {len(there.meshes)}")
 
 
 def whole_part(spectrum) -> Part:

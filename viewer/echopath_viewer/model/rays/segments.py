@@ -17,7 +17,7 @@ class Segments:
     rays: [N] index of the path of each ray; points: [V, 3] f32 m; ends: [S, 2] the two points of each segment
     ray: [S] row in `rays`; bounce: [S] 0 for the leg that leaves the transmitter
     mesh_id: [S] mesh of the hit that the segment leads to; the last leg has that of its last hit; -1: no hit
-    hits: [K] which of the points are hits; hit_mesh: [K] their meshes; hit_ray: [K] rows in `rays`
+    hits: [K] which of the points are hits; hit_mesh: [K] their meshes
     """
 
     rays: np.ndarray
@@ -28,7 +28,6 @@ class Segments:
     mesh_id: np.ndarray
     hits: np.ndarray
     hit_mesh: np.ndarray
-    hit_ray: np.ndarray
 
     @property
     def num_segments(self) -> int:
@@ -70,7 +69,7 @@ class RayBundle:
         mesh[hits] = hit_mesh
         mesh[last] = mesh[last - 1]
         self._joined = {"ends": np.stack([begin, begin + 1], axis=1), "ray": ray_of_point[begin], "bounce": order[begin],
-                        "mesh_id": mesh[begin + 1], "hits": hits, "hit_mesh": hit_mesh, "hit_ray": ray_of_point[hits]}
+                        "mesh_id": mesh[begin + 1], "hits": hits, "hit_mesh": hit_mesh}
 
     def at(self, time: float, transmitter, receiver) -> Segments:
         """The segments at a time in s; transmitter, receiver: [3] m in the world at that time. The last ones are kept."""

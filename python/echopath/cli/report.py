@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arguments.names import first_names
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
+from ..base.radar.velocities import folded
 from ..base.text.counts import counted, named
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
@@ -86,7 +87,7 @@ def folded_velocities(scene, radar, time: float) -> list[str]:
     limit = radar.waveform.max_velocity(radar.num_slots)
     found = bodies_faster_than(limit, scene, radar, time)
     lines = [line("  " + body.name, f"{'' if body.as_whole else 'up to '}{body.speed:+z.2f} m/s, "
-                  f"shown at {(body.speed + limit) % (2.0 * limit) - limit:+z.2f} m/s") for body in found[:MAX_LISTED]]
+                  f"shown at {folded(body.speed, 2.0 * limit):+z.2f} m/s") for body in found[:MAX_LISTED]]
     if not found:
         return []
     more = more_line(len(found), MAX_LISTED)
@@ -140,6 +141,12 @@ def mean_powers(frame) -> list[str]:
     return lines
 
 
+def _aligned(text: str) -> str:
+    """Levels below those of `powers`, words two columns in."""
+    level, unit, error = text.partition(" dBm")
+    return f"{level:>8}{unit}{error}" if "+-" in error else f"  {text}"
+
+
 def unresolved(found, paths, left_out=None) -> list[str]:
     """The last lines of a run: which echoes above the noise the rays do not know to 0.3 dB, and what would resolve them.
 
@@ -177,13 +184,6 @@ def unresolved_in_frames(found) -> list[str]:
                     for title, echoes in rows[:MAX_UNRESOLVED]])
     return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval) {made} that {'were' if len(found) > 1 else 'was'} made", *lines,
             *more_line(len(rows), MAX_UNRESOLVED, indent=2)]
-
-
-
-def _aligned(text: str) -> str:
-    """Levels below those of `powers`, words two columns in."""
-    level, unit, error = text.partition(" dBm")
-    return f"{level:>8}{unit}{error}" if "+-" in error else f"  {text}"
 
 
 def labels(of_partitions: dict) -> list[str]:

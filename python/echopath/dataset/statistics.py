@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arguments import part_names
 from ..detections.detections import Detections
 from ..paths.resolution import Interval
 from .classes import ClassName
+from .exports import are_echoes
 from .opened import Dataset, DatasetFrame
 
 MOST_FRAMES = 2000  # that are read, evenly spread
@@ -74,7 +74,7 @@ def _count(one: DatasetFrame, kinds: dict[str, ClassName], found: Statistics) ->
             found.ghosts[kinds.get(ghost.object, "static"), ghost.ghost_type] += ghost.cells
     detections = one.frame.detections
     if isinstance(detections, Detections):
-        no_echoes = np.where(detections.is_noise | np.isin(detections.part, part_names.BESIDE), detections.part, "")
+        no_echoes = np.where(are_echoes(detections), "", detections.part)
         for no_echo, name, ghost_type in zip(no_echoes, detections.object, detections.ghost_type):
             kind = kinds.get(str(name), "static")
             found.detections[str(no_echo) or (f"ghost of {kind}" if ghost_type else kind)] += 1

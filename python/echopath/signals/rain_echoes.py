@@ -56,7 +56,7 @@ def rain_paths(scene, radar: _core.Radar, *, start_time: float, seed: int, effec
     if not gains.any():
         return None
     points, volumes = _places(radar, transmitter, directions, gains, random)
-    seen = points[:, 2] > -math.inf
+    seen = np.ones(len(points), bool)
     for antenna in (transmitter, receiver):
         seen &= _core.are_clear(scene, time=middle, origin=antenna, points=points)
     if not seen.any():

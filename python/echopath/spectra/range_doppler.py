@@ -8,8 +8,8 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real, refused
 from ..arguments.settings import SignalSettings
-from ..receiver.noise_shape import noise_shape
 from ..transmit.code import is_coded, signal_shape
+from .noise_shape import noise_shape
 
 CfarMethod = Literal["ca", "os"]
 _CELLS = optional(count(0, LARGEST_COUNT))

@@ -10,7 +10,7 @@ from scipy.linalg import toeplitz
 import echopath as ep
 from echopath.bench.labels.false_alarms import NoiseMap, describe_false_alarms, measure_false_alarms
 from echopath.receiver.filters import beat_frequencies, length_of_past, response
-from echopath.receiver.noise_shape import noise_shape
+from echopath.spectra.noise_shape import noise_shape
 from support.radars import build_radar
 
 RATE_TOLERANCE = 0.1  # of the rate; a thousand false alarms scatter by 3 to 4 %

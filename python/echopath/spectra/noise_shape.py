@@ -6,9 +6,9 @@ from functools import lru_cache
 import numpy as np
 
 from .. import _core
-from ..spectra.windows import of_range, samples_of
-from .filters import beat_frequencies, has_filters, length_of_past, response
-from .imbalance import weights_of_imbalance
+from ..receiver.filters import beat_frequencies, has_filters, length_of_past, response
+from ..receiver.imbalance import weights_of_imbalance
+from .windows import of_range, samples_of
 
 _BLOCKS = 16       # of ranges; of the quarter of which filters leave least, the quietest tells the noise behind them
 _ROUNDING = 1e-12  # of the largest power, below which there is nothing but rounding

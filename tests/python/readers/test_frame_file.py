@@ -85,6 +85,26 @@ def test_a_mesh_of_several_nodes_is_written_once(saved):
         assert len(file["scene/motions"]) == 2
 
 
+def test_rates_of_a_smooth_curve_are_written_once_and_read_under_both_names(tmp_path):
+    rates = np.array([[0.0, 1.0, 0.0], [0.5, 0.0, 2.0], [0.0, 0.0, 0.0]])
+    jump = rates + [[0.0, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.0]]
+    scene = ep.Scene()
+    for name, after in (("smooth", rates), ("jumping", jump)):
+        curve = ep.Curve([0.0, 1.0, 2.0], np.cumsum(rates, axis=0), "hermite", in_tangents=rates, out_tangents=after)
+        scene.add(ep.actors.box(0.2), name=name, material="metal", motion=ep.CurveMotion(curve))
+    ep.trace(scene, build_radar(), num_rays=10).save(tmp_path / "paths.h5")
+    with h5py.File(tmp_path / "paths.h5") as file:
+        smooth, jumping = ({name: motion["translation"][name] for name in ("in_tangents", "out_tangents")}
+                           for _, motion in sorted(file["scene/motions"].items()))
+        for found, expected in ((smooth, rates), (jumping, jump)):
+            np.testing.assert_array_equal(found["in_tangents"], rates)
+            np.testing.assert_array_equal(found["out_tangents"], expected)
+        assert smooth["in_tangents"] == smooth["out_tangents"], "two arrays of the same numbers"
+        assert jumping["in_tangents"] != jumping["out_tangents"]
+    read = ep.Paths.load(tmp_path / "paths.h5").scene
+    assert [read[name].motion for name in ("smooth", "jumping")] == [scene[name].motion for name in ("smooth", "jumping")]
+
+
 def test_a_radar_read_back_is_the_same(frame, saved):
     radar, expected = ep.Paths.load(saved).radar, frame.radar
     assert (radar.transmit_power, radar.noise_figure_db, radar.multiplexing) == (0.02, 9.0, expected.multiplexing)

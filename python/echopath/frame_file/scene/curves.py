@@ -57,7 +57,10 @@ def _write_curve(group, curve) -> None:
     write_array(group, "values", curve.values)
     if curve.in_tangents is not None:
         write_array(group, "in_tangents", curve.in_tangents)
-        write_array(group, "out_tangents", curve.out_tangents)
+        if curve.out_tangents.tobytes() == curve.in_tangents.tobytes():  # a smooth curve, as most are: one array of two names
+            group["out_tangents"] = group["in_tangents"]
+        else:
+            write_array(group, "out_tangents", curve.out_tangents)
 
 
 def _read_curve(group):

@@ -105,7 +105,7 @@ from .scene.scene import Scene
 from .scene.sheets import SheetCoefficients, sheet_coefficients
 from .scene.traffic import Traffic, add_traffic
 from .scene_file import SceneFile, load_scene
-from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
+from .sensor_files import SensorConfig, load_radar, load_raw, load_sensor, save_raw
 from .sensor_files.antenna_patterns import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .signals.around_corners import synthesize_around_corners
@@ -148,8 +148,8 @@ __all__ = [
     "annotate_frame", "around_corners",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex",
     "detect", "detect_frame", "effects", "estimate_angles", "families", "find_objects", "first", "foreign_materials", "hits",
-    "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
-    "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",
+    "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",
+    "load_model", "load_radar", "load_raw", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",
     "mesh_from", "mie_rcs", "music", "noise_power", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots",
     "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
     "receive_parts",

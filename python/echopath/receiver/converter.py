@@ -25,9 +25,13 @@ def converted(cube: np.ndarray, waveform, adc: Adc):
     gain_db = _automatic_gain(branches, waveform, adc) if adc.automatic_gain else adc.gain_db
     step = step_of(waveform, adc, gain_db)
     codes = np.clip(np.rint(branches / step), -2 ** (adc.bits - 1), 2 ** (adc.bits - 1) - 1).astype(np.int16)
+    return cube_of(codes, step), codes, gain_db
+
+
+def cube_of(codes: np.ndarray, step: float) -> np.ndarray:
+    """What codes [..., 2 or 1] stand for in sqrt(W); step: of `step_of`"""
     values = codes * step
-    cube = values[..., 0] + (0j if waveform.real else 1j * values[..., 1])
-    return cube, codes, gain_db
+    return values[..., 0] + (0j if values.shape[-1] == 1 else 1j * values[..., 1])
 
 
 def step_of(waveform, adc: Adc, gain_db: float) -> float:

@@ -30,6 +30,7 @@ def good(tmp_path_factory) -> dict:
     paths, cube, spectrum, probe = frame.paths, frame.cube, frame.spectrum, ep.SignalProbe()
     ep.synthesize(paths, probe=probe)
     ep.save_frame(frame, folder / "frame.h5")
+    frame.save_raw(folder / "raw.bin")
     in_time = {"scene": scene, "radar": radar, "frames": 2, "interval": 0.1}
     ep.Sequence(**in_time, num_rays=200, guard=False).save(folder / "frames")
     (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
@@ -81,7 +82,7 @@ def good(tmp_path_factory) -> dict:
         "interference": {"radar": radar, "other": radar.replace(position=(9, 0, 0))},
         "interference_radar": {"radar": radar, "other": radar},
         "music": of_map | {"azimuth": [0.0, 0.1], "cells": [[0, 1]], "num_sources": 1}, "remove_clutter": {"cube": cube},
-        "save_raw": {"frames": frame, "path": folder / "saved.bin"},
+        "save_raw": {"frames": frame, "path": folder / "saved.bin"}, "load_raw": {"path": folder / "raw.bin", "radar": radar},
         "sheet_coefficients": {"material": ep.materials["glass_pane"], "frequency": 77e9, "incidence": 0.3},
         "simulate": {"scene": scene, "radar": radar, "num_rays": 200, "guard": False}, "synthesize": {"paths": paths},
         "trace": {"scene": scene, "radar": radar, "num_rays": 200},

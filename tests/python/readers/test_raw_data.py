@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.sensor_files import raw_bytes
+from echopath.transmit import signal_shape
 from support.scenes.sensor_text import CONFIGURATION, COUNT, INTERVAL
 
 
@@ -77,6 +79,55 @@ def test_four_lanes_are_those_that_ti_reads(written, tmp_path):
     codes = frame.received.codes.astype(float)
     np.testing.assert_array_equal(np.moveaxis(samples[:3], 2, 0), np.moveaxis(codes[..., 0] + 1j * codes[..., 1], 1, 1))
     assert not samples[3].any()
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_files_of_sensors_are_read_as_openradar_reads_them(written, tmp_path):
+    """Words without a pattern; of two frames, the second one."""
+    organize = pytest.importorskip("mmwave.dataloader").DCA1000.organize
+    words = np.random.default_rng(1).integers(-2 ** 15, 2 ** 15, 2 * 64 * 4 * COUNT * 2).astype("<i2")
+    words.tofile(tmp_path / "two.bin")
+    _, second = ep.load_raw(tmp_path / "two.bin", ep.load_radar(written()))
+    expected = organize(words[words.size // 2:].astype(float), 64, 4, COUNT).reshape(32, 2, 4, COUNT)  # [chirp, tx, rx, sample]
+    assert second.codes.shape == (2, 4, 32, COUNT, 2) and second.codes.dtype == np.int16
+    np.testing.assert_array_equal(second.codes @ [1, 1j], np.moveaxis(expected, 0, 2))
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("changes, board", [
+    ({}, None), ({"adcCfg": "adcCfg 0 0"}, None), ({"channelCfg": "channelCfg 7 5 0"}, "IWR1443"),
+    ({"channelCfg": "channelCfg 7 5 0", "adcCfg": "adcCfg 2 0"}, "IWR1443"),
+    ({"chirpCfg": "chirpCfg 0 1 0 0 0 0 0 5\nbpmCfg -1 1 0 1"}, None)])
+@pytest.mark.parametrize("q_first", [False, True])
+def test_what_is_written_is_read(written, tmp_path, changes, board, q_first):
+    """Two lanes, real samples of 12 bits, four lanes, real ones in these, and transmitters that send at once."""
+    radar = ep.load_radar(written(**changes), board)
+    radar = radar.replace(receiver=radar.receiver.replace(adc=radar.receiver.adc.replace(q_first=q_first)))
+    received = ep.receive(1e-3 * np.random.default_rng(1).normal(size=signal_shape(radar)), radar, seed=1)
+    (tmp_path / "one.bin").write_bytes(raw_bytes(received, radar))
+    read, = ep.load_raw(tmp_path / "one.bin", radar)
+    np.testing.assert_array_equal(read.codes, received.codes)
+    np.testing.assert_array_equal(read.cube, received.cube)
+    assert read.gain_db == received.gain_db and len(np.unique(read.codes)) > 100
+
+
+def test_twelve_bits_have_their_sign_also_where_the_word_has_not(written, tmp_path):
+    """0x801 is -2047 of 12 bits, as TI's readers count it."""
+    np.full(64 * 4 * COUNT * 2, 0x801, "<i2").tofile(tmp_path / "one.bin")
+    read, = ep.load_raw(tmp_path / "one.bin", ep.load_radar(written(adcCfg="adcCfg 0 1")))
+    assert np.all(read.codes == -2047)
+
+
+def test_files_that_hold_no_whole_number_of_frames_are_told(written, tmp_path):
+    radar, path, size = ep.load_radar(written()), tmp_path / "some.bin", 64 * 4 * COUNT * 4
+    path.write_bytes(bytes(size - 1))
+    with pytest.raises(ep.FileError, match=r"some.bin: must hold 131,072 bytes, a frame of that radar, got 131,071"):
+        ep.load_raw(path, radar)
+    path.write_bytes(bytes(2 * size + 3))
+    with pytest.warns(RuntimeWarning, match=r"ends within a frame: 3 of 131,072 bytes are left after 2 frames"):
+        assert len(list(ep.load_raw(path, radar))) == 2
+    with pytest.raises(ep.FileError, match=r"none.bin: cannot be read \(No such file"):
+        ep.load_raw(tmp_path / "none.bin", radar)
 
 
 def test_sensors_that_stream_by_themselves_may_have_q_first(written, tmp_path):

@@ -68,6 +68,13 @@ TEST(DiffuseLobe, LooksBackWhereItIsAsked) {
   EXPECT_NEAR(back / forward, 0.25 / 0.75, 1e-9);
 }
 
+// A lobe falls by the power of (1 + cos psi)/2 that its own exponent is.
+TEST(DiffuseLobe, FallsBesideTheWayBackByTheExponentOfThatSide) {
+  const DiffuseLobe lobe(lobed(3, 1.0, 20));
+  const Vec3 in = incoming(0.6), normal = Vec3::UnitZ(), beside = direction_at(0.6, 0.5);
+  EXPECT_NEAR(lobe({in, normal, beside}) / lobe({in, normal, -in}), std::pow(0.5 * (1.0 - in.dot(beside)), 20), kClosedForm);
+}
+
 TEST(DiffuseLobe, IsLambertsWithoutAnExponent) {
   const DiffuseLobe lobe(lobed(0));
   EXPECT_TRUE(lobe.is_lambert());
@@ -80,6 +87,8 @@ TEST(DiffuseLobe, TakesTheNormalOfEitherSide) {
   const Vec3 in = incoming(0.5), out = direction_at(0.4, 2.0);
   EXPECT_EQ(lobe({in, Vec3::UnitZ(), out}), lobe({in, -Vec3::UnitZ(), out}));
   EXPECT_EQ(lobe({in, Vec3::UnitZ(), direction_at(-0.4, 2.0)}), 0.0);
+  EXPECT_EQ(lobe.over_lambert({in, Vec3::UnitZ(), out}), lobe.over_lambert({in, -Vec3::UnitZ(), out}));
+  EXPECT_EQ(lobe.density_over_lambert({in, Vec3::UnitZ(), out}), lobe.density_over_lambert({in, -Vec3::UnitZ(), out}));
 }
 
 // Exchanging both ends changes the lobe by the ratio of the integrals at both angles of incidence.

@@ -52,6 +52,16 @@ TEST(EdgeDiffraction, FringeOnKellersConeIsThatOfUfimtsev) {
   }
 }
 
+// Where the waves of geometrical optics end, both poles of the coefficient cancel.
+TEST(EdgeDiffraction, IsSmoothAcrossTheBoundariesOfReflectionAndShadow) {
+  const double source = 0.5 * kPi, beside = 1e-3;
+  for (const double boundary : {kPi - source, kPi + source}) {
+    const auto at = [&](double off) { return fringe_matrix(wedge_of(kTwoPi), -across(source), across(boundary + off)); };
+    const Mat3 mean = 0.5 * (at(beside) + at(-beside));
+    for (const double off : {0.0, 1e-9, -1e-7}) EXPECT_LT((at(off) - mean).norm(), 1e-3 * mean.norm()) << boundary << off;
+  }
+}
+
 TEST(EdgeDiffraction, FlatWedgeHasNone) {
   const Wedge flat = wedge_of(kPi);
   for (const double source : {0.2, 1.0, 2.5}) {

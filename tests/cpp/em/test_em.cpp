@@ -4,6 +4,8 @@
 
 #include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
+#include "echopath/em/surface/backscatter.h"
+#include "echopath/em/surface/coherent_share.h"
 #include "echopath/em/surface/fresnel.h"
 #include "echopath/em/surface/surface_response.h"
 
@@ -36,6 +38,17 @@ TEST(Fresnel, BrewsterAngleHasNoTmReflection) {
   EXPECT_LT(std::abs(fresnel_tm(Complex(4.0, 0.0), cos_brewster)), kRounding);
 }
 
+// Total reflection, with the phases of Fresnel's rhomb (Born and Wolf, 1.5.4) for a wave that decays behind the surface.
+TEST(Fresnel, AThinnerMediumReflectsAllBeyondTheCriticalAngle) {
+  const double epsilon = 0.4, cosine = cos_deg(60.0), sine = std::sqrt(1.0 - cosine * cosine);
+  const double decay = std::sqrt(sine * sine - epsilon);
+  const Complex te = std::polar(1.0, 2.0 * std::atan(decay / cosine)),
+                tm = std::polar(1.0, 2.0 * std::atan(decay / (epsilon * cosine)));
+  EXPECT_LT(std::abs(fresnel_te(epsilon, cosine) - te), kRounding);
+  EXPECT_LT(std::abs(fresnel_tm(epsilon, cosine) - tm), kRounding);
+  EXPECT_EQ(fresnel_te(0.75, 0.5), 1.0);  // at that angle
+}
+
 TEST(Fresnel, NormalIncidenceModesAreOpposite) {
   EXPECT_LT(std::abs(fresnel_te(kEpsilon, 1.0) + fresnel_tm(kEpsilon, 1.0)), kRounding);
 }
@@ -61,6 +74,25 @@ TEST(Roughness, AmentPowerFactorMatchesReference) {
   EXPECT_NEAR(power(0.3e-3, 0), 0.392, kThreeDigits);
   EXPECT_NEAR(power(0.5e-3, 0), 0.074, kThreeDigits);
   EXPECT_NEAR(power(1e-3, 80), 0.730, kThreeDigits);
+  Material rough = Material::metal();
+  rough.roughness_height = 0.3e-3;
+  EXPECT_NEAR(coherent_share(rough, kSpeedOfLight / 77e9), 0.392, kThreeDigits);
+}
+
+TEST(Roughness, WhatIsNotScatteredKeepsItsPhase) {
+  Material scattering = Material::metal();
+  scattering.scattering = 0.6;
+  EXPECT_NEAR(coherent_share(scattering, 0.004), 0.64, kRounding);
+}
+
+// A white Lambert surface has 4 cos(incidence)^2 (Skolnik, Radar Handbook), less what it sends across the polarisation.
+TEST(Backscatter, WhiteSurfacesFollowLambertsLaw) {
+  Material white;
+  white.reflectivity = 1.0;
+  white.scattering = 1.0;
+  EXPECT_NEAR(backscatter_coefficient(white, 77e9, 0.7), 4.0 * 0.49, 1e-12);
+  white.cross_polarization = 0.25;
+  EXPECT_NEAR(backscatter_coefficient(white, 77e9, 0.7), 3.0 * 0.49, 1e-12);
 }
 
 TEST(SurfaceResponse, CoherentAndDiffusePowerAddUp) {

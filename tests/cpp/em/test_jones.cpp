@@ -95,6 +95,24 @@ TEST(Jones, AMirrorMayBeMetFromEitherSide) {
   }
 }
 
+// A rough mirror loses less at a slant, by Ament's exp(-2 (k sigma cos)^2).
+TEST(Jones, ARoughMirrorLosesLessAtASlant) {
+  Material metal = Material::metal();
+  metal.roughness_height = 0.4e-3;
+  const double cosine = 0.5, phase = kTwoPi * 77e9 / kSpeedOfLight * metal.roughness_height * cosine;
+  Vec3 direction(std::sqrt(0.75), 0.0, -cosine);
+  FieldVector field(0.0, 1.0, 0.0);
+  carry_over_mirror({&field, 1}, direction, Vec3::UnitZ(), SurfaceModel(metal, 77e9));
+  EXPECT_NEAR(field.norm(), std::exp(-2.0 * phase * phase), 1e-12);
+}
+
+// Rows are components, columns are launches.
+TEST(Jones, MatricesTakeLaunchesToComponents) {
+  const FieldVector x = Vec3::UnitX().cast<std::complex<double>>(), y = Vec3::UnitY().cast<std::complex<double>>();
+  const JonesMatrix matrix = components({FieldVector(y), FieldVector(3.0 * y)}, {x, y});
+  EXPECT_EQ(matrix, (JonesMatrix{0.0f, 0.0f, 1.0f, 3.0f}));
+}
+
 TEST(Jones, NothingRadiatesAlongItself) {
   std::mt19937 random(7);
   for (int i = 0; i < 50; ++i) {

@@ -117,6 +117,26 @@ TEST(LayerStack, AirChangesNothing) {
   }
 }
 
+// A thinner medium may lie at an angle beyond that of total reflection, where the ray has no way through.
+TEST(LayerStack, OffsetsOfLayersAddUp) {
+  const Layer slab{0.004, 6.25}, pane{0.002, 2.3}, thin{0.001, 0.5};
+  const auto offset = [](std::vector<Layer> layers) { return LayerStack(layers, kFrequency).offset(0.4); };
+  EXPECT_NEAR(offset({slab, pane}), offset({slab}) + offset({pane}), kRounding);
+  EXPECT_EQ(offset({thin}), 0.0);
+}
+
+TEST(LayerStack, TwoLayersOfAirChangeNothing) {
+  const LayerStack stack(std::vector<Layer>{{0.3, 1.0}, {0.2, 1.0}}, kFrequency);
+  EXPECT_LT(std::abs(stack.over_free_space(0.6).te - 1.0), kGrazingRounding);
+}
+
+TEST(LayerStack, AWaveAlongTheFacesEntersNothing) {
+  const LayerStack stack(std::vector<Layer>{{0.3, 1.0}}, kFrequency);
+  EXPECT_EQ(stack.reflection(0.0).te, -1.0);
+  EXPECT_EQ(stack.reflection(0.0).tm, -1.0);
+  EXPECT_EQ(stack.transmission(0.0).tm, 0.0);
+}
+
 TEST(LayerStack, ThickMetalReflectsAllAndPassesNothing) {
   const LayerStack stack(std::vector<Layer>{{1.0, 1.0, 1e7}}, kFrequency);
   EXPECT_NEAR(std::abs(stack.reflection(0.7).te), 1.0, 1e-3);  // skin depth .6 um
@@ -164,6 +184,30 @@ TEST(SheetModel, DelayIsThatOfTheSlowerWave) {
   EXPECT_NEAR(passage.te_delay, 0.005, 0.002);
 }
 
+// By the slope of the phase of Airy's formula, whose wavenumber is moved here by the thickness.
+TEST(SheetModel, EachModeHasItsOwnDelay) {
+  const double cosine = 0.3, step = 1e-5;
+  Material sheet;
+  sheet.layers = {{0.003, 4.0}};
+  const auto slope = [&](bool is_te) {
+    const auto passed = [&](double factor) {
+      const double thickness = 0.003 * factor;
+      return airy({thickness, 4.0}, cosine, is_te).transmission * std::polar(1.0, kWavenumber * thickness * cosine);
+    };
+    return -std::arg(passed(1.0 + step) * std::conj(passed(1.0 - step))) / (2.0 * step * kWavenumber);
+  };
+  const SheetPassage passage = SheetModel(sheet, kFrequency).passage(cosine);
+  EXPECT_NEAR(passage.te_delay, slope(true), kDifference);
+  EXPECT_NEAR(passage.tm_delay, slope(false), kDifference);
+  EXPECT_GT(std::abs(passage.te_delay - passage.tm_delay), 100.0 * kDifference);
+}
+
+// The group delay of a wave of both modes is the mean of their delays, each as strong as its power.
+TEST(SheetModel, DelaysCountByThePowerThatPasses) {
+  const SheetPassage passage{0.5, 1.0, 0.002, 0.006, 0.0};
+  EXPECT_NEAR(sheet_factor(passage, 0.5).delay, (0.25 * 0.002 + 1.0 * 0.006) / 1.25, kRounding);
+}
+
 TEST(SheetTable, AgreesWithTheModelBetweenItsRows) {
   Material sheet;
   sheet.layers = {{0.0125, Complex(2.7, -0.1)}, {0.075, 1.0}, {0.0125, Complex(2.7, -0.1)}};  // the walls of a room
@@ -184,7 +228,13 @@ TEST(SheetModel, SharesOfModesFollowThePolarisation) {
   EXPECT_NEAR(te_share(Vec3::UnitZ(), steep, normal), 0.0, kRounding);
   EXPECT_NEAR(te_share(Vec3(0.0, 1.0, 1.0), Vec3(0.8, 0.36, 0.48), normal),
               te_share(Vec3(0.0, -1.0, -1.0), Vec3(0.8, 0.36, 0.48), normal), kRounding);
+  // Malus's law; what lies along the direction does not count, and a field all along it has no mode.
+  const Vec3 te = steep.cross(normal).normalized(), tm = te.cross(steep);
+  EXPECT_NEAR(te_share(std::cos(0.7) * te + std::sin(0.7) * tm + 2.0 * steep, steep, normal), std::pow(std::cos(0.7), 2),
+              kRounding);
+  EXPECT_EQ(te_share(steep + 1e-8 * tm, steep, normal), 1.0);
   EXPECT_EQ(te_share(Vec3::UnitZ(), normal, normal), 1.0);
+  EXPECT_EQ(te_share(Vec3::UnitZ(), Vec3(1.0, 0.0, 1e-10), normal), 1.0);
 }
 
 TEST(SurfaceModel, SheetsReflectAsTheirLayersFromEitherSide) {
@@ -194,6 +244,8 @@ TEST(SurfaceModel, SheetsReflectAsTheirLayersFromEitherSide) {
   std::vector<Layer> reversed = kStack;
   std::reverse(reversed.begin(), reversed.end());
   expect_near(front.respond(0.6, PolarizationMode::kTe).gamma, LayerStack(kStack, kFrequency).reflection(0.6).te);
+  EXPECT_NEAR(front.respond(0.6, PolarizationMode::kTe).facet, std::abs(by_matrices(kStack, 1.0, true).reflection),
+              kRounding);
   expect_near(back.respond(0.6, PolarizationMode::kTm).gamma, LayerStack(reversed, kFrequency).reflection(0.6).tm);
 }
 

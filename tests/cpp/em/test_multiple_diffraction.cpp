@@ -36,7 +36,7 @@ Complex sent(std::span<const DiffractingEdge> edges, double source, double at, d
 
 // By its integral along the line from sqrt(x) on, turned into one of e^{-s}.
 TEST(MultipleDiffraction, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
-  for (const double x : {0.0, 1e-3, 0.1, 1.0, 1.99, 2.01, 3.0, 10.0, 100.0}) {
+  for (const double x : {0.0, 1e-3, 0.1, 1.0, 1.99, 2.01, 3.0, 10.0, 20.1, 100.0}) {
     Complex sum = 0.0;  // int_0^inf e^{-s} / (2 sqrt(x - js)) ds, after t^2 = x - js
     const int count = 400000;
     for (int i = 0; i < count; ++i) {
@@ -58,6 +58,96 @@ TEST(MultipleDiffraction, AStripHasKellersDoubleDiffraction) {
       EXPECT_NEAR(std::abs(sent(edges, source, at, kWidth)), expected, 0.01 * expected) << source << " " << at;
     }
   }
+}
+
+// Keller 1962, for a magnetic field along the edge of a wedge, over e^{-j pi/4}/sqrt(2 pi k).
+double keller(double exterior, double source, double at) {
+  const double n = exterior / kPi, boundary = std::cos(kPi / n);
+  return std::sin(kPi / n) / n *
+         (1.0 / (boundary - std::cos((at - source) / n)) + 1.0 / (boundary - std::cos((at + source) / n)));
+}
+
+// A wave that has run to the far edge and back leaves the near one as another wave along the strip, weaker by the spread of
+// one more cylindrical wave.
+TEST(MultipleDiffraction, AWaveThatRunsToAndFroSpreadsOnceMore) {
+  constexpr double kWidth = 20.0;
+  const auto edges = strip(kWidth);
+  const std::array<DiffractingEdge, 3> to_and_fro = {edges[0], edges[1], edges[0]};
+  const double source = 1.2, at = 2.0;
+  const double expected = 4.0 / (std::cos(0.5 * source) * std::cos(0.5 * at)) / std::sqrt(kTwoPi * kWavenumber * kWidth);
+  EXPECT_NEAR(std::abs(sent(to_and_fro, source, at, kWidth)), expected, 0.01 * expected);
+}
+
+// Around two corners of a box: each edge makes a cylindrical wave, and on a face a wave is half of one from afar.
+TEST(MultipleDiffraction, ABoxHasKellersWaveAroundItsCorners) {
+  const double top = 20.0, side = 30.0, corner = 1.5 * kPi, source = 1.0;
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
+  const std::array<DiffractingEdge, 3> edges = {DiffractingEdge{{{{x, y}, {-y, -x}}, corner}, Vec3::Zero()},
+                                                DiffractingEdge{{{{-x, y}, {-y, x}}, corner}, top * x},
+                                                DiffractingEdge{{{{y, x}, {-x, -y}}, corner}, top * x - side * y}};
+  const MultipleDiffraction multiple = *MultipleDiffraction::over(edges, kWavenumber);
+  const Vec3 in = -across(source);
+  const FieldVector electric = Vec3::UnitZ().cross(-in).cast<Complex>();
+  const auto spread = [](double length) { return std::polar(1.0 / std::sqrt(kTwoPi * kWavenumber * length), -0.25 * kPi); };
+  const Complex expected = keller(corner, source, 0.0) * spread(top) * 0.5 * keller(corner, 0.0, corner) * spread(side);
+  const Complex found = multiple.enter(in, electric, 1e9);
+  EXPECT_LT(std::min(std::abs(found - expected), std::abs(found + expected)), 0.01 * std::abs(expected));
+  EXPECT_DOUBLE_EQ(multiple.length(), top + side);
+  // From an antenna as far before the first edge as all of the way behind it, the wave of a sphere has spread twice as far.
+  EXPECT_NEAR(std::abs(multiple.enter(in, electric, top + side)), std::sqrt(0.5) * std::abs(expected),
+              0.01 * std::abs(expected));
+  const Vec3 out = across(-0.3);
+  const FieldVector left = field_of_grazing_wave(edges[2].wedge, 0, -y, out).cast<Complex>();
+  EXPECT_LT((multiple.leave(out, 1e9) - 0.5 * left).norm(), 0.01 * left.norm());
+}
+
+// The sides of a sheet are two faces only where it ends at both edges.
+TEST(MultipleDiffraction, ASheetThatABoxEndsCarriesHalfAWave) {
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), out = across(0.3);
+  auto edges = strip(20.0);
+  edges[1].wedge = {{{-x, y}, {-y, x}}, 1.5 * kPi};
+  const FieldVector left = field_of_grazing_wave(edges[1].wedge, 0, x, out).cast<Complex>();
+  EXPECT_LT((MultipleDiffraction::over(edges, kWavenumber)->leave(out, 1e9) - 0.5 * left).norm(), 0.01 * left.norm());
+}
+
+TEST(MultipleDiffraction, OneEdgeTurnsThePhaseByAnEighth) {
+  const auto edges = strip(20.0);
+  const Vec3 in = -across(1.2);
+  const FieldVector electric = Vec3::UnitZ().cross(-in).cast<Complex>();
+  const Complex found = MultipleDiffraction::over(edges, kWavenumber)->enter(in, electric, 1e9);
+  EXPECT_NEAR(std::arg(found * found), -0.5 * kPi, 0.01);
+}
+
+// Both ways over a gentle ridge, whose far face lies nearly in the direction of the wave on the near one.
+TEST(MultipleDiffraction, IsReciprocalOverARidge) {
+  const double slope = 0.05, near = 0.2, far = 0.7;
+  const Vec3 left = across(kPi + slope), right = across(-slope), over_left = across(0.5 * kPi + slope),
+             over_right = across(0.5 * kPi - slope);
+  const std::array<DiffractingEdge, 3> edges = {
+      DiffractingEdge{{{{-left, over_left}, {-left, -over_left}}, kTwoPi}, near * left},
+      DiffractingEdge{{{{right, over_right}, {left, over_left}}, kPi + 2.0 * slope}, Vec3::Zero()},
+      DiffractingEdge{{{{-right, over_right}, {-right, -over_right}}, kTwoPi}, far * right}};
+  const std::array<DiffractingEdge, 3> back = {edges[2], edges[1], edges[0]};
+  const Complex there = sent(edges, 2.0, 0.9, near);
+  EXPECT_LT(std::abs(there - sent(back, 0.9, 2.0, near)), 1e-6 * std::abs(there));
+}
+
+TEST(MultipleDiffraction, DoesNotDependOnTheOrderOfAnEdgesFaces) {
+  const auto edges = strip(0.3);
+  auto turned = edges;
+  std::swap(turned[0].wedge.faces[0], turned[0].wedge.faces[1]);
+  EXPECT_LT(std::abs(sent(edges, 1.2, 2.0, 0.3) - sent(turned, 1.2, 2.0, 0.3)), 1e-12);
+}
+
+// Between two edges in one plane the waves run side by side.
+TEST(MultipleDiffraction, PiecesReachAsWideOnASlantedEdge) {
+  auto edges = strip(0.3);
+  const double slant = 0.4;
+  const Vec3 inward(-std::cos(slant), 0.0, std::sin(slant)), y = Vec3::UnitY();
+  edges[1].wedge.faces[0] = {inward, y};
+  edges[1].wedge.faces[1] = {inward, -y};
+  const Vec3 piece = MultipleDiffraction::over(edges, kWavenumber)->last_piece(0.01 * Vec3::UnitZ());
+  EXPECT_LT((piece - 0.01 * Vec3(std::tan(slant), 0.0, 1.0)).norm(), 1e-12);
 }
 
 // The way back of a wave from another direction is the same.
@@ -98,6 +188,10 @@ TEST(MultipleDiffraction, SeenAlongItselfAnEdgeSendsAsMuchAsTheWave) {
   const MultipleDiffraction multiple = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 in = -across(kPi - 1e-6), electric = Vec3::UnitZ().cross(-in);
   EXPECT_NEAR(std::abs(multiple.enter(in, electric.cast<Complex>(), 1e9)), 1.0, 0.01);
+  const Vec3 beside = -across(kPi - 1e-3);
+  EXPECT_LT(std::abs(multiple.enter(in, electric.cast<Complex>(), 1e9) -
+                     multiple.enter(beside, Vec3::UnitZ().cross(-beside).cast<Complex>(), 1e9)),
+            0.05);
 }
 
 // Against the shortest way over the edge by search.
@@ -114,10 +208,27 @@ TEST(MultipleDiffraction, DetourIsThatOfTheShortestWay) {
   EXPECT_NEAR(multiple.detour(-antenna.normalized(), antenna.norm()), shortest - direct, 0.01 * (direct - shortest));
 }
 
+TEST(MultipleDiffraction, DetourOfALongerSequenceIsThatOfItsWholeWay) {
+  const auto edges = strip(0.5);
+  const std::array<DiffractingEdge, 3> to_and_fro = {edges[0], edges[1], edges[0]};
+  const auto long_edges = strip(1.0);
+  const Vec3 antenna(-3.0, 2.0, 0.05), in = -antenna.normalized();
+  EXPECT_DOUBLE_EQ(MultipleDiffraction::over(to_and_fro, kWavenumber)->detour(in, antenna.norm()),
+                   MultipleDiffraction::over(long_edges, kWavenumber)->detour(in, antenna.norm()));
+}
+
 TEST(MultipleDiffraction, NeedsAFaceBetweenTheEdges) {
   auto edges = strip(0.5);
   edges[1].point += 0.1 * Vec3::UnitY();
   EXPECT_FALSE(MultipleDiffraction::over(edges, kWavenumber).has_value());
+  edges = strip(0.5);
+  std::swap(edges[0].wedge, edges[1].wedge);
+  EXPECT_FALSE(MultipleDiffraction::over(edges, kWavenumber).has_value());
+  for (const size_t beyond : {0, 1}) {  // the face of one edge reaches to the other one, whose own goes on from there
+    edges = strip(0.5);
+    edges[beyond].wedge = edges[1 - beyond].wedge;
+    EXPECT_FALSE(MultipleDiffraction::over(edges, kWavenumber).has_value());
+  }
   edges = strip(0.5);
   std::swap(edges[0].point, edges[1].point);
   EXPECT_FALSE(MultipleDiffraction::over(edges, kWavenumber).has_value());

@@ -235,9 +235,10 @@ def _describe_interferers(scene, radar, start_time: float) -> list[str]:
         difference = abs(waveform.slope - radar.waveform.slope)
         longest = min(waveform.chirp_duration, radar.waveform.chirp_duration)
         crossing = min(longest, radar.waveform.sampling_rate / difference) if difference > 0.0 else longest
+        pause = "" if one.interval is None else f", a frame each {one.interval * 1e3:g} ms"
         found += report.wrapped(f"interferers[{index}]", f"{place}; {waveform.start_frequency / 1e9:g} GHz + "
                                 f"{waveform.bandwidth / 1e9:g} GHz in {waveform.chirp_duration * 1e6:.4g} us, every "
-                                f"{waveform.chirp_interval * 1e6:g} us: crossings of at most {crossing * 1e6:.3g} us")
+                                f"{waveform.chirp_interval * 1e6:g} us{pause}: crossings of at most {crossing * 1e6:.3g} us")
     return found
 
 

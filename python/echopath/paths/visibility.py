@@ -6,7 +6,7 @@ import weakref
 
 from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
-from ..arguments.motions import require_motion
+from ..arguments.frame_times import require_motion
 from ..arguments.objects import Objects, named_globs, objects_rule
 from ..base.classes.made_by import made_by
 from ..base.numerics.golden import golden_place

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import an, checked, optional, real
-from ..arguments.motions import require_motion
+from ..arguments.frame_times import require_motion
 from .boxes import box_of
 from .large_planes import VEHICLE_LENGTH, large_planes
 from .scene import Scene

@@ -7,6 +7,7 @@ from typing import ClassVar, Literal
 
 from .. import _core
 from ..arguments.checks import Rule, an, array, one_of, optional, real, refused
+from ..arguments.frame_times import require_room
 from ..arguments.settings import Settings, settings_class
 from ..base.text.counts import counted
 from .node import ALWAYS
@@ -27,8 +28,9 @@ class Interferer(Settings):
 
     radar: that sends: its waveform, code, power, transmitters with their errors and that of its frequency (`Receiver`), place in
         m and motion count. Its motion covers the frames, and the direct way is at least a wavelength long
-    offset: s, by which its frames begin later than at time 0; they follow each other without a pause. A chirp is heard while
-        its frequency is within the band of that of the radar; frames warn of a radar that never is
+    offset: s, by which its frames begin later than at time 0; interval: s, from one of them to the next, at least the duration
+        of a frame; None: they follow each other without a pause. A chirp is heard while its frequency is within the band of that
+        of the radar; frames in which it sends warn of a radar that never is
     over: "both" the direct way, where nothing stands in it, and the paths of the scene; "direct" or "paths" alone
     lifetime: (begin, end) in s, either of which may be infinite: frames that do not lie wholly between them are without it, as
         those without the vehicle that carries it (`Trajectory.lifetime`); None: it sends in all
@@ -37,11 +39,18 @@ class Interferer(Settings):
 
     radar: _core.Radar
     offset: float = 0.0
+    interval: float | None = None
     over: Over = "both"
     lifetime: tuple[float, float] | None = None
 
-    RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"), "over": one_of(Over),
+    RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"),
+                                           "interval": optional(real(unit="s")), "over": one_of(Over),
                                            "lifetime": optional(_lifetime)}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.interval is not None:
+            require_room("interval", self.radar, self.interval)
 
 
 def interferers_rule(argument: str, value) -> tuple[Interferer, ...]:

@@ -213,8 +213,9 @@ def _build_interferers(settings: SceneTable, folder: Path, trajectories: Traject
     for index, table in enumerate(settings.interferers):
         radar = _build_radar(table, folder, trajectories, f"interferers[{index}]")
         carried = _trajectory(table, trajectories, f"interferers[{index}]")
-        found.append(Interferer(radar=radar, offset=table.offset, over=table.over,
-                                lifetime=None if carried is None else carried.lifetime))
+        with blamed(f"interferers[{index}]"):
+            found.append(Interferer(radar=radar, offset=table.offset, interval=table.interval, over=table.over,
+                                    lifetime=None if carried is None else carried.lifetime))
     return found
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, anything, checked, count, flag, one_of, path as path_rule, real, refused
 from ..arguments.effects import Choices
-from ..arguments.motions import require_motion
+from ..arguments.frame_times import require_motion, require_room
 from ..arguments.settings import (
     Edges,
     Evaluate,
@@ -54,8 +54,6 @@ from .row import Row
 from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
 from .stored import LONGEST, StoredSequence
 from .unused_memory import MemoryOfFrames, give_back_memory
-
-_ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
 
 
 class Sequence(Row[Frame]):
@@ -260,8 +258,7 @@ def _name_of(place: int) -> str:
 def _checked_end(scene, radar, start_time: float, frames: int, interval: float) -> float:
     """The end of the last frame in s. Raises ValueError naming the argument where frames overlap or leave the motions: before the
     long work."""
-    if interval < radar.frame_duration * (1.0 - _ROUNDING):
-        raise refused(ValueError, "interval", f"at least {radar.frame_duration:.9g} s, the duration of a frame", interval)
+    require_room("interval", radar, interval)
     end = start_time_of(start_time, interval, frames - 1) + radar.frame_duration
     if not math.isfinite(end):
         raise refused(ValueError, "interval", f"a number of s that gives {frames} frames finite times", interval)

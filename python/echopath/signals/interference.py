@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import an, checked, optional, real
-from ..arguments.motions import require_motion
+from ..arguments.frame_times import require_motion, require_room
 from ..arguments.settings import Polarization, Replay, SignalSettings, TraceSettings
 from ..base.radar.chirps import chirps_duration
 from ..receiver.chain import transmitted_code
@@ -20,9 +20,10 @@ from .interference_ways import Ways, require_own_channels
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"),
-         replay=SignalSettings.RULES["replay"], polarization=TraceSettings.RULES["polarization"])
+         interval=optional(real(unit="s")), replay=SignalSettings.RULES["replay"],
+         polarization=TraceSettings.RULES["polarization"])
 def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | None = None, *, start_time: float = 0.0,
-                 offset: float = 0.0, replay: Replay = SignalSettings.replay,
+                 offset: float = 0.0, interval: float | None = None, replay: Replay = SignalSettings.replay,
                  polarization: Polarization = TraceSettings.polarization) -> NDArray[np.complex128]:
     """The signal of another FMCW radar in the receivers of a radar [tx, rx, chirp, sample], to be added to its own.
 
@@ -39,6 +40,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
         1024 drawn by the seed of the trace, which have the power of all of them; None: the direct way alone. A trace has no
         direct way: the two signals add up
     start_time: s, first sample of the frame; offset: s, by which frames of the other radar begin later than at time 0
+    interval: s, from one of its frames to the next, at least the duration of a frame; None: they follow without a pause
     replay: of those paths, as in `synthesize`; polarization: of the direct way, that of paths is that of their trace: "scalar":
         all antennas count as co-polarised; "auto": by the size of what they share; "jones": with its sign, to be added to paths
         of such a trace
@@ -52,16 +54,17 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     for argument, one in (("radar", radar), ("other", other)):
         require_motion(argument, one, (start_time, start_time + radar.frame_duration))
     require_own_channels("other", other)
+    period = frame_period(other, interval)
     ways, codes = Ways(radar, other, paths, start_time + begins, replay, polarization), transmitted_code(other)
     # Of whole frames of the other radar nothing is left: beside hours the phase of a chirp would be lost to rounding.
-    begins += np.fmod(start_time, chirps_duration(other)) - np.fmod(offset, chirps_duration(other))
+    begins += np.fmod(start_time, period) - np.fmod(offset, period)
     bends = _frequency_error(other)[2:]
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     edge = EDGE / waveform.sampling_rate
     for place, begin in enumerate(begins):
         delay, amplitude = ways.of(place)
         fine = np.zeros((num_rx, FINE * (waveform.num_samples + 2 * EDGE)), complex)
-        for slot in _slots_under_way(other, codes, begin - edge, waveform.chirp_duration + 2.0 * edge,
+        for slot in _slots_under_way(other, codes, period, begin - edge, waveform.chirp_duration + 2.0 * edge,
                                      np.max(delay, initial=0.0)):
             pair = Chirps(waveform, *_chirp(waveform, place), *_sent_chirp(other, slot.index), other.waveform.chirp_duration,
                           begin - slot.begin, bends)
@@ -82,14 +85,21 @@ class _Slot(NamedTuple):
     transmitters: list
 
 
-def _slots_under_way(other, codes, begin: float, duration: float, delay: float) -> Iterator[_Slot]:
+def frame_period(other, interval: float | None) -> float:
+    """s, from frame to frame of a radar that sends over and over. Raises ValueError naming the interval, as `interference`."""
+    if interval is None:
+        return chirps_duration(other)
+    require_room("interval", other, interval)
+    return interval
+
+
+def _slots_under_way(other, codes, period: float, begin: float, duration: float, delay: float) -> Iterator[_Slot]:
     """The chirps that may be heard from `begin` on (s, of its own time) for a duration, over ways of a delay (s) or less.
 
-    codes: `transmitted_code` of the other radar
+    codes: `transmitted_code` of the other radar; period: s, from frame to frame of it
     """
     longest = delay + other.waveform.chirp_duration
     starts = np.array([other.waveform.slot_start(slot) for slot in range(codes.shape[1])])
-    period = chirps_duration(other)
     for frame in range(int(np.floor((begin - longest) / period)), int(np.floor((begin + duration) / period)) + 1):
         for slot in np.flatnonzero((frame * period + starts > begin - longest) & (frame * period + starts < begin + duration)):
             senders = np.flatnonzero(codes[:, slot])

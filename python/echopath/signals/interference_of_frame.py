@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.effects import INTERFERENCE, Choices, is_on
-from ..arguments.motions import require_motion
+from ..arguments.frame_times import require_motion
 from ..arguments.settings import TraceSettings
 from ..base.process.callers import warn_user
 from ..base.radar.antennas import polarization_of
@@ -16,7 +16,7 @@ from ..scene.sheets import passed_field
 from ..tracing.traces import trace
 from ..transmit import signal_shape
 from ..weather.weather import attenuation_of
-from .interference import interference
+from .interference import frame_period, interference
 from .interference_paths import powers_over_looks
 from .interference_ways import antennas_see_each_other, interference_radar, require_apart, require_own_channels
 
@@ -71,15 +71,22 @@ def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, replay
     begin = settings.start_time
     for index, one in interferers_within(scene, begin, begin + radar.frame_duration):
         ways = _ways_of(scene, radar, one, settings, replay, progress)
-        if not any(way.any() for way in ways):
+        if not any(way.any() for way in ways) and _sends_within(one, begin, begin + radar.frame_duration):
             _warn_of_silence(index, has_ways=bool(ways))
         cube += sum(ways)
     return cube
 
 
+def _sends_within(one, begin: float, end: float) -> bool:
+    """Whether a frame of an Interferer falls into a time from begin to end in s, or into a part of it: else that is its pause."""
+    period = frame_period(one.radar, one.interval)
+    into = (begin - one.offset) % period  # s, since one of its frames began
+    return into < one.radar.frame_duration or into + end - begin > period
+
+
 def _ways_of(scene, radar, one, settings: TraceSettings, replay: str, progress) -> list:
     """Signals of an Interferer in sqrt(W) over the direct way and over the paths of the scene, without those that it has not."""
-    timing, ways = {"start_time": settings.start_time, "offset": one.offset}, []
+    timing, ways = {"start_time": settings.start_time, "offset": one.offset, "interval": one.interval}, []
     paths = None if one.over == "direct" else _one_way_paths(scene, radar, one.radar, settings, progress)
     # Beside fields of paths that are vectors the direct one has its sign, too; scalar ones have none of the antennas.
     follows = settings.polarization == "auto" and paths is not None and paths.frame.polarization == "jones"

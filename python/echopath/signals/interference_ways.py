@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import an, checked, real, refused
-from ..arguments.motions import require_motion
+from ..arguments.frame_times import require_motion
 from ..base.numerics.rotations import matrices, product, quaternions
 from ..base.radar.antennas import polarization_across
 from ..receiver.channels import require_channels

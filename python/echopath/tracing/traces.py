@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import ArrayLike, Progress, array, carrier, checked, flag, one_of, optional, positive, real, shown
 from ..arguments.effects import Choices
-from ..arguments.motions import require_frame
+from ..arguments.frame_times import require_frame
 from ..arguments.number_rules import HIGHEST_FREQUENCY
 from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sampler, Scatterers, TraceSettings, settings_among
 from ..cavities.cavity import Cavity

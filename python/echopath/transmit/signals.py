@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from .. import _core
-from ..arguments.motions import require_frame
+from ..arguments.frame_times import require_frame
 from .code import code_of, code_signal, is_coded, num_frame_slots, slots_radar
 
 STEPS = "frequency_steps", "bandwidth_steps"

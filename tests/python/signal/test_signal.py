@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.signals import measures
 from echopath import _core
+from echopath.signals import measures
 
 C = 299792458.0
 METHODS = ("direct", "recurrence", "nufft")

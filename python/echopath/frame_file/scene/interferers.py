@@ -17,6 +17,8 @@ def write_interferers(file, scene) -> None:
         group = folder.create_group(str(index))
         write_radar(group.create_group("radar"), one.radar)
         write_attribute(group, "offset", one.offset)
+        if one.interval is not None:
+            write_attribute(group, "interval", one.interval)
         write_attribute(group, "over", one.over)
         for name, time in zip(_LIFETIME, one.lifetime or ()):
             write_attribute(group, name, time)
@@ -33,5 +35,6 @@ def read_interferers(file) -> tuple[Interferer, ...]:
 @blames_group
 def _one(group) -> Interferer:
     lifetime = tuple(read_attribute(group, name, float) for name in _LIFETIME if name in group.attrs)
+    interval = read_attribute(group, "interval", float) if "interval" in group.attrs else None
     return Interferer(radar=read_radar(read_group(group, "radar")), offset=read_attribute(group, "offset", float),
-                      over=read_attribute(group, "over", str), lifetime=lifetime or None)
+                      interval=interval, over=read_attribute(group, "over", str), lifetime=lifetime or None)

@@ -109,6 +109,7 @@ class InterfererTable(RadarTable):
     """A radar that sends: its receivers, where it has none, are its transmitters."""
 
     offset: Number = Field(0.0, description="s, by which its frames begin later than at time 0")
+    interval: Number | None = Field(None, description="s, from frame to frame; none: they follow without a pause")
     outside: Outside | None = Field(None, description="of the file of its trajectory: it \"stands\" or is absent; none: absent")
     over: Over = Field("both", description="the direct way, the paths of the scene, or both")
 

@@ -138,6 +138,28 @@ def test_chirps_of_later_hours_have_one_phase_as_those_of_the_first(start):
     np.testing.assert_allclose(steady, np.broadcast_to(steady[0], steady.shape), atol=1e-5 * np.abs(steady).max())
 
 
+@pytest.mark.parametrize("late, sent", [(-1e-3, []), (0.72e-3, range(4)), (2.2e-3, range(5, 16))])
+def test_frames_with_pauses_are_each_as_the_first_one(late, sent):
+    """late: s, by which the frame of this radar begins after one of the other: 16 chirps of 60 us each 2.5 ms; sent: those of
+    the radar's chirps in which the other one sends."""
+    sender = other(num_chirps=16, chirp_interval=60e-6)
+    cubes = [ep.interference(victim(num_chirps=16, chirp_interval=60e-6), sender, start_time=place * 2.5e-3 + late,
+                             interval=2.5e-3)[0, 0] for place in (0, 1, 40)]
+    for cube in cubes[1:]:
+        # Rounding of .1 s, 7e-18 s, is 3e-6 of a radian at 77 GHz.
+        np.testing.assert_allclose(cube, cubes[0], atol=1e-5 * np.abs(cubes[0]).max())
+    assert np.flatnonzero(cubes[0].any(axis=1)).tolist() == list(sent)
+
+
+def test_frames_need_room_within_their_interval():
+    sender = other(num_chirps=16)
+    for call in (lambda interval: ep.interference(victim(), sender, interval=interval),
+                 lambda interval: ep.Interferer(radar=sender, interval=interval)):
+        call(sender.frame_duration)
+        with pytest.raises(ValueError, match="interval: must be at least .* s, the duration of a frame, got 0.0001"):
+            call(1e-4)
+
+
 def test_patterns_and_motion_of_both_count():
     pattern = ep.CosinePower(2.0)
     receiver = victim(receivers=[ep.Antenna(yaw=0.5, pattern=pattern)])

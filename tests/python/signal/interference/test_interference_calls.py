@@ -98,12 +98,21 @@ def test_motions_need_cover_no_more_than_the_frame():
      r"^interferers\[0\]: is never heard in the frame: no way leads from it"),
     ([direct(position=(-5, 0, 0), yaw=np.pi, transmitters=[ep.Antenna(pattern=ep.CosinePower(2))])],  # looks away
      r"^interferers\[0\]: is never heard in the frame: no way leads from it to the radar on which the antennas of both"),
+    ([ep.Interferer(radar=RADAR.replace(position=(16, 6, 0)), over="direct", interval=1.0)],  # behind the ball, in no pause
+     r"^interferers\[0\]: is never heard in the frame: no way leads from it"),
 ])
 def test_a_radar_that_is_never_heard_is_named(others, told):
     with pytest.warns(RuntimeWarning, match=told) as warned:
         frame_of(*others)
     assert len([one for one in warned if "never heard" in str(one.message)]) == 1
     assert warned[0].filename == __file__
+
+
+def test_a_radar_in_its_pause_is_no_mistake(recwarn):
+    one = direct().replace(interval=1.0, offset=0.5)
+    assert not frame_of(one).interference_cube.any()
+    assert frame_of(one, start_time=4.5).interference_cube.any()
+    assert not [warned for warned in recwarn if "never heard" in str(warned.message)]
 
 
 @pytest.mark.parametrize("key, outside, lifetime", [

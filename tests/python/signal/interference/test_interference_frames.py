@@ -241,7 +241,7 @@ def test_errors_of_shares_know_what_no_path_makes():
 
 def test_sequences_and_files_keep_it(tmp_path):
     moving = TONE.replace(motion=ep.LinearMotion(velocity=(-10, 0, 0)))
-    scene = street(ep.Interferer(radar=moving, offset=2e-7))
+    scene = street(ep.Interferer(radar=moving, offset=2e-7, interval=0.06))
     sequence = ep.Sequence(scene, victim(**SLOW), frames=2, interval=0.12, num_rays=500, labels=True, detections=True)
     first, second = sequence
     assert second.interference_cube.any() and not np.array_equal(first.interference_cube, second.interference_cube)
@@ -253,7 +253,7 @@ def test_sequences_and_files_keep_it(tmp_path):
     stored = ep.load_sequence(tmp_path / "all")
     assert stored.scene.interferers == scene.interferers
     np.testing.assert_array_equal(stored[1].interference_cube, second.interference_cube)
-    other = ep.Sequence(street(ep.Interferer(radar=moving)), victim(**SLOW), frames=2, interval=0.12, num_rays=500, labels=True,
+    other = ep.Sequence(street(ep.Interferer(radar=moving, interval=0.06)), victim(**SLOW), frames=2, interval=0.12, num_rays=500, labels=True,
                         detections=True)
     with pytest.raises(ValueError, match="path: must be new, or of this sequence .interferers/0 offset differs"):
         other.save(tmp_path / "all")
@@ -284,6 +284,7 @@ position = [20, 0, 0]
 yaw_deg = 180
 speed = 3
 offset = 1e-6
+interval = 2e-4
 over = "direct"
 """
 
@@ -293,10 +294,13 @@ def test_scene_files_have_other_radars(tmp_path):
     path.write_text(SCENE_FILE)
     scene = ep.load_scene(path).scene
     one, = scene.interferers
-    assert (one.offset, one.over, one.radar.waveform.bandwidth) == (1e-6, "direct", 9e8)
+    assert (one.offset, one.interval, one.over, one.radar.waveform.bandwidth) == (1e-6, 2e-4, "direct", 9e8)
     np.testing.assert_allclose(one.radar.world_from_radar(1.0)[:3, 3], [17, 0, 0], atol=1e-9)
     path.write_text(SCENE_FILE.replace('over = "direct"', 'over = "all"'))
     with pytest.raises(ValueError, match=r"interferers\[0\].over"):
+        ep.load_scene(path)
+    path.write_text(SCENE_FILE.replace("interval = 2e-4", "interval = 1e-4"))
+    with pytest.raises(ValueError, match=r"line \d+: interferers\[0\]: interval: must be at least 0.00014315 s"):
         ep.load_scene(path)
 
 

@@ -1,9 +1,12 @@
-"""Motions of radars that a call needs at certain times."""
+"""What a call needs of the times of frames: motions of radars that cover them, and room for each."""
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from .. import _core
+from .shown import refused
+
+_ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
 
 
 def require_motion(argument: str, radar: _core.Radar, times: Iterable[float]) -> None:
@@ -18,3 +21,9 @@ def require_motion(argument: str, radar: _core.Radar, times: Iterable[float]) ->
 def require_frame(argument: str, radar: _core.Radar, start_time: float) -> None:
     """Likewise for its frame that begins at start_time in s."""
     require_motion(argument, radar, (start_time, start_time + radar.frame_duration))
+
+
+def require_room(argument: str, radar: _core.Radar, interval: float) -> None:
+    """Raises ValueError naming the argument where frames of a radar, one begun each `interval` in s, overlap."""
+    if interval < radar.frame_duration * (1.0 - _ROUNDING):
+        raise refused(ValueError, argument, f"at least {radar.frame_duration:.9g} s, the duration of a frame", interval)

@@ -63,7 +63,7 @@ class LeftOut:
 
 @interrupts_are_kept()
 @checked(paths=anything, min_power=real(0.0, unit="W"))
-def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
+def save_paths(paths, path, min_power: float) -> LeftOut:
     """Writes paths with their scene and radar to an HDF5 file.
 
     path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths

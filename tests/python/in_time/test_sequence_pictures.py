@@ -98,12 +98,14 @@ def test_movers_are_what_moves_in_the_world_but_the_car_of_the_radar():
 
 @pytest.mark.parametrize("distance", [0.2, 0.45, 0.7])
 def test_a_hand_close_before_the_radar_is_a_mover(distance):
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.04), name="hand", material="skin", position=(distance, 0.0, 0.0),
-              motion=ep.LinearMotion((0.5, 0.0, 0.0)))
-    (near, _, _, fastest), = movers_at(scene, make_radar(), 0.0)
-    assert near == pytest.approx(distance - 0.04, abs=0.02) and fastest == pytest.approx(0.5, abs=0.02)
-    assert len(movers_at(scene, make_radar(yaw=np.pi), 0.0)) == (distance > 0.6)
+    for yaw, sign in ((0.0, 1.0), (np.pi, -1.0)):
+        scene, place = ep.Scene(), (7.0, 0.0, 0.0)
+        scene.add(ep.actors.sphere(0.04), name="hand", material="skin", position=(7.0 + sign * distance, 0.0, 0.0),
+                  motion=ep.LinearMotion((sign * 0.5, 0.0, 0.0)))
+        (near, far, slowest, fastest), = movers_at(scene, make_radar(position=place, yaw=yaw), 0.0)
+        assert near == pytest.approx(distance - 0.04, abs=0.01) and far == pytest.approx(distance + 0.04, abs=0.01)
+        assert 0.45 < slowest <= fastest == pytest.approx(0.5, abs=0.01)
+        assert len(movers_at(scene, make_radar(position=place, yaw=np.pi - yaw), 0.0)) == (distance > 0.6)
 
 
 def test_leakage_sets_no_scale_of_frames_in_time(tmp_path):

@@ -185,6 +185,20 @@ def test_bad_lines_are_errors_with_their_numbers(written, lines, told):
         ep.load_radar(written(**lines))
 
 
+@pytest.mark.parametrize("masks, signs, told", [
+    ((1, 5), "", "frameCfg: its chirps must use one transmitter each, or all the same ones"),
+    ((5, 4), "", "frameCfg: its chirps must use one transmitter each, or all the same ones"),
+    ((1, 4, 1), "", "frameCfg: its chirps must use one transmitter, or each of some once, in a loop"),
+    ((5, 1), "bpmCfg -1 1 0 1", "bpmCfg: needs two chirps of the same two transmitters"),
+    ((1, 1), "bpmCfg -1 1 0 1", "bpmCfg: needs two chirps of the same two transmitters"),
+    ((5, 5, 5), "bpmCfg -1 1 0 1", "bpmCfg: needs two chirps of the same two transmitters")])
+def test_transmitters_that_follow_no_known_order_are_told(written, masks, signs, told):
+    kept = [line for line in CONFIGURATION.splitlines() if not line.startswith(("chirpCfg", "frameCfg"))]
+    chirps = [f"chirpCfg {index} {index} 0 0 0 0 0 {mask}" for index, mask in enumerate(masks)]
+    with pytest.raises(ep.FileError, match=told):
+        ep.load_radar(written("\n".join([*kept, *chirps, f"frameCfg 0 {len(masks) - 1} 32 0 50 1 0", signs]) + "\n"))
+
+
 def test_what_is_no_configuration_is_told_before_a_board_is_asked_for(tmp_path):
     (tmp_path / "room.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     with pytest.raises(ep.FileError, match=r"room.obj: has no frameCfg, nor any other command of .* sensor \(.cfg\)$"):

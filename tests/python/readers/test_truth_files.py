@@ -125,6 +125,14 @@ def test_a_folder_has_the_truth_of_each_of_its_frames(tmp_path, keep):
     assert stored.truth.frame.tolist() == [0, 2]
     with pytest.raises(ValueError, match="path: must be new, or of this sequence .truth is"):
         make_sequence(frames=3).save(tmp_path / "frames", keep=keep)
+    with edited(tmp_path / "frames" / "frame_0002.h5") as file:
+        del file["truth"]
+    with pytest.raises(ep.FileError, match="frame_0002.h5: holds no truth, which the run was asked for"):
+        stored.truth  # noqa: B018
+    for left in (tmp_path / "frames").glob("frame_*.h5"):
+        left.unlink()
+    with pytest.raises(ValueError, match="frames: must have frames, has none that is done"):
+        stored.truth  # noqa: B018
 
 
 def test_a_folder_without_truth_says_so(tmp_path):

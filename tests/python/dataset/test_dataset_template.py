@@ -18,7 +18,8 @@ def names_of(drawn) -> list[str]:
 
 
 def test_draws_have_their_distributions(path):
-    drawn = [dataset.Template(path).draw(number) for number in range(600)]
+    template = dataset.Template(path)
+    drawn = [template.draw(number) for number in range(600)]
     counts = np.bincount([sum(name.startswith("plate_") for name in names_of(one)) for one in drawn], minlength=4)
     assert counts[0] == 0 and all(abs(count - 200) < 4 * 12 for count in counts[1:])  # 4 standard deviations
     assert abs(sum("wall" in names_of(one) for one in drawn) - 300) < 4 * 12.3

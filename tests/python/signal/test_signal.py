@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -118,6 +120,11 @@ def test_powers_of_cubes_and_of_their_chirps_are_means_of_squares():
     assert measures.power_dbm(cube) == pytest.approx(10.0 * np.log10(1e-3 * 101.01 / 24.0))
     assert measures.power_dbm(0.0 * cube) == -np.inf
     assert measures.residual(cube, {"half": 0.5 * cube, "fifth": 0.2 * cube}) == pytest.approx(0.3)
+    for low, high, told in ((5e-4, 2e-3, "-3.01 to 3.01 dBm"), (0.0, 2e-3, "below 3.01 dBm")):
+        power = SimpleNamespace(power=1e-3, low=low, high=high, resolved=False)
+        assert measures.with_error(power) == f"not resolved, {told}"
+    assert measures.with_error(SimpleNamespace(power=0.0, low=0.0, high=0.0, resolved=False)) == "nothing"
+    assert measures.with_error(SimpleNamespace(power=1e-3, resolved=True, interval_db=0.125)) == "0.00 dBm +- 0.12 dB"
     for name, size in (("tx", 2), ("rx", 3)):
         with pytest.raises(IndexError, match=f"^{name}: must be below {size}, the number of its antennas, got {size}"):
             ep.power_by_chirp(cube, **{name: size})

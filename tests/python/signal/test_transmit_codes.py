@@ -139,6 +139,14 @@ def test_transmitters_have_noise_of_their_own_in_empty_cells(velocities, ranges)
     assert np.all(np.diff(taken, axis=0) > 0)
 
 
+def test_cells_are_weighted_one_two_one_with_their_neighbours():
+    cells = np.zeros((2, 8, 8), complex)
+    cells[:, 0, 3] = 3.0, 4j
+    smoothed = np.roll(doppler_division._smoothed_power(cells), (1, -2), (0, 1))
+    np.testing.assert_allclose(smoothed[:3, :3], 25.0 * np.outer([1, 2, 1], [1, 2, 1]))
+    assert smoothed.sum() == pytest.approx(16.0 * 25.0)
+
+
 def ddm_tones(radar, shares, cells, snr_db):
     """Signal [1, rx, slot, sample] of targets at cells (turns of the frame, of a chirp), each that many dB above the noise of a
     cell of one transmitter and receiver by a rectangular window."""

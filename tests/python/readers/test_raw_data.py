@@ -68,17 +68,18 @@ def test_words_are_real_real_imaginary_imaginary_slot_by_slot(written, tmp_path)
         np.testing.assert_array_equal(words[:, tx, ..., 2:].reshape(32, 4, COUNT), expected[..., 1])
 
 
-def test_four_lanes_are_those_that_ti_reads(written, tmp_path):
+@pytest.mark.parametrize("mask, num_rx", [(7, 3), (15, 4)])
+def test_four_lanes_are_those_that_ti_reads(written, tmp_path, mask, num_rx):
     """Eight words a sample: rows 1 to 4 are the real parts of the receivers, 5 to 8 their imaginary ones (SWRA581, xWR14xx)."""
-    radar = ep.load_radar(written(channelCfg="channelCfg 7 5 0"), "IWR1443")
+    radar = ep.load_radar(written(channelCfg=f"channelCfg {mask} 5 0"), "IWR1443")
     assert radar.receiver.adc.lanes == 4
     frame = frame_of(radar)
     frame.save_raw(tmp_path / "one.bin")
     rows = np.fromfile(tmp_path / "one.bin", "<i2").astype(float).reshape(-1, 8).T
     samples = (rows[:4] + 1j * rows[4:]).reshape(4, 32, 2, COUNT)
     codes = frame.received.codes.astype(float)
-    np.testing.assert_array_equal(np.moveaxis(samples[:3], 2, 0), np.moveaxis(codes[..., 0] + 1j * codes[..., 1], 1, 1))
-    assert not samples[3].any()
+    np.testing.assert_array_equal(np.moveaxis(samples[:num_rx], 2, 0), np.moveaxis(codes[..., 0] + 1j * codes[..., 1], 1, 1))
+    assert not samples[num_rx:].any() and codes.any()
 
 
 @pytest.mark.filterwarnings("ignore")

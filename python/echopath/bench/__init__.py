@@ -1,10 +1,10 @@
 """Benchmarks: `run_physics(folder)` of levels against closed forms, `run_replay(folder)` of replay against new traces,
 `run_labels(folder)` of parts and path expressions, `hard.run_hard(folder)` of the hard cases, `run_speed(folder)` of
 synthesis, frames and memory, `run_crowd(folder)` of the objects of crowded scenes, `run_certificate(folder)` of what moves,
- `run_published(folder)` of levels beside published ones, `run_actors(folder)` of the actors over aspect,
- `run_measured(folder)` of metal targets beside measurements, `run_worlds(folder)` of cities and crowds, `run_live(folder)` of
- scenes that change and go on in time, `run_receiver(folder)` of the faults of receivers and the codes of transmitters,
- `run_dataset(folder)` of datasets, their stages and workers."""
+`run_published(folder)` of levels beside published ones, `run_actors(folder)` of the actors over aspect,
+`run_measured(folder)` of metal targets beside measurements, `run_worlds(folder)` of cities and crowds, `run_live(folder)` of
+scenes that change and go on in time, `run_receiver(folder)` of the faults of receivers and the codes of transmitters,
+`run_dataset(folder)` of datasets, their stages and workers."""
 from .actors import run_actors
 from .certificate import run_certificate
 from .crowd import run_crowd

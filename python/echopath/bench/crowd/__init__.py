@@ -14,6 +14,7 @@ from ...base.storage.files import write_texts
 from ..machine import machine
 from ..speed.tracer import bare_share
 from ..steps import told
+from ..suite import judged_row
 from ..timing import processor_time
 from . import scenes
 from .coverage import measure_coverage
@@ -194,16 +195,16 @@ def verdicts(results: dict) -> list[dict]:
     rows = []
     for street in results["streets"]:
         verdict = [one for row in street["rows"] for one in row["verdict"]]
-        rows += [_verdict(f"street, {street['title']}: objects off by over {WANTED_DB} dB and not flagged", 0,
-                          verdict.count("MISSED")),
-                 _verdict(f"street, {street['title']}: objects right to {RIGHT_DB} dB and flagged", 0,
-                          verdict.count("NEEDLESS"))]
-    rows += [_verdict(f"city ground, {row['rays']:,} rays: off by over {WANTED_DB} dB and not flagged", 0,
-                      int(row["verdict"] == "MISSED")) for row in results["ground"]]
-    rows.append(_verdict("person among 2400: scatter of his direct power", PERSON_ERROR, results["person"]["scatter"]))
-    rows += [_verdict(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: processor seconds", CITY_SECONDS,
-                      row["processor_s"]) for row in results["mirrors"] if (row["houses"], row["max_bounces"]) in CITY_ASKED]
-    rows += [_verdict(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: sequences not followed", 0, row["unfollowed"])
+        rows += [judged_row(f"street, {street['title']}: objects off by over {WANTED_DB} dB and not flagged",
+                            verdict.count("MISSED"), 0),
+                 judged_row(f"street, {street['title']}: objects right to {RIGHT_DB} dB and flagged",
+                            verdict.count("NEEDLESS"), 0)]
+    rows += [judged_row(f"city ground, {row['rays']:,} rays: off by over {WANTED_DB} dB and not flagged",
+                        int(row["verdict"] == "MISSED"), 0) for row in results["ground"]]
+    rows.append(judged_row("person among 2400: scatter of his direct power", results["person"]["scatter"], PERSON_ERROR))
+    rows += [judged_row(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: processor seconds", row["processor_s"],
+                        CITY_SECONDS) for row in results["mirrors"] if (row["houses"], row["max_bounces"]) in CITY_ASKED]
+    rows += [judged_row(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: sequences not followed", row["unfollowed"], 0)
              for row in results["mirrors"]]
     low, high = results["coverage"]["wanted"]
     least = results["coverage"]["wanted_of_one"]
@@ -219,10 +220,6 @@ def verdicts(results: dict) -> list[dict]:
         rows.append({"what": f"coverage, {row['kind']}, {row['count']} runs: {low} to {high}", "limit": low,
                      "measured": row["coverage"], "holds": bool(holds)})
     return rows
-
-
-def _verdict(what: str, limit: float, measured: float) -> dict:
-    return {"what": what, "limit": limit, "measured": measured, "holds": bool(measured <= limit)}
 
 
 def describe(results: dict) -> list[str]:

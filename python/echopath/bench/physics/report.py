@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...base.storage.files import write_texts
 from ..steps import csv_text
+from ..suite import judged_row
 
 MUST_REACH = (  # target, rays, dB
     ("sphere_161", 2 ** 13, 0.1), ("sphere_3228", 2 ** 13, 0.1), ("ellipsoid", 2 ** 14, 0.1))
@@ -22,11 +23,11 @@ def verdicts(results: dict) -> list[dict]:
     for name, num_rays, limit in MUST_REACH:
         point = _point(targets[name], BEST, num_rays)
         if point:
-            rows.append(_row(f"{targets[name]['title']}: rms dB at {_rays(num_rays)}", limit, point["rms_db"]))
+            rows.append(judged_row(f"{targets[name]['title']}: rms dB at {_rays(num_rays)}", point["rms_db"], limit))
     for pair in results["plates"]:
         allowed = max(SAME_SHARE * pair["unfiltered_db"], 2.0 * pair["margin_error_db"])
-        rows.append(_row(f"plate, {pair['angle_deg']:g} deg: rms dB at {_rays(pair['num_rays'])}, as unfiltered",
-                         pair["unfiltered_db"] + allowed, pair["filtered_db"]))
+        rows.append(judged_row(f"plate, {pair['angle_deg']:g} deg: rms dB at {_rays(pair['num_rays'])}, as unfiltered",
+                               pair["filtered_db"], pair["unfiltered_db"] + allowed))
     for target in targets.values():
         if target["converged_db"] is None:
             continue
@@ -34,7 +35,7 @@ def verdicts(results: dict) -> list[dict]:
         slope = target["slopes_from_converged" if is_by_mesh else "slopes"][BEST]
         if slope is not None:
             reference = "converged level" if is_by_mesh else "theory"
-            rows.append(_row(f"{target['title']}: slope from {reference}", SLOPE, slope))
+            rows.append(judged_row(f"{target['title']}: slope from {reference}", slope, SLOPE))
     return rows
 
 
@@ -91,10 +92,6 @@ def _plates(results: dict) -> list[str]:
 
 def _point(target: dict, label: str, num_rays: int):
     return next((point for point in target["curves"].get(label, []) if point["num_rays"] == num_rays), None)
-
-
-def _row(what: str, limit: float, measured: float) -> dict:
-    return {"what": what, "limit": limit, "measured": measured, "holds": bool(measured <= limit)}
 
 
 def _rays(count: int) -> str:

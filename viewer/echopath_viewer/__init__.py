@@ -9,8 +9,8 @@ from __future__ import annotations
 import importlib
 from contextlib import contextmanager
 
-LIBRARIES = ("libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 "
-             "libxcb-keysyms1 libxcb-shape0")  # Debian's packages of what Qt's window is linked with
+from .libraries import missing_library
+
 _EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
 
 
@@ -79,4 +79,4 @@ def _import_qt() -> None:
     except ModuleNotFoundError:
         raise
     except ImportError as error:
-        raise OSError(f"the viewer's window needs a library of the system: {error} (Debian: apt install {LIBRARIES})") from None
+        raise missing_library(error) from None

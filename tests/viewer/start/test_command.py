@@ -74,6 +74,21 @@ def test_without_a_screen_it_says_so_at_once(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have one screen")
+def test_a_library_of_the_screen_that_cannot_be_loaded_is_named_before_qt_ends_the_program(tmp_path, monkeypatch):
+    """As where libxcb-icccm4 is not installed: the loader of the system says which file it is."""
+    from echopath_viewer.window import app, qt
+
+    monkeypatch.setenv("DISPLAY", ":1")
+    for name in ("WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
+        monkeypatch.delenv(name, raising=False)
+    (tmp_path / "platforms").mkdir()
+    (tmp_path / "platforms" / "libqxcb.so").write_text("no library")
+    monkeypatch.setattr(qt.QtCore.QLibraryInfo, "path", lambda place: str(tmp_path))
+    with pytest.raises(OSError, match=r"needs a library of the system: .*libqxcb.so.*apt install .*libxcb-icccm4"):
+        app.require_screen()
+
+
 def test_without_the_extra_it_says_what_to_install():
     script = "import sys; sys.modules['pyvistaqt'] = None; from echopath.cli import main; sys.exit(main(['view']))"
     done = run([sys.executable, "-c", script])

@@ -1,11 +1,14 @@
 """From what a view is asked for to an open window."""
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
+from pathlib import Path
 
 import echopath as ep
 
+from ..libraries import missing_library
 from ..model import from_file, from_frame, from_paths
 from ..model.frames.live_session import input_of_view
 from ..model.frames.preview import preview_of
@@ -15,7 +18,7 @@ from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
 from .files.exporting import export
 from .main_window import MainWindow
-from .qt import Qt, QtWidgets
+from .qt import Qt, QtCore, QtWidgets
 
 
 def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **settings):
@@ -82,11 +85,27 @@ def _save_picture(window: MainWindow, path, scale: int) -> None:
 
 
 def require_screen() -> None:
-    """Raises OSError where there is none: Qt would end the program."""
-    if sys.platform != "linux" or any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
+    """Raises OSError where there is none, or a library that draws on it is missing: Qt would end the program."""
+    if sys.platform != "linux":
+        return
+    display, *others = (os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"))
+    if any(others):
+        return
+    if display:
+        _require_libraries()
         return
     raise OSError("the viewer needs a screen, and DISPLAY names none; ep.plot_rays(scene, paths, off_screen=True, "
                   "screenshot='rays.png') draws without one")
+
+
+def _require_libraries() -> None:
+    """Loads Qt's plug-in for X, which wheels bring without the libraries of the system that it is linked with."""
+    plugin = Path(QtCore.QLibraryInfo.path(QtCore.QLibraryInfo.LibraryPath.PluginsPath), "platforms", "libqxcb.so")
+    try:
+        if plugin.exists():
+            ctypes.CDLL(str(plugin))
+    except OSError as error:
+        raise missing_library(error) from None
 
 
 def read_input(*what, parts=None, **settings) -> tuple:

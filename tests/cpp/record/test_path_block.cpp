@@ -118,6 +118,25 @@ TEST(PathBlock, OrderIsThatOfAdding) {
   expect_paths(record_of(blocks), expected);
 }
 
+TEST(PathBlock, ReversalsKeepDiffuseHitsDiffuse) {
+  PathBlock block;
+  const Hit ray[] = {hit(7), hit(8), hit(9)};
+  block.add_reversal(ray, 3, 0b011, std::complex<float>(2.0, 0.0), 0);
+  expect_paths(record_of({block}), {{{9, 8, 7}, 0b110, 2.0}});
+}
+
+TEST(PathBlock, FansHaveTheMatricesOfTheirPairs) {
+  PathBlock block;
+  for (const float first : {1.0f, 3.0f}) {
+    add_fan(block, {{{}}, {{}, {1}}}, 4);
+    block.add_pair_jones({first, 0.0f, 0.0f, 0.0f});
+    block.add_pair_jones({first + 1.0f, 0.0f, 0.0f, 0.0f});
+  }
+  const Paths paths = record_of({block});
+  ASSERT_EQ(paths.jones.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(paths.jones[i][0], std::complex<float>(1.0f + static_cast<float>(i))) << i;
+}
+
 TEST(PathBlock, OptionalColumnsStayWithTheirPaths) {
   PathBlock block;
   const Hit ray[] = {hit(7)};
@@ -187,8 +206,8 @@ TEST(PathBlock, ClearedBlockIsEmpty) {
 TEST(PathBlock, ChainsOfOneRayShareItsHits) {
   const std::vector<Hit> first = {{0, 1, 0.f, 0.f}, {1, 2, 0.f, 0.f}, {2, 3, 0.f, 0.f}}, second = {{3, 4, 0.f, 0.f}};
   PathBlock block;
-  block.add_chain(1);
   block.add_chain(2);
+  block.add_chain(1);
   block.end_ray(first.data());
   block.end_ray(first.data());
   block.add_chain(1);
@@ -196,7 +215,7 @@ TEST(PathBlock, ChainsOfOneRayShareItsHits) {
   ASSERT_EQ(block.chains.size(), 3u);
   EXPECT_EQ(block.chain_hits.size(), 3u);
   EXPECT_EQ(block.chains[1].first, block.chains[0].first);
-  EXPECT_EQ(block.chains[1].count, 2u);
+  EXPECT_EQ(block.chains[1].count, 1u);
   EXPECT_EQ(block.chain_hits[block.chains[2].first].triangle_id, 4u);
   EXPECT_EQ(block.num_hits(), 0u);
 }

@@ -37,6 +37,22 @@ TEST(LaunchLattice, IsEven) {
   EXPECT_LT((moment - 0.25 * Eigen::Matrix2d::Identity()).norm(), kMoments);
 }
 
+// Points of one batch lie whole steps of its lattice apart, whose cell is that of the golden ratio.
+TEST(LaunchLattice, EveryPointIsOfTheBatchWhoseLatticeItLiesOn) {
+  const LaunchLattice lattice(LaunchDomain{}, 200, {kShift, {0.11, 0.52}, {0.6, 0.2}});
+  const double side = std::sqrt(3.0 * lattice.cell_area() / std::sqrt(5.0)), phi = 0.5 + std::sqrt(1.25);
+  Eigen::Matrix2d cell;
+  cell << side, side * phi, side, side * (1.0 - phi);
+  Eigen::Vector2d first[3];
+  for (int64_t i = 0, batch = -1; i < lattice.size(); ++i) {
+    if (lattice.batch_of(i) != batch) first[++batch] = lattice.point(i);
+    ASSERT_EQ(lattice.batch_of(i), batch);
+    const Eigen::Vector2d steps = cell.inverse() * (lattice.point(i) - first[batch]);
+    EXPECT_LT((steps.array() - steps.array().round()).abs().maxCoeff(), 1e-9) << i;
+  }
+  EXPECT_EQ(lattice.batch_of(lattice.size() - 1), 2);
+}
+
 TEST(LaunchLattice, NeighboursInOrderAreNeighbours) {
   const LaunchLattice lattice(LaunchDomain{}, 10000, {kShift});
   double sum = 0.0;

@@ -143,6 +143,10 @@ TEST(PolarizationMode, IsThatOfTheLargerPartOfTheField) {
   // Half of the power of the other part lies along the direction of one end, and does not count there.
   EXPECT_EQ(mode(0.6, 0.8), PolarizationMode::kTe);
   EXPECT_EQ(mode(0.55, std::sqrt(1.0 - 0.55 * 0.55)), PolarizationMode::kTm);
+  // A field that lies nearly all along the direction of travel, at both ends, counts as TM, and all are TE at normal incidence.
+  const Vec3 grazing(std::cos(0.03), 0.0, -std::sin(0.03));
+  EXPECT_EQ(polarization_mode(grazing + 0.05 * Vec3::UnitY(), grazing, normal), PolarizationMode::kTm);
+  EXPECT_EQ(polarization_mode(Vec3::UnitX(), Vec3(1e-13, 0.0, -1.0), normal), PolarizationMode::kTe);
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ TEST(EdgeShadow, ObliqueWavesAreThoseAcrossTheEdgeWithShorterDistances) {
   EXPECT_LT(std::abs(oblique - across_it), kRounding);
 }
 
-// A half plane's field of reflection is its field of shadow of the image of the source, where nothing fades. `detour`: of the
-// way over the edge, in wavelengths.
+// A half plane's field of reflection is its field of shadow of the image of the source, where nothing fades. `detour` is
+// that of the way over the edge, in wavelengths.
 TEST(EdgeShadow, ReflectionFadesWithinHalfAFresnelZone) {
   const double source = 0.8, phase = 60.0;
   const auto kept = [&](double detour) {

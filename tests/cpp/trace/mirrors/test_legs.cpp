@@ -117,7 +117,7 @@ TEST(MirrorResponse, ModesAreOneAtNormalIncidence) {
   }
 }
 
-// Fresnel's coefficients of a permittivity of 4 at 60 degrees; a field that stands upright at both ends keeps the sign of TM.
+// Fresnel's coefficients of a permittivity of 4 at 60 degrees; a field upright at both ends keeps the sign of TM.
 TEST(MirrorResponse, IsFresnelsAtASlant) {
   Material floor;
   floor.permittivity = 4.0;
@@ -143,7 +143,7 @@ TEST(PolarizationMode, IsThatOfTheLargerPartOfTheField) {
   // Half of the power of the other part lies along the direction of one end, and does not count there.
   EXPECT_EQ(mode(0.6, 0.8), PolarizationMode::kTe);
   EXPECT_EQ(mode(0.55, std::sqrt(1.0 - 0.55 * 0.55)), PolarizationMode::kTm);
-  // A field that lies nearly all along the direction of travel, at both ends, counts as TM, and all are TE at normal incidence.
+  // A field nearly along the direction of travel, at both ends, counts as TM, and all are TE at normal incidence.
   const Vec3 grazing(std::cos(0.03), 0.0, -std::sin(0.03));
   EXPECT_EQ(polarization_mode(grazing + 0.05 * Vec3::UnitY(), grazing, normal), PolarizationMode::kTm);
   EXPECT_EQ(polarization_mode(Vec3::UnitX(), Vec3(1e-13, 0.0, -1.0), normal), PolarizationMode::kTe);

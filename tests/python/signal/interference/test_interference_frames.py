@@ -253,8 +253,8 @@ def test_sequences_and_files_keep_it(tmp_path):
     stored = ep.load_sequence(tmp_path / "all")
     assert stored.scene.interferers == scene.interferers
     np.testing.assert_array_equal(stored[1].interference_cube, second.interference_cube)
-    other = ep.Sequence(street(ep.Interferer(radar=moving, interval=0.06)), victim(**SLOW), frames=2, interval=0.12, num_rays=500, labels=True,
-                        detections=True)
+    other = ep.Sequence(street(ep.Interferer(radar=moving, interval=0.06)), victim(**SLOW), frames=2, interval=0.12,
+                        num_rays=500, labels=True, detections=True)
     with pytest.raises(ValueError, match="path: must be new, or of this sequence .interferers/0 offset differs"):
         other.save(tmp_path / "all")
 

@@ -48,13 +48,18 @@ def _with_power(spectrum, maps):
     return with_values(spectrum, np.sqrt(maps.power.astype(float)).astype(complex))
 
 
-def with_values(spectrum, values):
-    """A map with the axes of another one. Raises ep.FileError for values [..., velocity, range] that do not fit it."""
-    if values.shape[-2:] != spectrum.values.shape[2:]:
-        cells = [list(shape[-2:]) for shape in (spectrum.values.shape, values.shape)]
+def with_values(spectrum, values, receivers=slice(None)):
+    """A map with the axes of another one. Raises ep.FileError for values [..., velocity, range] that do not fit it.
+
+    receivers: those of its receivers that the map has
+    """
+    shape = spectrum.values[:, receivers].shape
+    if values.shape[-2:] != shape[2:]:
+        cells = [list(one[-2:]) for one in (shape, values.shape)]
         raise ep.FileError("map: must have the cells {} of the radar, has {}".format(*cells))
-    state = spectrum.__getstate__()
-    state["values"] = np.broadcast_to(values, spectrum.values.shape).ravel()
+    state = {"num_transmitters": shape[0], "num_receivers": shape[1], "velocity": spectrum.velocity,
+             "range": spectrum.range, "values": np.broadcast_to(values, shape).ravel(), "window": spectrum.window,
+             "zero_pad": spectrum.zero_pad, "is_tdm_compensated": spectrum.is_tdm_compensated}
     made = type(spectrum).__new__(type(spectrum))
     made.__setstate__(state)
     return made

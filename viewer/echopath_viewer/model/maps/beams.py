@@ -25,7 +25,8 @@ def beam_weights(spectrum, radar, range_index: int, azimuth: float, elevation: f
     """
     positions, wavelength = np.asarray(ep.virtual_array(radar).positions, float), radar.waveform.wavelength
     steering = np.exp(2j * np.pi / wavelength * positions @ direction(azimuth, elevation)) * _shares(positions, wavelength)
-    slots = ep.compensate_tdm(with_values(spectrum, np.ones(spectrum.values.shape[2:])), radar).values[..., range_index]
+    ones = with_values(spectrum, np.ones(spectrum.values.shape[2:]), slice(1))  # of one receiver: slots are those of all
+    slots = ep.compensate_tdm(ones, radar.replace(receivers=radar.receivers[:1])).values[..., range_index]
     return steering[:, :, None] * slots
 
 

@@ -156,3 +156,26 @@ def test_at_rest_a_stage_is_as_in_its_first_frame(tmp_path):
     matrix = np.array(UsdGeom.Xformable(stage.GetPrimAtPath("/cart")).GetLocalTransformation(4.0)).T
     wanted = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) @ matrix[:3, :3].T + matrix[:3, 3]
     assert np.allclose(scene.world_vertices(0, 0.0), wanted, atol=SINGLE)
+
+
+def test_the_front_of_a_left_handed_mesh_is_where_its_corners_go_clockwise(tmp_path):
+    mesh = 'def Mesh "face"\n{\n' + TRIANGLE + '    uniform token orientation = "leftHanded"\n%s}\n'
+    for normals in ("", "    normal3f[] normals = [(.1, 0, -1), (0, .1, -1), (0, 0, -1)]\n"):
+        face = loaded(tmp_path, mesh % normals)[0].nodes[0].mesh
+        a, b, c = face.vertices[face.triangles[0]]
+        assert np.allclose(np.cross(b - a, c - a), (0, 0, -1))
+
+
+def test_a_unit_of_single_precision_counts(tmp_path, monkeypatch):
+    """As Blender 2.9 wrote it; type 8 of a value of the binary format is float, 9 is double."""
+    monkeypatch.setattr("echopath.readers.usd.stage.refuse_what_ends_usd", lambda path: None)  # a process for each file
+    stage = Usd.Stage.CreateNew(str(tmp_path / "ball.usdc"))
+    UsdGeom.SetStageMetersPerUnit(stage, 0.3125)
+    UsdGeom.Sphere.Define(stage, "/ball").CreateRadiusAttr(2.0)
+    stage.GetRootLayer().Save()
+    content = (tmp_path / "ball.usdc").read_bytes()
+    single, double = (np.float32(0.3125).tobytes() + bytes([0, 0, kind, 0x40]) for kind in (8, 9))
+    assert content.count(double) == 1
+    (tmp_path / "single.usdc").write_bytes(content.replace(double, single))
+    model = ep.load_model(tmp_path / "single.usdc")
+    assert model.unit == 0.3125 and np.ptp(model.nodes[0].mesh.vertices[:, 2]) == pytest.approx(4 * 0.3125)

@@ -25,7 +25,7 @@ def read(path: Path, options: ReadOptions) -> Model:
     pxr = SimpleNamespace(**{name: pxr_module(name) for name in ("Usd", "UsdGeom", "UsdShade", "UsdSkel")})
     with opened(path) as (stage, said):
         tree, timeline = Tree(options), Timeline(stage)
-        axes = Axes(options, unit=_unit(stage, pxr), up=_up(stage, pxr, tree))
+        axes = Axes(options, unit=_unit(stage), up=_up(stage, pxr, tree))
         content = Content(path, stage, tree, axes, timeline, pxr)
         codes = content.time_codes()
         animation = chosen_animation(options, (TIMELINE,) if len(codes) > 1 else ())
@@ -45,10 +45,13 @@ def _ends(timeline: Timeline, codes: list[float], loop: bool) -> tuple[float, fl
     return min([timeline.start, *codes[:1]]), max([timeline.end, *codes[-1:]])
 
 
-def _unit(stage, pxr) -> float:
-    """m per unit, 1 cm where the stage does not say or says what cannot be."""
-    unit = float(pxr.UsdGeom.GetStageMetersPerUnit(stage))
-    return unit if 1e-12 <= unit <= 1e9 else 0.01
+def _unit(stage) -> float:
+    """m per unit, 1 cm where the stage does not say or says what cannot be.
+
+    The library's own function refuses numbers of single precision, which some versions of Blender wrote.
+    """
+    unit = stage.GetMetadata("metersPerUnit")
+    return float(unit) if isinstance(unit, (int, float)) and 1e-12 <= unit <= 1e9 else 0.01
 
 
 def _up(stage, pxr, tree: Tree) -> str:

@@ -45,6 +45,8 @@ def surface_of(prim, time, axes: Axes, pxr) -> Surface:
     holes = integers(mesh.GetHoleIndicesAttr(), time)
     polygons = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), holes)
     triangles, polygon, places = _core.triangles_of_polygons(points, polygons.points, polygons.counts)
+    if mesh.GetOrientationAttr().Get(time) == "leftHanded":  # whose front is where its corners go clockwise
+        triangles, places = triangles[:, ::-1], places[:, ::-1]
     surface = Surface(points, np.arange(len(points)), smooth=is_subdivided(mesh))
     normals = None if surface.smooth else _normals(mesh, time, polygons, len(points), pxr)
     if normals is not None:

@@ -13,6 +13,7 @@ from .accessors import FLOAT, Accessors
 from .document import Document
 from .item import Item
 
+POINTER = "KHR_animation_pointer"
 PATHS = {"translation": "VEC3", "rotation": "VEC4", "scale": "VEC3", "weights": "SCALAR"}
 INTERPOLATIONS = {"LINEAR": "linear", "STEP": "step", "CUBICSPLINE": "hermite"}
 SIGNED_OR_UNSIGNED = (5120, 5121, 5122, 5123)
@@ -61,17 +62,30 @@ class _Channels:
     def curves(self) -> dict:
         found: dict = {}
         for channel in self._item["channels"].objects():
-            target = channel["target"]
-            path = target["path"].text()
-            if path not in PATHS or not target["node"].is_given:
-                self._document.note(f"channels of animations that move '{path}' of no node are left out"[:200])
+            key = self._target(channel["target"])
+            if key is None:
                 continue
-            key = target["node"].index(len(self._nodes)), path
             if key in found:
                 self._document.note(f"{channel.place} moves what an earlier channel moves, and is left out")
                 continue
-            found[key] = self._curve(self._samplers[channel["sampler"].index(len(self._samplers))], path)
+            found[key] = self._curve(self._samplers[channel["sampler"].index(len(self._samplers))], key[1])
         return found
+
+    def _target(self, target: Item) -> tuple[int, str] | None:
+        """(node, path) of what a channel moves, also where a pointer names it; None, noted, for anything else."""
+        path, node = target["path"].text(), target["node"]
+        if path == "pointer":
+            pointer = target["extensions"][POINTER]["pointer"]
+            place, _, path = pointer.text().rpartition("/")
+            if not place.startswith("/nodes/") or path not in PATHS:
+                self._document.note(f"what animations move by {POINTER} stays at rest, but for nodes and weights of their meshes")
+                return None
+            number = place.removeprefix("/nodes/")
+            node = Item(int(number) if number.isdecimal() and len(number) < 10 else number, pointer.file, pointer.place)
+        elif path not in PATHS or not node.is_given:
+            self._document.note(f"channels of animations that move '{path}' of no node are left out"[:200])
+            return None
+        return node.index(len(self._nodes)), path
 
     def _curve(self, sampler: Item, path: str):
         word = sampler["interpolation"].text("LINEAR")

@@ -97,12 +97,3 @@ def test_nodes_are_limited_with_all_copies(tmp_path, monkeypatch):
     monkeypatch.setattr(READ, "MAX_NODES", 3)
     with pytest.raises(ep.FileError, match="nodes: must make 3 nodes of a scene at most, with all copies"):
         loaded(tmp_path, forest(TRANSLATION=SHIFTS))
-
-
-def test_what_pointers_animate_is_refused_where_it_is_required_and_noted_where_it_is_used(tmp_path):
-    file = box_file()
-    file.json["extensionsUsed"] = ["KHR_animation_pointer"]
-    assert "what animations move by KHR_animation_pointer stays at rest" in loaded(tmp_path, file).notes
-    file.json["extensionsRequired"] = ["KHR_animation_pointer"]
-    with pytest.raises(ep.FileError, match="requires the extension KHR_animation_pointer, which is not read"):
-        loaded(tmp_path, file)

@@ -41,6 +41,36 @@ def test_translations_follow_the_specification(tmp_path, interpolation, at_a_qua
         assert np.abs(vertices_at(scene, time)["box"] - (BOX + wanted)[:, TO_SCENE]).max() < SINGLE
 
 
+def pointed_at(file, pointer: str):
+    """The file, its one channel moving what a pointer names (KHR_animation_pointer)."""
+    file.json["extensionsRequired"] = file.json["extensionsUsed"] = ["KHR_animation_pointer"]
+    file.json["animations"][0]["channels"][0]["target"] = {
+        "path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": pointer}}}
+    return file
+
+
+@pytest.mark.parametrize("path, moved", [("translation", BOX + PLACES[1]), ("scale", BOX * PLACES[1])])
+def test_a_pointer_to_a_node_moves_it_as_a_channel_of_the_node_does(tmp_path, path, moved):
+    file = box_file()
+    file.animation((0, path, KEYS, PLACES, "LINEAR"))
+    model = loaded(tmp_path, pointed_at(file, f"/nodes/0/{path}"))
+    assert model.duration == 2.0 and not any("animation" in note for note in model.notes)
+    assert np.abs(vertices_at(scene_of(model), 1.0)["box"] - moved[:, TO_SCENE]).max() < SINGLE
+
+
+def test_a_pointer_to_what_is_no_node_is_told(tmp_path):
+    file = box_file()
+    file.animation((0, "translation", KEYS, PLACES, "LINEAR"))
+    for pointer in ("/materials/0/emissiveFactor", "/nodes/0/extensions/KHR_node_visibility/visible"):
+        model = loaded(tmp_path, pointed_at(file, pointer))
+        assert ("what animations move by KHR_animation_pointer stays at rest, but for nodes and weights of their meshes"
+                in model.notes)
+        assert (vertices_at(scene_of(model), 1.0)["box"] == BOX[:, TO_SCENE]).all()
+    for number in ("1", "x", 5000 * "9"):
+        with pytest.raises(ep.FileError, match=r"channels\[0\].*pointer: must be a whole number from 0 to 0, is"):
+            loaded(tmp_path, pointed_at(file, f"/nodes/{number}/scale"))
+
+
 QUARTERS = np.array([[0, 0, 0, 1], [0.5, 0.5, 0.5, 0.5], [0, -0.6, 0, -0.8]], np.float32)
 
 

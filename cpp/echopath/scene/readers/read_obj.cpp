@@ -54,7 +54,7 @@ class ObjLines : public std::streambuf {
     bool continued = true, any = false;
     while (continued && read_line(part)) {
       any = true;
-      if (++line_ == 1 && part.starts_with(kByteOrderMark)) part.erase(0, kByteOrderMark.size());
+      if (++line_ == 1) check_encoding(part);
       while (!part.empty() && part.back() == ' ') part.pop_back();
       continued = !part.empty() && part.back() == '\\';
       if (continued) part.back() = ' ';
@@ -64,6 +64,13 @@ class ObjLines : public std::streambuf {
     check_and_mend();
     text_ += '\n';
     return true;
+  }
+
+  void check_encoding(std::string& first_line) const {
+    for (const std::string_view mark : {"\xFF\xFE", "\xFE\xFF"}) {
+      if (first_line.starts_with(mark)) fail(path_, line_, "must be UTF-8 or Latin-1 text, is UTF-16");
+    }
+    if (first_line.starts_with(kByteOrderMark)) first_line.erase(0, kByteOrderMark.size());
   }
 
   // Reads up to the end of a line as any system writes it, which is also where the parser ends one.

@@ -135,7 +135,8 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
   }
 }
 
-std::vector<uint32_t> polygon_corners(const PlyValues& values, const std::vector<double>& items, const Soup& soup) {
+// Adds a face; a vertex's normal is that of each face's corner there.
+void add_face(const PlyValues& values, const std::vector<double>& items, Soup& soup) {
   const std::string face = "face " + std::to_string(soup.num_faces());
   if (items.size() < 3) values.refuse(face + " has fewer than 3 corners");
   std::vector<uint32_t> corners;
@@ -146,13 +147,26 @@ std::vector<uint32_t> polygon_corners(const PlyValues& values, const std::vector
     }
     corners.push_back(static_cast<uint32_t>(item));
   }
-  return corners;
+  soup.add_polygon(corners, 0, soup.normals.empty() ? std::vector<uint32_t>{} : corners);
 }
 
-void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
+// Adds the triangles of strips, of which -1 ends one; every second triangle is turned, so that all have one front.
+void add_strips(const PlyValues& values, const std::vector<double>& items, Soup& soup) {
+  constexpr double kEnd = -1.0;
+  size_t begin = 0;
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (items[i] == kEnd) begin = i + 1;
+    if (i < begin + 2) continue;
+    const bool is_turned = (i - begin) % 2 == 1;
+    add_face(values, {items[i - 2], items[is_turned ? i : i - 1], items[is_turned ? i - 1 : i]}, soup);
+  }
+}
+
+// Reads the lists of vertices of an element; `add` adds what one of them stands for.
+void read_faces(PlyValues& values, const PlyElement& element, Soup& soup, decltype(add_face)& add) {
   const int list = element.find({"vertex_indices", "vertex_index"});
   if (list < 0 || !element.properties[list].is_list) {
-    values.refuse("element 'face' needs the list property vertex_indices");
+    values.refuse("element '" + element.name + "' needs the list property vertex_indices");
   }
   std::vector<double> items, corners;
   for (int64_t i = 0; i < element.count; ++i) {
@@ -160,8 +174,7 @@ void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
       read_property(values, element.properties[p], p == static_cast<size_t>(list) ? corners : items);
     }
     values.end_row();
-    const std::vector<uint32_t> polygon = polygon_corners(values, corners, soup);
-    soup.add_polygon(polygon, 0, soup.normals.empty() ? std::vector<uint32_t>{} : polygon);  // each vertex has its normal
+    add(values, corners, soup);
   }
 }
 
@@ -178,7 +191,9 @@ Soup read_ply(std::istream& file, const std::string& name) {
       if (!soup.vertices.empty()) values.refuse("element 'vertex' comes twice");
       read_vertices(values, element, soup);
     } else if (element.name == "face") {
-      read_faces(values, element, soup);
+      read_faces(values, element, soup, add_face);
+    } else if (element.name == "tristrips") {
+      read_faces(values, element, soup, add_strips);
     } else {
       skip(values, element);
     }

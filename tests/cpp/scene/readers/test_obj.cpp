@@ -155,6 +155,12 @@ TEST(Obj, ReadsPastAByteOrderMark) {
   EXPECT_EQ(meshes[0].mesh->area(), 1.0);
 }
 
+TEST(Obj, NamesAnEncodingThatItDoesNotRead) {
+  for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"}) {
+    expect_refused(mark + kSquare + "f 1 2 3\n", {"line 1", "must be UTF-8 or Latin-1 text, is UTF-16"});
+  }
+}
+
 TEST(Obj, ReadsLinesThatEndAsOnAnySystem) {
   const auto meshes = read("# old\rv 0 0 0\rv 1 0 0\r\nv 0 1 0\nf 1 2 3\r");
   EXPECT_EQ(meshes[0].mesh->area(), 0.5);

@@ -101,6 +101,21 @@ TEST(Ply, SkipsWhatItDoesNotNeedInEachFormat) {
   }
 }
 
+// As scans of Stanford have them: -1 ends a strip, and every second triangle of one is turned.
+TEST(Ply, ReadsTriangleStripsInEachFormat) {
+  for (const Format format : kFormats) {
+    Body body(format);
+    for (const Vec3& p : kVertices) body.put(p.x()).put(p.y()).put(p.z());
+    body.put(int32_t{9});
+    for (const int32_t index : {0, 1, 2, 3, -1, 3, 1, 0, -1}) body.put(index);
+    const MeshPtr mesh = read(first_lines(format) +
+                              "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+                              "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
+                              body.content());
+    EXPECT_EQ(mesh->triangles(), (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {3, 1, 0}}));
+  }
+}
+
 // Rows of text may hold more than the header says, and several elements may share a line.
 TEST(Ply, ElementsOfTextAreReadByLinesWhereThereAreEnough) {
   const std::string head = first_lines(Format::kAscii) +

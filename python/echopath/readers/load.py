@@ -13,6 +13,7 @@ from .. import _core
 from ..arguments.checks import Rule, carrier, checked, choice, flag, optional, path as file_or_folder, real, refused, text
 from ..arguments.number_rules import unit_rule
 from ..base.process.callers import warn_user
+from ..base.storage.pointers import pointers_are_told
 from .material_names import Meaning, checked_materials, note_of_unused
 from .model import Model
 from .options import ReadOptions
@@ -20,8 +21,8 @@ from .sizes import figure_doubt
 
 # suffix -> module of this package with `read(path, options) -> Model`; imported when the first such file is read
 READERS: dict[str, str] = {
-    ".glb": "gltf", ".gltf": "gltf", **dict.fromkeys(_core.MESH_SUFFIXES, "obj"), ".xml": "mitsuba", ".usd": "usd",
-    ".usda": "usd", ".usdc": "usd", ".usdz": "usd", ".npz": "frames", ".bvh": "bvh",
+    ".glb": "gltf", ".gltf": "gltf", ".vrm": "gltf", **dict.fromkeys(_core.MESH_SUFFIXES, "obj"), ".xml": "mitsuba",
+    ".usd": "usd", ".usda": "usd", ".usdc": "usd", ".usdz": "usd", ".npz": "frames", ".bvh": "bvh",
 }
 
 
@@ -38,8 +39,8 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
                offset: float = 0.0, smooth: bool | None = None, frequency: float | None = None) -> Model:
     """The objects of a foreign file as a tree of nodes, for Scene.add.
 
-    path: its suffix tells the format: glTF 2.0 (.glb, .gltf), OBJ, PLY, STL, OFF, USD, Mitsuba XML, NPZ, BVH; or a folder of
-        OBJ files, one for each frame
+    path: its suffix tells the format: glTF 2.0 (.glb, .gltf, .vrm), OBJ, PLY, STL, OFF, USD, Mitsuba XML, NPZ, BVH; or a
+        folder of OBJ files, one for each frame
     unit: m per unit of the file, 1e-12 to 1e9; None: as the file says, or its format (glTF: 1)
     up: the file's vertical axis, "x", "y" or "z"; None: as the file says, or its format (glTF: "y"). The model stands with z
         up and looks along +x where the file follows its format
@@ -69,7 +70,7 @@ def read_model(file: Path, options: ReadOptions) -> Model:
     """`load_model` without a word on its size."""
     try:
         reader = importlib.import_module(f".{reader_of(file)}", __package__)
-        with np.errstate(all="ignore"):  # of numbers that no model can have, which are refused by name where they are checked
+        with pointers_are_told(file), np.errstate(all="ignore"):  # of numbers that no model can have, refused where checked
             model = reader.read(file, options)
     except RecursionError:
         raise _core.FileError(f"{file}: is nested too deeply") from None

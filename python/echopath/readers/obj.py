@@ -34,7 +34,7 @@ def read(path: Path, options: ReadOptions) -> Model:
 def _notes_of_libraries(path: Path, libraries: list[str], used: set[str]) -> list[str]:
     """What to say of the MTL files of an OBJ file: those that are missing, and names that none of them has."""
     notes, known, missing = [], set(), False
-    for line in dict.fromkeys(libraries):
+    for line in dict.fromkeys(name.replace("\\", "/") for name in libraries):  # as programs of Windows write paths
         names = [line] if _is_file(path.parent / line) else line.split()  # a name may hold spaces
         for name in names:
             try:

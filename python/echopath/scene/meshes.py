@@ -6,6 +6,7 @@ import os
 from .. import _core
 from ..arguments.checks import checked
 from ..arguments.number_rules import unit_rule
+from ..base.storage.pointers import pointers_are_told
 from ..base.text.node_names import fit_paths
 
 
@@ -17,7 +18,8 @@ def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     Returns a Mesh; its original_triangle counts the faces of the file from 0.
     Raises FileError naming the file, and the line where it is text; TypeError or ValueError naming the argument.
     """
-    return _core.load_mesh(path, unit)
+    with pointers_are_told(path):
+        return _core.load_mesh(path, unit)
 
 
 @checked(unit=unit_rule)
@@ -31,5 +33,6 @@ def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[s
     signs that a scene refuses become '_'. Groups without any area are left out. Raises FileError naming the file, and the line
     where it is text; TypeError or ValueError naming the argument.
     """
-    meshes = _core.load_meshes(path, unit)
+    with pointers_are_told(path):
+        meshes = _core.load_meshes(path, unit)
     return list(zip(fit_paths(name for name, _ in meshes), (mesh for _, mesh in meshes)))

@@ -310,7 +310,7 @@ BAD = {
     "missing frame": (("info", "nowhere.h5"), "nowhere.h5: no such file"),
     "missing mesh": (("info", "nowhere.obj"), "nowhere.obj"),
     "missing folder": (("info", "nowhere"), "nowhere: no such file or folder"),
-    "unknown kind of file": (("info", __file__), "must be a .toml or .h5 file, or one of .glb, .gltf, .obj, .ply, .stl"),
+    "unknown kind of file": (("info", __file__), "must be a .toml or .h5 file, or one of .glb, .gltf, .vrm, .obj, .ply, .stl"),
     "selection of a mesh": (("info", "a.obj", "--select", "T . R"), "a.obj: must be a frame file (.h5) for --select"),
     "no rays": (("demo", "--rays", "0"), "must be a whole number of at least 1, got '0'"),
     "rays in words": (("demo", "--rays", "many"), "must be a whole number of at least 1, got 'many'"),

@@ -75,6 +75,33 @@ def test_groups_of_an_obj_are_taken_apart_by_material(tmp_path):
     assert [name for name, _ in ep.load_meshes(tmp_path / "house.obj")] == ["wall", "door"]
 
 
+def test_a_material_file_is_found_where_windows_says(tmp_path):
+    (tmp_path / "look").mkdir()
+    (tmp_path / "look/my house.mtl").write_text("newmtl oak\n")
+    (tmp_path / "a.obj").write_text("mtllib look\\my house.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl oak\nf 1 2 3\n")
+    assert ep.load_model(tmp_path / "a.obj").notes == ()
+
+
+@pytest.mark.parametrize("read, name", [
+    *((ep.load_model, f"a.{suffix}") for suffix in ("glb", "obj", "ply", "stl", "off", "usda", "npz", "bvh", "xml")),
+    (ep.load_mesh, "a.obj"), (ep.load_meshes, "a.stl"), (ep.read_trajectories, "a.gpx")])
+def test_a_pointer_of_git_lfs_is_told_as_such(tmp_path, read, name):
+    """As its specification says, a pointer begins with the version of that."""
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
+    (tmp_path / name).write_text(pointer)
+    with pytest.raises(ep.FileError, match="is a pointer of Git LFS, not the file itself"):
+        read(tmp_path / name)
+
+
+def test_a_shape_of_mitsuba_that_is_a_pointer_is_told_as_such(tmp_path):
+    """Its faces had been taken to be none."""
+    (tmp_path / "a.obj").write_text("version https://git-lfs.github.com/spec/v1\n")
+    shape = '<shape type="obj"><string name="filename" value="a.obj"/></shape>'
+    (tmp_path / "a.xml").write_text(f'<scene version="3.0.0">{shape}</scene>')
+    with pytest.raises(ep.FileError, match=r"a\.xml, line 1: <shape>: .*a\.obj: is a pointer of Git LFS"):
+        ep.load_model(tmp_path / "a.xml")
+
+
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_names_in_latin_1_are_those_of_the_mtl_file(tmp_path, end):
     (tmp_path / "house.mtl").write_bytes(f"# made{end}newmtl grün{end}Kd 0 1 0{end}".encode("latin-1"))

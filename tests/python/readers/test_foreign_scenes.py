@@ -321,7 +321,7 @@ def test_scene_writes_a_file_that_runs_with_the_radar_in_the_street(town, tmp_pa
 
 
 def test_other_kinds_of_files_and_arguments_are_refused_by_name(tmp_path):
-    with pytest.raises(ValueError, match="path: must be a file of the kinds .glb, .gltf, .obj, .ply"):
+    with pytest.raises(ValueError, match="path: must be a file of the kinds .glb, .gltf, .vrm, .obj, .ply"):
         ep.load_model(tmp_path / "a.doc")
     with pytest.raises(ep.FileError, match="a.usd: cannot be opened"):
         ep.load_model(tmp_path / "a.usd")

@@ -13,7 +13,6 @@ from ... import _core
 from .item import Item
 
 MAGIC, JSON_CHUNK, BINARY_CHUNK = b"glTF", b"JSON", b"BIN\0"
-LFS = b"version https://git-lfs"
 MOST_BYTES = 2**28   # that any file may ask for; larger ones may ask for MOST_GROWTH times their size
 MOST_GROWTH = 64
 
@@ -82,8 +81,6 @@ class Document:
     def _parsed(self, content: bytes) -> Any:
         if content[:4] == MAGIC:
             content = self._unpacked(content)
-        elif content[:len(LFS)] == LFS:
-            self._fail("is a pointer of Git LFS, not the file itself (git lfs pull brings it)")
         try:
             return json.loads(content.decode("utf-8-sig"), parse_constant=_refuse_constant)
         except UnicodeDecodeError as error:

@@ -21,6 +21,7 @@ from .primitives import Primitives
 from .surfaces import Surface, Surfaces
 
 UP = "y"
+VRM_0 = "VRM"        # extension of figures that look the other way, toward -z (VRM Consortium, "VRM 0.0", 2018)
 ROOT = -1
 NAME_BYTES = 65      # of a level in the full name of a node
 NODE_BYTES = 2000    # of a node of a scene, about
@@ -41,8 +42,9 @@ def read(path: Path, options: ReadOptions) -> Model:
     _Content(document, accessors, nodes, motions, surfaces, tree).add_all()
     if not tree.nodes:
         document.json.fail("shows no triangles" + "".join(f"; {note}" for note in tree.notes[:3]))
-    return tree.model(format="glTF 2.0", unit=axes.unit, up=axes.up, animations=names, animation=animation.name,
-                      duration=animation.duration)
+    model = tree.model(format="glTF 2.0", unit=axes.unit, up=axes.up, animations=names, animation=animation.name,
+                       duration=animation.duration)
+    return model.placed(yaw=np.pi) if VRM_0 in document.json["extensions"] else model
 
 
 class _Content:

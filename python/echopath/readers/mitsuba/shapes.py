@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...base.storage.pointers import pointers_are_told
 from .. import forms
 from ..axes import Axes
 from ..mesh_files import NO_AREA, MeshPart, parts_of_file
@@ -42,7 +43,8 @@ class Shapes:
         if path.suffix.lower() not in (".ply", ".obj"):
             shape.refuse(f"the file '{path.name}' must be .ply or .obj")
         try:
-            return parts_of_file(path, self._axes, faceted)[0]
+            with pointers_are_told(path):
+                return parts_of_file(path, self._axes, faceted)[0]
         except _core.FileError as error:
             if str(error).endswith(("has no faces", NO_AREA)):
                 return []

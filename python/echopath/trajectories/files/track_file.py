@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ... import _core
 from ...arguments.checks import Rule, anything, array, checked, file as file_rule, is_writable, one_of, real, refused, vector
 from ...base.process.callers import warn_user
+from ...base.storage.pointers import pointers_are_told
 from ...base.text.counts import counted
 from ..arguments import FARTHEST, GOES_ON, NEAREST, Outside
 from ..kinds import of_kind, usual_kind, warn_of_unused_kinds
@@ -88,7 +89,8 @@ class TrackFile:
                  rows: Rows | None = None):
         _core.warn_of_turns(yaw)
         self._path = Path(path)
-        rows = read_rows(self._path) if rows is None else rows
+        with pointers_are_told(path):
+            rows = read_rows(self._path) if rows is None else rows
         self._origin = None
         if rows.is_geographic:
             self._origin = next(iter(rows.tracks.values())).places[0] if origin is None else np.asarray(origin, float)

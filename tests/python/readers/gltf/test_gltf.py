@@ -205,3 +205,13 @@ def test_bytes_may_stand_in_the_file_or_beside_it_but_nowhere_else(tmp_path):
         (inner / "box.gltf").write_text(box_file().gltf(uri))
         with pytest.raises(ep.FileError, match=r"buffers\[0\].uri: must be the name of a file in the folder of this one"):
             ep.load_model(inner / "box.gltf")
+
+
+@pytest.mark.parametrize("extension, ahead", [("VRM", -1), ("VRMC_vrm", 1)])
+def test_figures_of_vrm_look_along_x(tmp_path, extension, ahead):
+    """VRM 0.0: "Model faces towards -Z direction"; VRM 1.0, definition 1.1: "standing straight toward the +Z axis"."""
+    file = box_file(translation=[0.1, 0.0, 0.5 * ahead])
+    file.json |= {"extensionsUsed": [extension], "extensions": {extension: {}}}
+    (tmp_path / "figure.vrm").write_bytes(file.glb())
+    points = world(ep.load_model(tmp_path / "figure.vrm")).popitem()[1]
+    assert np.allclose(points, (BOX * [ahead, 1, ahead] + [0.1 * ahead, 0, 0.5])[:, TO_SCENE], atol=1e-6)

@@ -69,7 +69,6 @@ def test_each_fault_is_told_with_its_place(tmp_path, place, value, said):
 @pytest.mark.parametrize("content,said", [
     (b"", "is no glTF: begins with b''"),
     (b"<!DOCTYPE html>", "is no glTF: begins with b'<!DOCTYPE html>'"),
-    (b"version https://git-lfs.github.com/spec/v1\n", "is a pointer of Git LFS"),
     (b"\xff\xfe{}", r"is no glTF: its JSON is not UTF-8 text \(byte 0\)"),
     (b"[" * 100000, "has JSON that is nested too deeply"),
     (b"[]", r"must be a JSON object, is \[\]"),

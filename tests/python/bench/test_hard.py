@@ -2,6 +2,7 @@
 import json
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 
@@ -33,6 +34,18 @@ def test_names_are_unique_and_every_case_says_what_it_expects_and_how_it_fails()
     cases = hard.all_cases()
     assert len({case.name for case in cases}) == len(cases) > 60
     assert all(case.expected and case.group and case.bound_text and case.broken for case in cases)
+
+
+def test_a_checkout_has_the_cases_of_the_slow_reference():
+    """They are there with the sources alone: a reference that is looked for in the wrong folder would be missed by nobody."""
+    from support.references import reference_scenes
+
+    kinds = {name.removesuffix("_deviation") for name in vars(reference_scenes)}
+    asked = []
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(hard.oracle, "_deviations", lambda kind: asked.append(kind) or [SimpleNamespace(field=0, cube=0, power=0)])
+        assert [case.measure() for case in hard.oracle.cases] == [0] * 5
+    assert set(asked) == {"coherent", "polarized", "array", "diffuse"} <= kinds
 
 
 def test_nan_keeps_to_no_bound():

@@ -42,7 +42,7 @@ def power() -> float:
     return max(one.power for one in _deviations("diffuse"))
 
 
-if (TESTS / "support" / "reference_scenes.py").exists():
+if (TESTS / "support").is_dir():
     cases("fields of 20 random scenes",
           "up to three moving smooth plates of metal or dielectrics, in each other's shadow, beside a large "
           "plane: complex field at mid-frame, currents summed over a grid", bound=0.01, unit="of the field",

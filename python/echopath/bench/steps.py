@@ -1,10 +1,14 @@
-"""What all benchmarks share: work in steps that are told, and tables as text."""
+"""What all benchmarks share: work in steps that are told, and results as text."""
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterator, Sequence
-from typing import TypeVar
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
 
 Step = TypeVar("Step")
 
@@ -27,3 +31,18 @@ def csv_text(rows: list[dict], columns: Sequence[str] | None = None) -> str:
     writer.writeheader()
     writer.writerows(rows)
     return stream.getvalue()
+
+
+def json_text(results: Mapping) -> str:
+    """Results as JSON that every reader takes: it has no number for what is infinite or undefined, which is null there."""
+    return json.dumps(_plain(results), indent=1, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """A value of Python or NumPy in the types that JSON has."""
+    if isinstance(value, Mapping):
+        return {name: _plain(one) for name, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    number = value.item() if isinstance(value, np.generic) else value
+    return None if isinstance(number, float) and not math.isfinite(number) else number

@@ -1,18 +1,15 @@
 """Benchmarks that consist of parts, each with rows of figures beside what they must reach."""
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
-import numpy as np
-
 from ..base.storage.files import write_texts
 from .machine import machine
 from .pace import REFERENCE_MACHINE, pace, told_at_reference, verdict
-from .steps import told
+from .steps import json_text, told
 
 SECONDS = re.compile(r", (s|ms|us|ns)\b")  # names of figures in seconds end so, or go on with what the seconds are for
 
@@ -35,15 +32,8 @@ def run_parts(name: str, parts: Mapping[str, ModuleType], folder, *, quick: bool
         found[part] = rows if before is None or after is None else at_reference(rows, sorted((before, after)))
         before = after
     results = {"machine": machine(), "quick": quick, "rows": found}
-    write_texts(Path(folder), {f"{name}.json": json.dumps(results, indent=1, default=_number) + "\n"})
+    write_texts(Path(folder), {f"{name}.json": json_text(results)})
     return results
-
-
-def _number(value) -> int | float | bool:
-    """A number of NumPy as one of Python, which alone JSON files hold."""
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"rows: must hold numbers, words and lists of them, got {value!r}")
 
 
 def judged(found: Mapping[str, float], limits: Mapping[str, float]) -> list[dict]:

@@ -1,5 +1,6 @@
 """What the pace of a machine is, and which limits are held over it."""
 import json
+import math
 
 import numpy as np
 import pytest
@@ -104,3 +105,11 @@ def test_figures_of_numpy_are_written_as_numbers(tmp_path):
     parts = {"one": type("Counts", (), {"rows": staticmethod(lambda quick: [suite.judged_row("count", np.int64(3), None)])})}
     suite.run_parts("any", parts, tmp_path, quick=True, progress=None)
     assert json.loads((tmp_path / "any.json").read_text())["rows"]["one"][0]["measured"] == 3
+
+
+def test_what_has_no_number_is_null_in_a_benchmark_s_file(tmp_path):
+    rows = [suite.judged_row("share", one, None) for one in (math.nan, np.float64(math.inf), (2.5, -math.inf))]
+    parts = {"one": type("Shares", (), {"rows": staticmethod(lambda quick: rows)})}
+    suite.run_parts("any", parts, tmp_path, quick=True, progress=None)
+    read = json.loads((tmp_path / "any.json").read_text(), parse_constant=pytest.fail)  # called for what JSON does not know
+    assert [row["measured"] for row in read["rows"]["one"]] == [None, None, [2.5, None]]

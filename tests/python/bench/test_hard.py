@@ -43,7 +43,8 @@ def test_a_checkout_has_the_cases_of_the_slow_reference():
     kinds = {name.removesuffix("_deviation") for name in vars(reference_scenes)}
     asked = []
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(hard.oracle, "_deviations", lambda kind: asked.append(kind) or [SimpleNamespace(field=0, cube=0, power=0)])
+        found = [SimpleNamespace(field=0, cube=0, power=0)]
+        patched.setattr(hard.oracle, "_deviations", lambda kind: asked.append(kind) or found)
         assert [case.measure() for case in hard.oracle.cases] == [0] * 5
     assert set(asked) == {"coherent", "polarized", "array", "diffuse"} <= kinds
 

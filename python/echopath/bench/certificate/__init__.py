@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import time
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import echopath as ep
 
 from ...base.storage.files import write_texts
 from ..machine import machine
-from ..steps import told
+from ..steps import json_text, told
 from .scenes import KINDS, random_scene
 
 SCENES, QUICK_SCENES = 40, 8
@@ -76,7 +75,7 @@ def run_certificate(folder, *, scenes: int | None = None, quick: bool = False, p
                "all": _row(None, verdicts), "check_s": check_s, "seconds": time.perf_counter() - began,
                "uncertified": [_entry(v) for v in verdicts if v.is_wrong and v.certified],
                "false_alarms": [_entry(v) for v in verdicts if v.is_right and not v.certified]}
-    write_texts(Path(folder), {"certificate.json": json.dumps(results, indent=1) + "\n"})
+    write_texts(Path(folder), {"certificate.json": json_text(results)})
     return results
 
 

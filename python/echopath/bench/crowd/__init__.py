@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import time
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import echopath as ep
 from ...base.storage.files import write_texts
 from ..machine import machine
 from ..speed.tracer import bare_share
-from ..steps import told
+from ..steps import json_text, told
 from ..suite import judged_row
 from ..timing import processor_time
 from . import scenes
@@ -51,7 +50,7 @@ def run_crowd(folder, *, quick: bool = False, seeds: int | None = None, progress
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    write_texts(folder, {"crowd.json": json.dumps(results, indent=1) + "\n"})
+    write_texts(folder, {"crowd.json": json_text(results)})
     draw_crowd(results, folder / "crowd.png", wanted_db=WANTED_DB)
     return results
 

@@ -2,12 +2,11 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import time
 
 from ...base.storage.files import write_texts
 from ..machine import machine
-from ..steps import told
+from ..steps import json_text, told
 from . import faults, geometry, heavy, materials, meshes, motions, oracle, places, repeat, scenes, signals
 from .case import Case
 from .page import page
@@ -54,7 +53,7 @@ def run_hard(folder, *, quick: bool = False, progress=None) -> list[Result]:
              "holds": one.holds, "seen_to_fail": one.case.broken, "seconds": one.seconds, "error": one.error}
             for one in results]
     write_texts(folder, {"hard.md": page(results, described(machine())),
-                         "hard.json": json.dumps({"machine": machine(), "cases": rows}, indent=1)})
+                         "hard.json": json_text({"machine": machine(), "cases": rows})})
     return results
 
 

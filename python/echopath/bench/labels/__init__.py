@@ -1,7 +1,6 @@
 """`echopath bench labels`: what parts cost beside the whole signal, how fast expressions are matched, false alarms."""
 from __future__ import annotations
 
-import json
 import time
 from importlib.resources import as_file
 from pathlib import Path
@@ -15,6 +14,7 @@ from ...base.storage.files import write_texts
 from ...scene_file import load_scene
 from ...signals.measures import residual
 from ..machine import machine
+from ..steps import json_text
 from ..timing import processor_time
 from .false_alarms import describe_false_alarms, measure_false_alarms
 
@@ -60,7 +60,7 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
     _tell(progress, steps)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    write_texts(folder, {"labels.json": json.dumps(results, indent=1) + "\n"})
+    write_texts(folder, {"labels.json": json_text(results)})
     draw_labels(results, folder / "labels.png", rate_target=RATE_TARGET)
     return results
 

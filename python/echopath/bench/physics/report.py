@@ -1,11 +1,10 @@
 """The benchmark in words and numbers."""
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from ...base.storage.files import write_texts
-from ..steps import csv_text
+from ..steps import csv_text, json_text
 from ..suite import judged_row
 
 MUST_REACH = (  # target, rays, dB
@@ -43,7 +42,7 @@ def write_results(results: dict, folder: Path) -> None:
     """Writes physics.json, physics.csv (a row for each target, variant and number of rays) and costs.csv."""
     points = [{"target": name, "variant": label, **{column: point[column] for column in POINT_COLUMNS}}
               for name, target in results["targets"].items() for label, curve in target["curves"].items() for point in curve]
-    write_texts(folder, {"physics.json": json.dumps(results, indent=1) + "\n", "physics.csv": csv_text(points),
+    write_texts(folder, {"physics.json": json_text(results), "physics.csv": csv_text(points),
                          "costs.csv": csv_text(results["costs"])})
 
 

@@ -1,7 +1,6 @@
 """`echopath bench replay`: one record for all chirps and antennas, against tracing each of them anew."""
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import echopath as ep
 from ...actors import shapes
 from ...base.storage.files import write_texts
 from ..machine import machine
+from ..steps import json_text
 from ..timing import fastest
 from .cases import CHIRPS, FREQUENCY, Case, all_cases, person_scene, radar
 
@@ -48,7 +48,7 @@ def run_replay(folder, *, quick: bool = False, progress=None) -> dict:
     done()
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    write_texts(folder, {"replay.json": json.dumps(results, indent=1) + "\n"})
+    write_texts(folder, {"replay.json": json_text(results)})
     draw_replay(results, folder / "replay.png")
     return results
 

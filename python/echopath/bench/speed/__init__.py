@@ -2,7 +2,6 @@
 frame beside its floor."""
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import echopath as ep
 from ...base.storage.files import write_texts
 from ..machine import machine
 from ..replay import cases as replay_cases
-from ..steps import csv_text
+from ..steps import csv_text, json_text
 from ..timing import processor_time
 from . import faint, frames, guard, retrace, synthesis, tracer
 
@@ -53,7 +52,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
-    write_texts(folder, {"speed.json": json.dumps(results, indent=1) + "\n",
+    write_texts(folder, {"speed.json": json_text(results),
                          "speed.csv": csv_text(results["synthesis"]["rows"], COLUMNS)})
     draw_synthesis(results, folder / "speed_synthesis.png")
     draw_frames(results, folder / "speed_frames.png")

@@ -1,5 +1,6 @@
 """`echopath bench dataset`: what frames of datasets cost, and growth with workers."""
 import json
+import multiprocessing
 
 import pytest
 
@@ -21,3 +22,11 @@ def test_a_quick_run_writes_what_it_measured(tmp_path, monkeypatch):
     assert two["memory_holds"] and two["busiest"] < two["seconds"]  # both have worked
     lines = dataset.describe(results)
     assert any(line.startswith("ghosts") for line in lines) and any(line.startswith("2 ") for line in lines)
+
+
+def test_a_worker_that_fails_ends_the_benchmark(monkeypatch):
+    context = multiprocessing.get_context("fork")
+    monkeypatch.setattr(dataset.workers.multiprocessing, "get_context", lambda kind: context)
+    monkeypatch.setattr(dataset.workers, "_work", lambda path, folder, scenes, run, told: exit(1 if 0 in scenes else 0))
+    with pytest.raises(RuntimeError, match="a worker of the benchmark has failed"):
+        dataset.workers.rows(quick=True)

@@ -30,6 +30,13 @@ def row_of(rows, what):
     return next(row for row in rows if row.get("what") == what)
 
 
+def test_a_look_at_a_city_is_not_held_to_the_limit_of_all_rays(tmp_path, monkeypatch):
+    found = {"seconds": 1.0, "memory": 0, "by_images": 0, "paths": 0}
+    monkeypatch.setattr(public_cities, "alone", lambda work, file, materials, settings: found)
+    assert row_of(public_cities._alone(tmp_path, 20_000), "Munich, 20,000 rays, s")["limit"] is None
+    assert row_of(public_cities._alone(tmp_path, public_cities.RAYS), "Munich, 1,000,000 rays, s")["limit"] == 3.0
+
+
 @pytest.fixture
 def floor(tmp_path, monkeypatch):
     """A folder of scenes with a floor of metal, the only public city."""

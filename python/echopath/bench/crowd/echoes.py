@@ -3,7 +3,7 @@
 What launch cells take away is the same for every seed of the rays: of one scene, intervals hold the truth always or never. The
 coherent echoes and those of two bounces are therefore of another body, attitude or place for each seed.
 
-Power that no closed form tells is that of a trace with many more rays (crowd_coverage.py): of plates, lofted cars, spheres by a
+Power that no closed form tells is that of a trace with many more rays (coverage.py): of plates, lofted cars, spheres by a
 wall, and what is diffuse, coverage tells how well runs know what more rays would say, not how well that is true.
 """
 from __future__ import annotations

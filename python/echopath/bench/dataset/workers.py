@@ -68,10 +68,11 @@ def _run(path: Path, scenes: int, count: int) -> list[dict]:
                      for index in range(count)]
         for process in processes:
             process.start()
-        found = [told.get() for _ in processes]
         for process in processes:
             process.join()
-    return found
+    if any(process.exitcode for process in processes):
+        raise RuntimeError("dataset: a worker of the benchmark has failed, and said why")
+    return [told.get() for _ in processes]
 
 
 def _work(path: str, folder: str, scenes: list[int], run: str, told) -> None:

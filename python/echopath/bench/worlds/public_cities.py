@@ -57,7 +57,7 @@ MUNICH = City("Munich", "munich/munich.xml", (8.5, 21.0, 27.0),
 CITIES = (MUNICH, City("Etoile", "etoile/etoile.xml", (-154.0, 50.0, 20.0), ((-120.0, 50.0, 1.5), (30.0, 40.0, 1.5))),
           City("canyon", "simple_street_canyon/simple_street_canyon.xml", (-33.0, 0.0, 32.0),
                ((20.0, 0.0, 1.5), (-10.0, 3.0, 1.5))))
-LIMITS = {"Munich, 1e6 rays, s": 3.0, "Munich, all planes mirrors, 1 bounce, s": 2.0,
+LIMITS = {f"Munich, {RAYS:,} rays, s": 3.0, "Munich, all planes mirrors, 1 bounce, s": 2.0,
           "Munich, all planes mirrors, 1 bounce, MiB": 500.0}
 PEER_LIMITS = {"paths of Sionna RT missing": 0, "delays differ by, ps": DELAY_LIMIT * PICO,
                f"{ALL_MARKED}paths of Sionna RT missing": 0, f"{ALL_MARKED}delays differ by, ps": DELAY_LIMIT * PICO,
@@ -140,7 +140,7 @@ def _alone(folder: Path, rays: int) -> list[dict]:
     marked = {"*": ep.Material.metal(mirror=True)}
     searches = {bounces: alone(_first_trace, file, marked, {"num_rays": SEARCH_RAYS, "max_bounces": bounces})
                 for bounces in (1, BOUNCES)}
-    found = {"Munich, 1e6 rays, s": first["seconds"], "Munich, 1e6 rays, MiB": first["memory"] / MIB,
+    found = {f"Munich, {rays:,} rays, s": first["seconds"], f"Munich, {rays:,} rays, MiB": first["memory"] / MIB,
              "Munich, paths by images": first["by_images"], "Munich, paths": first["paths"]}
     for bounces, one in searches.items():
         name = f"Munich, all planes mirrors, {bounces} bounce{'s' if bounces > 1 else ''}"

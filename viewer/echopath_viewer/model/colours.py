@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 
 import numpy as np
 
@@ -117,10 +118,10 @@ def _legend_of_objects(segments, palette, mesh_names) -> Legend:
     """A row for each object that rays go to, those of most segments, in the mean of the shades of its meshes."""
     tops = [object_of(name) for name in mesh_names]
     counts = np.bincount(segments.mesh_id[segments.mesh_id >= 0], minlength=len(tops))
-    totals = dict.fromkeys(top for top, count in zip(tops, counts) if count)
-    for name in totals:
-        totals[name] = sum(int(count) for top, count in zip(tops, counts) if top == name)
-    kept = sorted(totals, key=lambda name: -totals[name])[:MAX_LEGEND_ROWS]
+    totals: Counter = Counter()
+    for mesh in np.flatnonzero(counts):
+        totals[tops[mesh]] += int(counts[mesh])
+    kept = [name for name, _ in totals.most_common(MAX_LEGEND_ROWS)]
     rows = tuple((name, _mean_colour(palette, [top == name for top in tops])) for name in totals if name in kept)
     return Legend("Object that the ray goes to", rows=rows, num_more=len(totals) - len(rows))
 

@@ -248,6 +248,10 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         found = leakage_map(self.radar, spectrum.window, spectrum.zero_pad)
         return None if found is None else Part(WHOLE, LEAKAGE, found, is_known=False)
 
+    def where_lit(self) -> str:
+        """Where the rays are that are lit, in words."""
+        return f"of {self.lit_by}" if self.lit_by else "in the selected cells"
+
     def why_no_rays(self) -> str:
         """Why no ray is drawn, or lit where cells are selected; "" where some are, or where filters take none."""
         if self.lit is None:

@@ -72,9 +72,11 @@ class SessionNodes:
 
     def meshes_of_node(self) -> set:
         """IDs of the meshes that are selected."""
-        if self.node is None:
-            return set()
-        return {mesh for mesh, name in enumerate(self.mesh_names) if f"{name}/".startswith(f"{self.node}/")}
+        return set() if self.node is None else self.meshes_below(self.node)
+
+    def meshes_below(self, node: str) -> set:
+        """IDs of the meshes of a node and of all nodes under it."""
+        return {mesh for mesh, name in enumerate(self.mesh_names) if f"{name}/".startswith(f"{node}/")}
 
     def meshes_of_objects(self) -> list:
         """IDs of the meshes of what labels take for objects, which leaves out the ground and the walls around the radar; of all

@@ -22,7 +22,7 @@ class Choices:
     def _isolate(self, name: str) -> None:
         """Shows the object of a row of the legend alone, or everything where it is alone already."""
         session = self.session
-        meshes = {mesh for mesh, full_name in enumerate(session.mesh_names) if f"{full_name}/".startswith(f"{name}/")}
+        meshes = session.meshes_below(name)
         others = set(range(len(session.mesh_names))) - meshes
         if not meshes:
             return

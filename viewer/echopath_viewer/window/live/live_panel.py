@@ -5,7 +5,7 @@ import numpy as np
 
 import echopath as ep
 
-from ...model.frames.live_session import DEFAULT_RAYS
+from ...model.frames.live_session import DEFAULT_RAYS, TITLE
 from ..maps.ticks import nice_below, step_of
 from ..qt import Qt, QtCore, QtWidgets, Signal
 from .live_control import RADAR
@@ -77,7 +77,7 @@ class LivePanel(QtWidgets.QWidget):
     def show_session(self, session) -> None:
         """Another frame: what was live is not any more."""
         self.session = session
-        if session.title != "live":
+        if session.title != TITLE:
             self.start_button.setChecked(False)
 
     def follow_session(self, session, is_passing: bool = False) -> None:

@@ -14,9 +14,9 @@ from ...model.maps.part_set import level_text
 from ..qt import QtCore, QtWidgets
 from .colour_bar import ColourBar
 from .map_area import title_of
-from .map_panel import MapPanel
+from .map_panel import MapPanel, extent_of
 from .side_panels import SeenPanel
-from .ticks import place_text, step_of
+from .ticks import place_text
 
 DIFFERENCE_COLOURS, DIFFERENCE_SPAN_DB = "coolwarm", 20.0
 NO_CHANGE = 127  # the colour of it
@@ -101,7 +101,7 @@ class ComparePanel(SeenPanel):
         change = difference(self.kept, now)
         shown, view = self.panels["now"], self.panels["now"].view
         if not (np.array_equal(shown.range_axis, now.range) and np.array_equal(shown.velocity_axis, now.velocity)):
-            view = self._whole_view(now)
+            view = extent_of(now.range, now.velocity)
         for name, one, level, ends in (("kept", self.kept, self.kept.level, limits), ("now", now, now.level, limits),
                                        ("difference", now, np.nan_to_num(change), (-DIFFERENCE_SPAN_DB, DIFFERENCE_SPAN_DB))):
             axes = SimpleNamespace(range=one.range, velocity=one.velocity)
@@ -123,15 +123,9 @@ class ComparePanel(SeenPanel):
             return
         self.note.setText(for_pictures(f"the selected cell: {self.change[cell[1], cell[0]]:+z.1f} dB"))
 
-    @staticmethod
-    def _whole_view(one) -> QtCore.QRectF:
-        half_range, half_velocity = 0.5 * step_of(one.range), 0.5 * step_of(one.velocity)
-        return QtCore.QRectF(one.range[0] - half_range, one.velocity[0] - half_velocity,
-                             one.range[-1] - one.range[0] + 2 * half_range,
-                             one.velocity[-1] - one.velocity[0] + 2 * half_velocity)
-
     def _reset_view(self) -> None:
-        self._set_view(self._whole_view(self.session.parts.whole.spectrum))
+        spectrum = self.session.parts.whole.spectrum
+        self._set_view(extent_of(spectrum.range, spectrum.velocity))
 
     def _set_view(self, view) -> None:
         for panel in self.panels.values():
@@ -149,6 +143,3 @@ class ComparePanel(SeenPanel):
         told = f"{level:+z.1f} dB" if self.sender() is self.panels["difference"] else level_text(level)
         place = place_text(self.session.parts.whole.spectrum, distance, velocity).replace(", ", "   ")
         self.note.setText(for_pictures(f"{place}   {told}"))
-
-    def stop(self) -> None:
-        """There is nothing to end."""

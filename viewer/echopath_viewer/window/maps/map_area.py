@@ -8,13 +8,13 @@ from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
 from ...model.maps.layers import TWINS
-from ...model.maps.part_set import WHOLE, level_text
+from ...model.maps.part_set import MESH_GROUP, WHOLE, level_text
 from ..busy import waiting_cursor
 from ..qt import Qt, QtCore, QtGui, QtWidgets
 from .colour_bar import ColourBar
 from .map_grid import MapGrid
-from .map_panel import MapPanel
-from .ticks import place_text, step_of
+from .map_panel import MapPanel, extent_of
+from .ticks import place_text
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
 MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",
@@ -260,13 +260,11 @@ class MapArea(QtWidgets.QWidget):
     def _extent(self, spectra, is_moving_meant: bool) -> QtCore.QRectF:
         """Where there is signal, or the whole map where there is none."""
         spectrum = self.session.parts.whole.spectrum
-        half_range, half_velocity = 0.5 * step_of(spectrum.range), 0.5 * step_of(spectrum.velocity)
-        left, right = spectrum.range[0] - half_range, spectrum.range[-1] + half_range
-        low, high = spectrum.velocity[0] - half_velocity, spectrum.velocity[-1] + half_velocity
+        everything = extent_of(spectrum.range, spectrum.velocity)
         near = signal_extent(spectra, self.session.map_limits()[0], is_moving_meant)
-        if near is not None:
-            left, right, low, high = max(left, near[0]), min(right, near[1]), max(low, near[2]), min(high, near[3])
-        return QtCore.QRectF(left, low, right - left, high - low)
+        if near is None:
+            return everything
+        return everything.intersected(QtCore.QRectF(QtCore.QPointF(near[0], near[2]), QtCore.QPointF(near[1], near[3])))
 
     def _find_views(self) -> None:
         """All that is received, and as far as something moves, its surroundings."""
@@ -284,7 +282,7 @@ def title_of(part) -> str:
     """What a part is called in the window."""
     if part.group == WHOLE:
         return "everything received"
-    if part.group == "mesh":
+    if part.group == MESH_GROUP:
         return f"over {part.name}"
     return part.name if part.name != "other" else "other: all the rest"
 

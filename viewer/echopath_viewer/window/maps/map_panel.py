@@ -117,13 +117,9 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         distance, velocity = self.to_value(at)
         return (nearest_index(self.range_axis, distance), nearest_index(self.velocity_axis, velocity))
 
-    def _rect_of(self, box: CellBox) -> QtCore.QRectF:
-        half_range, half_velocity = 0.5 * step_of(self.range_axis), 0.5 * step_of(self.velocity_axis)
-        corner = self.to_pixel(self.range_axis[box.first_range] - half_range,
-                               self.velocity_axis[box.last_velocity] + half_velocity)
-        opposite = self.to_pixel(self.range_axis[box.last_range] + half_range,
-                                 self.velocity_axis[box.first_velocity] - half_velocity)
-        return QtCore.QRectF(corner, opposite)
+    def _rect_of(self, box: CellBox | None) -> QtCore.QRectF:
+        cells = extent_of(self.range_axis, self.velocity_axis, box)
+        return QtCore.QRectF(self.to_pixel(cells.left(), cells.bottom()), self.to_pixel(cells.right(), cells.top()))
 
     # --- painting ---
 
@@ -171,7 +167,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
 
     def _paint_image(self, painter, rect, image, is_file: bool) -> None:
         """What is seen of it. is_file: cut out before, as painters of SVG files draw whole images."""
-        everything = self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1))
+        everything = self._rect_of(None)
         seen = everything.intersected(rect)
         across, down = image.width() / everything.width(), image.height() / everything.height()
         source = QtCore.QRectF((seen.left() - everything.left()) * across, (seen.top() - everything.top()) * down,
@@ -282,6 +278,14 @@ def _cut_out(image, source: QtCore.QRectF, size: QtCore.QSizeF) -> QtGui.QImage:
 def _colour_list(name: str) -> list:
     """Of a colour map, as images take it: kept, as making it takes longer than all else of a map."""
     return [QtGui.qRgb(*map(int, rgb)) for rgb in colour_table(name)]
+
+
+def extent_of(x, y, box: CellBox | None = None) -> QtCore.QRectF:
+    """From edge to edge of the cells of a box, or of all cells, in the units of both axes."""
+    box = CellBox(0, len(x) - 1, 0, len(y) - 1) if box is None else box
+    half = 0.5 * step_of(x), 0.5 * step_of(y)
+    return QtCore.QRectF(QtCore.QPointF(x[box.first_range] - half[0], y[box.first_velocity] - half[1]),
+                         QtCore.QPointF(x[box.last_range] + half[0], y[box.last_velocity] + half[1]))
 
 
 def nearest_index(axis, value: float) -> int:

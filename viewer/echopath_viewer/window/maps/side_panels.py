@@ -25,7 +25,7 @@ from ..qt import QtCore, QtWidgets
 from .colour_bar import ColourBar
 from .curve import CurveView
 from .map_area import title_of
-from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index
+from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, extent_of, nearest_index
 from .ticks import step_of
 
 SEVERAL_PAIRS = ("The channels have several pairs of polarisations, which beams add as if they had one: echoes may cancel, as VV "
@@ -59,6 +59,9 @@ class SeenPanel(QtWidgets.QWidget):
         """Shows what the session has now."""
         raise NotImplementedError
 
+    def stop(self) -> None:
+        """Ends the work, where there is any."""
+
 
 class SidePanel(SeenPanel):
     """A map that is made in a thread when somebody looks, and again when what it is made of has changed."""
@@ -83,7 +86,7 @@ class SidePanel(SeenPanel):
         self.work.failed.connect(self._fail)
         self.panel.cell_clicked.connect(self.pick)
         self.panel.view_changed.connect(self.panel.set_view)
-        self.panel.view_reset.connect(lambda: self.panel.set_view(self._whole_view()))
+        self.panel.view_reset.connect(lambda: self.panel.set_view(extent_of(self.map.x, self.map.y)))
         self.panel.hovered.connect(lambda *at: self.note.setText(self.words_of(*at)))
         self.panel.left.connect(lambda: self.map is not None and self.note.setText(self.caution()))
 
@@ -146,7 +149,7 @@ class SidePanel(SeenPanel):
         self.note.setText(self.caution())
         is_same = self.map is not None and np.array_equal(self.map.x, found.x) and np.array_equal(self.map.y, found.y)
         self.map = found
-        self._show_map(self.panel.view if is_same else self._whole_view())
+        self._show_map(self.panel.view if is_same else extent_of(found.x, found.y))
         self.show_marks()
 
     def _show_map(self, view: QtCore.QRectF) -> None:
@@ -166,11 +169,6 @@ class SidePanel(SeenPanel):
         self.panel.show_nothing()
         self.colour_bar.hide()
         self.note.setText(f"There is no map to show: {text}.")
-
-    def _whole_view(self) -> QtCore.QRectF:
-        half_x, half_y = 0.5 * step_of(self.map.x), 0.5 * step_of(self.map.y)
-        return QtCore.QRectF(self.map.x[0] - half_x, self.map.y[0] - half_y, self.map.x[-1] - self.map.x[0] + 2 * half_x,
-                             self.map.y[-1] - self.map.y[0] + 2 * half_y)
 
     def show_marks(self) -> None:
         """Where the selection of the session is in this map."""
@@ -299,6 +297,3 @@ class BeatPanel(SeenPanel):
         title = "beat signal of chirp {}, TX {}, RX {}".format(session.chirp + 1, *session.channel)
         quadrature = {} if session.radar.waveform.real else {"imaginary": samples.imag}
         self.curves.show_curves(title, 1e6 * times, {"real": samples.real} | quadrature)
-
-    def stop(self) -> None:
-        """There is nothing to end."""

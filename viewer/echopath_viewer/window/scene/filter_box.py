@@ -169,8 +169,7 @@ class FilterBox(QtWidgets.QWidget):
             return
         text = f"{visible:,} of {session.paths.num_paths:,} paths"
         if session.box is not None:
-            where = "in the selected cells" if not session.lit_by else f"of {session.lit_by}"
-            text += f", {int(session.lit.sum()):,} of them {where}"
+            text += f", {int(session.lit.sum()):,} of them {session.where_lit()}"
         drawn = len(session.shown_rays() if session.box is None else session.lit_rays())
         why = session.why_no_rays()
         told = why or f"{drawn:,} are drawn"

@@ -136,8 +136,7 @@ class RayTable(QtWidgets.QWidget):
         if session.box is None:
             self.title.setText(f"{len(self.model.rays):,} drawn, of {total:,} rays")
         else:
-            where = "in the selected cells" if not session.lit_by else f"of {session.lit_by}"
-            self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays {where}")
+            self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays {session.where_lit()}")
         self._show_chosen(session)
 
     def follow_session(self, session, is_passing: bool = False) -> None:

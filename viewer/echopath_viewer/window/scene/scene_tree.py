@@ -118,10 +118,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         if self.session is None or column != NAME:
             return
         name, is_on = item.data(NAME, NODE_ROLE), item.checkState(NAME) != Qt.CheckState.Unchecked
-        self.session.set_mesh_visible(self._meshes_below(name), is_on)
-
-    def _meshes_below(self, name: str) -> list[int]:
-        return [mesh for mesh, full_name in enumerate(self.session.mesh_names) if f"{full_name}/".startswith(f"{name}/")]
+        self.session.set_mesh_visible(self.session.meshes_below(name), is_on)
 
     def _clicked(self, item, _column: int) -> None:
         if self.session is not None and not self._is_on_check_box(item):
@@ -155,7 +152,7 @@ class SceneTree(QtWidgets.QTreeWidget):
 
     def _show_alone(self, name: str) -> None:
         self.session.set_mesh_visible(range(len(self.session.mesh_names)), False)
-        self.session.set_mesh_visible(self._meshes_below(name), True)
+        self.session.set_mesh_visible(self.session.meshes_below(name), True)
 
     def _choose_colour(self, mesh: int) -> None:
         colour = QtWidgets.QColorDialog.getColor(QtGui.QColor(*map(int, self.session.palette[mesh])), self)

@@ -6,7 +6,7 @@ import numpy as np
 from echopath.signals.measures import for_pictures
 
 from ...model.maps.part_set import level_text
-from ..qt import Qt, QtCore, QtGui, QtWidgets
+from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 TICK_MS = 50
 TICKS_PER_FRAME = 64  # of the film: a frame of milliseconds takes seconds to watch
@@ -82,7 +82,7 @@ class TimeBar(QtWidgets.QWidget):
 class SlowTimeStrip(QtWidgets.QWidget):
     """Power by chirp with the current chirp marked."""
 
-    chirp_clicked = QtCore.Signal(int)
+    chirp_clicked = Signal(int)
 
     def __init__(self, parent=None):
         super().__init__(parent)

@@ -8,6 +8,10 @@ from ..arguments.checks import file
 from ..base.storage.files import require_writable
 from .typed_names import told_as, typed_arguments
 
+# Whose they are, of the options that one benchmark alone has.
+BENCH_OPTIONS = {"rays_max": "physics", "scenes": "certificate", "seeds": "crowd", "suite": "measured", "cities": "worlds",
+                 "sionna": "worlds", "models": "worlds"}
+
 
 def demo(options) -> None:
     from ..base.process.progress import progress_bars
@@ -142,51 +146,26 @@ def dataset_report(options) -> None:
 
 
 def bench(options) -> None:
+    given = {name: getattr(options, name) for name in BENCH_OPTIONS if getattr(options, name) is not None}
+    for name, value in given.items():
+        if BENCH_OPTIONS[name] != options.what:
+            raise ValueError(f"--{name.replace('_', '-')}: belongs to `echopath bench {BENCH_OPTIONS[name]}`, got {value}")
+
+    from .. import bench as of
     from ..base.process.progress import progress_bars
-    from ..bench import (
-        actors,
-        certificate,
-        crowd,
-        dataset,
-        hard,
-        labels,
-        live,
-        measured,
-        published,
-        receiver,
-        replay,
-        run_actors,
-        run_certificate,
-        run_crowd,
-        run_dataset,
-        run_labels,
-        run_live,
-        run_measured,
-        run_physics,
-        run_published,
-        run_receiver,
-        run_replay,
-        run_speed,
-        run_worlds,
-        speed,
-        worlds,
-    )
+    from ..bench import hard
     from ..bench.physics import report
 
-    works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
-             "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),
-             "crowd": (run_crowd, crowd.describe), "speed": (run_speed, speed.describe),
-             "actors": (run_actors, actors.describe), "measured": (run_measured, measured.describe),
-             "worlds": (run_worlds, worlds.describe), "live": (run_live, live.describe),
-             "receiver": (run_receiver, receiver.describe), "dataset": (run_dataset, dataset.describe),
-             "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
-    more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes},
-            "measured": {"suite": options.suite}, "crowd": {"seeds": options.seeds},
-            "worlds": {"cities": options.cities, "sionna": options.sionna, "models": options.models}}
+    works = {"physics": (of.run_physics, report), "labels": (of.run_labels, of.labels), "hard": (hard.run_hard, hard),
+             "certificate": (of.run_certificate, of.certificate), "crowd": (of.run_crowd, of.crowd),
+             "speed": (of.run_speed, of.speed), "actors": (of.run_actors, of.actors), "measured": (of.run_measured, of.measured),
+             "worlds": (of.run_worlds, of.worlds), "live": (of.run_live, of.live), "receiver": (of.run_receiver, of.receiver),
+             "dataset": (of.run_dataset, of.dataset), "targets": (of.run_published, of.published),
+             "replay": (of.run_replay, of.replay)}
     require_writable(options.out, "--out")
-    run, describe = works[options.what]
+    run, benchmark = works[options.what]
     with progress_bars() as progress:
-        lines = describe(run(options.out, quick=options.quick, progress=progress, **more.get(options.what, {})))
+        lines = benchmark.describe(run(options.out, quick=options.quick, progress=progress, **given))
     if options.quick:
         print("quick run, for a look: few rays and repeats; limits are those of runs without --quick\n")
     print("\n".join(lines))

@@ -178,8 +178,8 @@ def _add_bench(commands) -> None:
                        help="; ".join(f"{what}: {measured}" for what, measured in BENCHES.items()))
     bench.add_argument("--out", type=named, required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
-    bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
-                       help="physics: most rays of a trace (default: %(default)s)")
+    bench.add_argument("--rays-max", type=positive, default=None, metavar="N",
+                       help=f"physics: most rays of a trace (default: {2**16})")
     bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
     bench.add_argument("--seeds", type=positive, default=None, metavar="N",
                        help="crowd: scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)")

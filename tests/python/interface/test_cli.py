@@ -107,6 +107,15 @@ def test_a_folder_that_cannot_be_written_is_named_before_the_work(verb, scene_pa
     assert told == f"echopath: --out: must be a folder that can be written, got '{tmp_path / 'file/out'}' (Not a directory)\n"
 
 
+@pytest.mark.parametrize("what, option, owner", [
+    ("speed", "--rays-max", "physics"), ("crowd", "--scenes", "certificate"), ("certificate", "--seeds", "crowd"),
+    ("worlds", "--suite", "measured"), ("live", "--cities", "worlds"), ("targets", "--models", "worlds")])
+def test_an_option_of_another_benchmark_is_refused(what, option, owner, tmp_path, capsys):
+    assert main(["bench", what, "--quick", option, "7", "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err == f"echopath: {option}: belongs to `echopath bench {owner}`, got 7\n"
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_file_in_the_place_of_the_folder_of_a_run_is_named_before_the_work(scene_path, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(ep._core, "trace", None)  # no work begins
     (tmp_path / "file.txt").write_text("mine")

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench.physics import DEFAULT, Variant, _point, _slope, closed_forms, plate_pairs, targets
+from echopath.bench.physics import DEFAULT, Variant, _point, _slope, closed_forms, figure as physics_figure, plate_pairs, targets
 from echopath.bench.physics.report import BEST, describe, verdicts
+from echopath.bench.replay import figure as replay_figure
 from echopath.cli import main
 
 MULTI_BOUNCE_DB = 0.2   # what python/docs/measurements.md promises of corners
@@ -107,3 +108,22 @@ def test_command_writes_numbers_and_picture(tmp_path, capsys):
     assert sizes["smooth"] == sizes["all off"] + 28 and sizes["jones"] == sizes["all off"] + 32
     assert "bytes per hit" in printed and "sphere, ka 161" in printed
     assert describe(results)[0] in printed
+
+
+def test_pictures_show_all_that_is_measured(monkeypatch):
+    """What took long, and errors beyond the scale, whose marks lie on its end."""
+    drawn = []
+    for module in (physics_figure, replay_figure):
+        monkeypatch.setattr(module, "save_png", lambda figure, path, seed: drawn.append(figure))
+    curve = [{"num_rays": 2 ** 10, "seconds": 1e-5, "rms_db": 1e-4}, {"num_rays": 2 ** 16, "seconds": 20.0, "rms_db": 1e-4}]
+    target = {"title": "a target", "curves": {BEST: curve}}
+    physics_figure.draw_physics({"targets": dict.fromkeys(physics_figure.SHOWN, target)}, None)
+    variants = [{"label": "every chirp", "share_of_every_chirp": 0.5, "error_db": -3.0}]
+    replay_figure.draw_replay({"cases": {"car": {"title": "car", "variants": variants}}, "apertures": []}, None)
+    for axes in (*drawn[0].axes, drawn[1].axes[0]):
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        marks = [line for line in axes.lines if line.get_marker() in "v^so" and len(line.get_xdata())]
+        assert len(marks) >= 2 and any(line.get_marker() in "v^" for line in marks)
+        for line in marks:
+            x, y = np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+            assert np.all((left <= x) & (x <= right) & (low <= y) & (y <= high))

@@ -124,7 +124,7 @@ def test_each_row_of_the_benchmark_has_its_verdict():
     row = {"map": "hann", "method": "ca", "rate": 1e-3, "cells": 1000, "false_alarms": 1, "ratio": 1.0,
            "standard_error": 0.0}
     lines = describe_false_alarms([row | {"holds": True}, row | {"holds": False}])
-    assert lines[1].endswith("holds") and lines[2].endswith("MISSES 10%")
+    assert lines[1].endswith("holds") and lines[2].endswith("MISSED 10%")
 
 
 def radar_with(num_chirps=64, num_samples=128, receivers=1):

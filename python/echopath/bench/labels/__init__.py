@@ -154,13 +154,13 @@ def describe(results: dict) -> list[str]:
              f"{'sum':>10}"]
     for case in results["parts"]:
         for row in case["rows"]:
-            verdict = "" if row["sum_error"] <= SUM_TARGET else "   MISSES 1e-12"
+            verdict = "" if row["sum_error"] <= SUM_TARGET else "   MISSED 1e-12"
             lines.append(f"{case['rays']:>10,}{case['paths']:>12,}{row['num_parts']:>8}{row['num_filled']:>13}"
                          f"{row['over_synthesize']:>17.2f}{row['matching_s']:>13.3f}{row['sum_error']:>10.1e}{verdict}")
     lines += ["", f"matching on one core, M hits/s (promised: {RATE_TARGET * 1e-6:.0f}; over the time of a bare loop)"]
     for case in results["rates"]:
         lines.append(f"  {case['title']:<44}{case['bare_hits_per_second'] * 1e-6:8.0f}  bare loop")
         for text, rate in case["hits_per_second"].items():
-            verdict = "holds" if rate >= RATE_TARGET else "MISSES"
+            verdict = "holds" if rate >= RATE_TARGET else "MISSED"
             lines.append(f"    {text:<42}{rate * 1e-6:8.0f}  {case['bare_hits_per_second'] / rate:5.2f}  {verdict}")
     return lines + ["", *describe_false_alarms(results["false_alarms"]), "", f"{results['seconds']:.0f} s in all"]

@@ -52,7 +52,7 @@ def describe_false_alarms(rows: list[dict]) -> list[str]:
     """Lines for people: a row for each window, number of channels, method and rate."""
     lines = [f"{'false alarms of CFAR on noise':<40}{'rate':>8}{'cells':>12}{'found':>8}{'found / expected':>22}"]
     for row in rows:
-        verdict = "holds" if row["holds"] else f"MISSES {TARGET:.0%}"
+        verdict = "holds" if row["holds"] else f"MISSED {TARGET:.0%}"
         lines.append(f"  {row['method'] + ' ' + row['map']:<38}{row['rate']:8.0e}{row['cells']:12d}{row['false_alarms']:8d}"
                      f"{row['ratio']:14.3f} +- {row['standard_error']:.3f}  {verdict}")
     return lines

@@ -1,12 +1,11 @@
 """What each fault and code costs for the cube of a street, in processor time."""
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 import echopath as ep
 
+from ..timing import processor_time
 from . import street
 
 REPEATS, QUICK_REPEATS = 5, 1
@@ -49,9 +48,4 @@ def describe(rows: list[dict]) -> list[str]:
 
 def _seconds(work, repeats: int) -> float:
     """Median of the processor time of some runs, s."""
-    times = []
-    for _ in range(repeats):
-        begin = time.process_time()
-        work()
-        times.append(time.process_time() - begin)
-    return float(np.median(times))
+    return float(np.median([processor_time(work)[0] for _ in range(repeats)]))

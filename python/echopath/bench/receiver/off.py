@@ -5,7 +5,6 @@ fast. The bits of both are compared, too.
 """
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -15,6 +14,7 @@ import echopath as ep
 from ... import _core
 from ...receiver.chain import reception
 from ..suite import describe_judged, judged_row
+from ..timing import processor_time
 from . import street
 
 LIMIT = 1.01               # of the time without the receiver; a single turn of a quick run does not know it
@@ -59,12 +59,6 @@ def _ratio(without: Callable, with_it: Callable, turns: int) -> float:
     ratios = []
     for turn in range(turns):
         works = [without, with_it] if turn % 2 else [with_it, without]
-        seconds = {work: _seconds(work) for work in works}
+        seconds = {work: processor_time(work)[0] for work in works}
         ratios.append(seconds[with_it] / seconds[without])
     return float(np.median(ratios))
-
-
-def _seconds(work: Callable) -> float:
-    begin = time.process_time()
-    work()
-    return time.process_time() - begin

@@ -1,6 +1,8 @@
 """What replay gains and errs, in one picture."""
 from __future__ import annotations
 
+import numpy as np
+
 from ...base.storage.origin import FIXED_SEEDS
 from ...plots.style import CURVE_COLOURS, new_figure, save_png
 from .. import scale_ends
@@ -10,7 +12,7 @@ MARKERS = {"interpolated, 1e-1 rad": "v", "interpolated, 1e-3 rad": "^", "interp
            "Newton step": "D", "renewed 4 times": "P", "renewed 16 times": "X"}
 FLOOR_RAD = 1e-6
 FLOOR_DB = -150.0  # errors below stand there, with a mark at the end of the scale
-BOTTOM_DB = FLOOR_DB - 5.0
+BOTTOM_DB, TOP_DB = FLOOR_DB - 5.0, -20.0
 LIMIT_DB = -40.0   # what an error of one record should stay below
 LIMIT_LOOK = {"color": "black", "linewidth": 0.8, "linestyle": (0, (1, 2))}
 
@@ -28,9 +30,8 @@ def _draw_variants(axes, cases: dict) -> None:
     for colour, case in zip(CURVE_COLOURS, cases.values()):
         for row in case["variants"]:
             share, error = row["share_of_every_chirp"], row["error_db"]
-            if error < FLOOR_DB:
-                scale_ends.within(axes, [share], [error], (BOTTOM_DB, 0.0), colour)
-            axes.plot(share, max(error, FLOOR_DB), MARKERS[row["label"]], color=colour, markersize=7,
+            scale_ends.within(axes, [share], [error], (BOTTOM_DB, TOP_DB), colour)
+            axes.plot(share, np.clip(error, FLOOR_DB, TOP_DB), MARKERS[row["label"]], color=colour, markersize=7,
                       markerfacecolor="none" if row["label"] != "interpolated, 1e-5 rad (default)" else colour)
         axes.plot([], [], "-", color=colour, linewidth=3, label=case["title"])
     for label, marker in MARKERS.items():
@@ -39,7 +40,7 @@ def _draw_variants(axes, cases: dict) -> None:
     axes.set_xscale("log")
     axes.set_xlabel("time of the signal, as a share of renewing the hits at every chirp")
     axes.set_ylabel("largest error of the map in dB of its peak")
-    axes.set_ylim(BOTTOM_DB, -20.0)
+    axes.set_ylim(BOTTOM_DB, TOP_DB)
     axes.set_title("One record for all chirps of a frame: error against time")
     handles = [*axes.get_legend_handles_labels()[0], scale_ends.handle()]
     axes.legend(handles=handles, fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.13), frameon=False)

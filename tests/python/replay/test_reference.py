@@ -21,7 +21,7 @@ pytestmark = pytest.mark.hard
 
 # 2^16 rays, shared out by what each plate misses; edges of shadows, and plates that partly cancel; most are within 0.001
 FIELD_SHARE = 0.015
-SIGNAL_SHARE = 0.01   # likewise over three chirps: edges of shadows fall between cells of 1 mm, 1 % of a plate of 0.1 m
+SIGNAL_SHARE = 0.01   # likewise over two chirps: edges of shadows fall between cells of 1 mm, 1 % of a plate of 0.1 m
 RETURN_SHARE = 3e-3   # 2500 rays that reach a plate of 20 mm over two planes: most scenes are within 0.001
 STANDARD_ERRORS = 4.0
 CORNER_DB = 0.05      # 2^16 rays on two plates of 0.1 m

@@ -15,6 +15,8 @@ phase.
 
 One rough point has one random phase for all its pairs of legs: mean powers are sums over points of |sum over pairs|^2.
 """
+import functools
+
 import numpy as np
 
 from .reference_cells import Cells, lengths_of
@@ -77,10 +79,17 @@ class Reference(ReferenceLegs):
             return np.full(len(leaving), pattern.peak_gain)
         return pattern.peak_gain * np.maximum(leaving[:, 0], 0.0) ** pattern.exponent
 
-    def coherent_field(self, time):
-        """Sum of all coherent echoes with their phases, sqrt(W); planes by themselves included."""
-        every = [*self.planes_alone(time), *((length, field) for length, field, _ in self.pairs(time)[1])]
-        return sum(np.sum(field * self._turned(length)) for length, field in every)
+    @functools.cached_property
+    def at_trace_time(self):
+        """Echoes between the mean antennas as (length [M], coherent amplitude [M]): from cells, and over planes alone."""
+        self.is_mean = True
+        found = [pair[:2] for pair in self.pairs(self.trace_time)[1]], self.planes_alone(self.trace_time)
+        self.is_mean = False
+        return found
+
+    def coherent_field(self):
+        """Sum of all coherent echoes at the trace time with their phases, sqrt(W); planes by themselves included."""
+        return sum(np.sum(field * self._turned(length)) for echoes in self.at_trace_time for length, field in echoes)
 
     def planes_alone(self, time):
         """(length [1], amplitude [1]) of the echo over each sequence of flagged planes by its images."""
@@ -106,16 +115,14 @@ class Reference(ReferenceLegs):
     def _turned(self, length):
         return np.exp(-2j * np.pi * np.mod(length / self.wavelength, 1.0))
 
-    def cube(self, step):
+    def cube(self, step, channel=(0, 0)):
         """Coherent IF samples [chirp, sample], the first of every `step` of a chirp: delays at every sample, amplitudes at the
         middle of each chirp, shadows at the trace time, of the mean antennas. Transmitters take turns."""
         waveform = self.radar.waveform
         t = np.arange(waveform.num_samples) / waveform.sampling_rate
         kept = t[::step]
-        self.is_mean = True
-        seen = [field != 0 for _, field, _ in self.pairs(self.trace_time)[1]]
-        seen_alone = [field != 0 for _, field in self.planes_alone(self.trace_time)]
-        self.is_mean = self.sees_shadows = False
+        seen, seen_alone = ([field != 0 for _, field in echoes] for echoes in self.at_trace_time)
+        self.channel, self.sees_shadows = channel, False
         out = np.zeros((waveform.num_chirps, len(kept)), complex)
         for j in range(waveform.num_chirps):
             begin = (j * len(self.radar.transmitters) + self.channel[0]) * waveform.chirp_interval

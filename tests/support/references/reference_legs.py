@@ -45,11 +45,11 @@ class Plane:
 
 
 class ReferenceLegs:
-    """One scene and one radar; spacing: of the cells in m; channel: (transmitter, receiver) whose echoes are meant;
-    max_bounces: of a path, planes included."""
+    """One scene and one radar; spacing: of the cells in m; max_bounces: of a path, planes included. `channel`: (transmitter,
+    receiver) whose echoes are meant."""
 
-    def __init__(self, scene, radar, *, spacing, trace_time, corners=False, channel=(0, 0), max_bounces=3):
-        self.channel, self.is_mean = channel, False
+    def __init__(self, scene, radar, *, spacing, trace_time, corners=False, max_bounces=3):
+        self.channel, self.is_mean = (0, 0), False
         self.scene, self.radar, self.trace_time, self.corners = scene, radar, trace_time, corners
         self.materials = [mesh.material for mesh in scene.meshes]
         self.wavelength = C / radar.waveform.start_frequency

@@ -24,9 +24,9 @@ class Deviation:
     power: float = 0.0
 
 
-def random_radar(random, num_chirps=3):
+def random_radar(random):
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1.5e8, num_samples=16, sampling_rate=20e6,
-                                num_chirps=num_chirps, chirp_interval=1e-4)
+                                num_chirps=2, chirp_interval=1.5e-4)
     pattern = ep.CosinePower(2.0) if random.random() < 0.5 else ep.Isotropic(0.6)
     polarization = [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)][random.integers(2)]
     receiver = random.uniform(-0.05, 0.05, 3)
@@ -165,9 +165,8 @@ def array_deviation(seed):
     motion = ep.LinearMotion(velocity=random.uniform(-10, 10, 3), angular_velocity=random.uniform(-2, 2, 3))
     radar = ep.Radar(radar.waveform, transmitters=antennas[:2], receivers=antennas[2:], transmit_power=0.1, motion=motion)
     paths = ep.trace(scene, radar, num_rays=NUM_RAYS, max_bounces=3, polarization="scalar")
-    time = paths.frame.trace_time
-    exact = [[Reference(scene, radar, spacing=SPACING, trace_time=time, channel=(t, r)).cube(SAMPLE_STEP)
-              for r in (0, 1)] for t in (0, 1)]
+    reference = Reference(scene, radar, spacing=SPACING, trace_time=paths.frame.trace_time)
+    exact = [[reference.cube(SAMPLE_STEP, (t, r)) for r in (0, 1)] for t in (0, 1)]
     samples = ep.synthesize(paths, radar)[..., ::SAMPLE_STEP]
     return Deviation(cube=float(np.linalg.norm(samples - exact) / np.linalg.norm(exact)))
 
@@ -180,7 +179,7 @@ def _coherent(scene, radar, kind, model, between_planes=False):
     if between_planes:
         paths, reference.retro = paths.select(_returns(paths)), True
     turns = np.mod(np.asarray(paths.lengths([time]))[0] / reference.wavelength, 1.0)
-    found, expected = np.sum(np.asarray(paths.amplitude) * np.exp(-2j * np.pi * turns)), reference.coherent_field(time)
+    found, expected = np.sum(np.asarray(paths.amplitude) * np.exp(-2j * np.pi * turns)), reference.coherent_field()
     samples, exact = ep.synthesize(paths, radar)[0, 0, :, ::SAMPLE_STEP], reference.cube(SAMPLE_STEP)
     return Deviation(field=float(abs(found - expected) / abs(expected)),
                      cube=float(np.linalg.norm(samples - exact) / np.linalg.norm(exact)))

@@ -67,14 +67,14 @@ def _matcher(pattern: str):
     return re.compile("".join(letters), re.DOTALL).fullmatch
 
 
-def _words(name: str) -> list[str]:
-    """The words of a name in small letters: "M_RoadLine.001" -> ["m", "road", "line"]."""
-    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+", composed(name))]
+def _texts(name: str) -> list[str]:
+    """A name and its words in small letters: "M_RoadLine.001" -> ["m_roadline.001", "m", "road", "line"]."""
+    name = composed(name)
+    return [text.lower() for text in (name, *re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+", name))]
 
 
-def _takes(pattern: str, name: str, words: list[str]) -> bool:
-    takes = _matcher(pattern)
-    return bool(takes(composed(name).lower())) or any(takes(word) for word in words)
+def _takes(pattern: str, texts: list[str]) -> bool:
+    return any(map(_matcher(pattern), texts))
 
 
 def _pattern(argument: str, value) -> str:
@@ -141,14 +141,14 @@ def material_of(name: str, own: Mapping[str, Meaning] | None = None) -> tuple[Me
     own: patterns that go before `foreign_materials`, the first that takes the name decides; "*" also takes the name "".
     Names of ours mean themselves; what nothing takes is DEFAULT.
     """
-    words = _words(name)
+    texts = _texts(name)
     for pattern, material in (own or {}).items():
-        if _takes(pattern, name, words):
+        if _takes(pattern, texts):
             return material, None
     if name in materials:
         return name, None
     for pattern, material in foreign_materials.items():
-        if _takes(pattern, name, words):
+        if _takes(pattern, texts):
             return material, None
     return DEFAULT, f"the material '{name}' is not known: {DEFAULT} is taken" if name else (
         f"a mesh has no material: {DEFAULT} is taken")
@@ -157,8 +157,8 @@ def material_of(name: str, own: Mapping[str, Meaning] | None = None) -> tuple[Me
 def note_of_unused(patterns: Iterable[str], names: Iterable[str]) -> list[str]:
     """A sentence on patterns that take none of the names in a file: they may be misspelt. "*" takes all."""
     names = sorted({name for name in names if name})
-    unused = [pattern for pattern in patterns
-              if pattern != "*" and not any(_takes(pattern, name, _words(name)) for name in names)]
+    texts = [_texts(name) for name in names]
+    unused = [pattern for pattern in patterns if pattern != "*" and not any(_takes(pattern, one) for one in texts)]
     if not unused:
         return []
     there = f"{', '.join(names[:8])}{', ...' if len(names) > 8 else ''}" if names else "none"

@@ -71,10 +71,11 @@ def test_info_tells_what_lies_on_each_other_in_a_model(tmp_path, capsys):
 
 
 def test_no_single_letter_and_no_two_tell_a_material():
-    letters = string.ascii_lowercase
-    for name in (*letters, *(a + b for a in letters for b in letters)):
-        for text in (name, f"M_{name.title()}.001", f"mat-{name.upper()}"):
-            assert material_of(text, {})[1] is not None, text
+    """Each is a word of a name, in small letters, in capitals and with one capital."""
+    for first in string.ascii_lowercase:
+        words = [first, *(first + second for second in string.ascii_lowercase)]
+        for case in (str.lower, str.upper, str.title):
+            assert material_of("-".join(map(case, words)), {})[1] is not None, first
 
 
 def test_unknown_names_are_concrete_and_counted():

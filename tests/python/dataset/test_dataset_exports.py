@@ -36,12 +36,14 @@ position = [0.0, 0.0050, 1.0]
 position = [0.0, 0.0069, 1.0]
 [[objects]]
 name = "walker"
-actor = "pedestrian"
+{walker}
 position = [{{uniform = [5.0, 9.0]}}, 1.0, 0.0]
 [trace]
 num_rays = 1000
 [labels]
 """
+PERSON = 'actor = "pedestrian"'
+BOX = 'actor = "box"\nparameters = {size = [0.4, 0.4, 1.7]}\nmaterial = "metal"\nspeed = -1.0'  # one mesh: its files are short
 EXPORTS = {"carrada": "Carrada", "radar_scenes": "data", "osi": "traces"}  # module: folder that it writes
 ENDED = """
 import os, sys
@@ -60,7 +62,8 @@ def made(tmp_path_factory):
     """{what frames keep: folder of a dataset}."""
     folder = tmp_path_factory.mktemp("exports")
     for keep in ("all", "labels"):
-        (folder / f"{keep}.toml").write_text(TEMPLATE.format(keep=keep))
+        text = TEMPLATE.format(keep=keep, walker=BOX) + '[dataset.classes]\nwalker = "pedestrian"\n'
+        (folder / f"{keep}.toml").write_text(text)
         list(dataset.make(folder / f"{keep}.toml", folder / keep))
     return {keep: folder / keep for keep in ("all", "labels")}
 
@@ -116,7 +119,7 @@ def test_files_that_a_template_names_are_found_from_where_it_was(tmp_path):
     (tmp_path / "work" / "models").mkdir(parents=True)
     (tmp_path / "work" / "models" / "wall.obj").write_text("v 8 -2 0\nv 8 2 0\nv 8 2 3\nv 8 -2 3\nf 1 2 3 4\n")
     wall = '[[objects]]\nname = "wall"\nmodel = "models/wall.obj"\nmaterial = "brick"\n[trace]'
-    (tmp_path / "work" / "walls.toml").write_text(TEMPLATE.format(keep="maps").replace("[trace]", wall))
+    (tmp_path / "work" / "walls.toml").write_text(TEMPLATE.format(keep="maps", walker=BOX).replace("[trace]", wall))
     list(dataset.make(tmp_path / "work" / "walls.toml", tmp_path / "disk" / "made"))
     made = dataset.open(tmp_path / "disk" / "made")
     assert "wall" in made.remade()[1].frame.paths.scene
@@ -150,7 +153,7 @@ def test_groups_are_what_they_carry():
 
 def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
     """By a glob of [dataset.classes] that takes their name or what they consist of, else by the object that they are part of."""
-    text = TEMPLATE.format(keep="labels").replace("frames = 2\ninterval = 0.05\n", "").replace(
+    text = TEMPLATE.format(keep="labels", walker=PERSON).replace("frames = 2\ninterval = 0.05\n", "").replace(
         "[radar.waveform]", '[dataset.classes]\n"street/pole" = "other"\nlorry = "truck"\n[radar.waveform]')
     (tmp_path / "street.obj").write_text("v 9 2 0\nv 9 3 0\nv 9 2 4\nv 9 -2 0\nv 9 -3 0\nv 9 -2 4\n"
                                          "o pole\nf 1 2 3\no van\nf 4 5 6\n")

@@ -119,7 +119,7 @@ def test_detections_near_each_other_are_one():
 
 def test_errors_are_as_large_as_the_covariance_says():
     """NEES of many runs of the very model; bounds: 99.9 % of chi-square / N (Bar-Shalom 2001, section 5.4)."""
-    chi2 = pytest.importorskip("scipy.stats").chi2
+    special = pytest.importorskip("scipy.special")
     generator, runs, errors = np.random.default_rng(3), 50, []
     settings = {"range_std": 0.15, "azimuth_std": 0.01, "acceleration_std": 20.0, "speed_std": 6.0}
     for _ in range(runs):
@@ -133,7 +133,7 @@ def test_errors_are_as_large_as_the_covariance_says():
         assert tracks.num_tracks == 1
         error = tracks.state - states
         errors.append(np.einsum("ni,nij,nj->n", error, np.linalg.inv(tracks.covariance), error))
-    low, high = chi2.ppf([0.0005, 0.9995], 4 * runs) / runs
+    low, high = special.chdtri(4 * runs, [0.9995, 0.0005]) / runs
     mean = np.mean(errors, axis=0)
     assert np.all(mean[1:] > low) and np.all(mean[1:] < high)
 

@@ -20,6 +20,11 @@ def build_radar(transmitters=((0, 0, 0),), receivers=((0, 0, 0),), **settings) -
                     **settings)
 
 
+def with_waveform(radar, **changes):
+    """The radar with other values of its waveform."""
+    return radar.replace(waveform=radar.waveform.replace(**changes))
+
+
 def chirp_times(radar):
     """[chirps] in s: the middle of each chirp of a single transmitter, from the start of the frame."""
     waveform = radar.waveform

@@ -15,6 +15,12 @@ def lambert(reflectivity):
     return ep.Material(reflectivity=reflectivity, scattering=1.0)
 
 
+def unit(vectors):
+    """Vectors [..., 3] of length 1, and their lengths [...]."""
+    length = np.linalg.norm(vectors, axis=-1)
+    return vectors / length[..., None], length
+
+
 def quad(*corners):
     return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
 

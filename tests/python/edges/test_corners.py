@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.rcs_targets import in_plane
 from support.references import iterated_optics
 from support.references.method_of_moments import Strips, hankel, polyline
 from support.shapes import FREQUENCY, METAL, WAVELENGTH, decibel, fields, make_radar, rectangle, scene_of, sphere
@@ -56,11 +57,6 @@ def faces_of_dihedral(side, height):
     return [(corner, (HALF * side, sign * HALF * side, 0), (0, 0, height)) for sign in (1, -1)]
 
 
-def directions(angles_deg):
-    angles = np.radians(angles_deg)
-    return np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
-
-
 def echo_width_of_corner(side):
     """Of a dihedral of that many wavelengths by the method of moments, mean in dB of both polarisations, in wavelengths."""
     strips = Strips(polyline([(HALF * side, HALF * side), (0, 0), (HALF * side, -HALF * side)], SEGMENT[side]))
@@ -75,7 +71,7 @@ def test_dihedrals_of_few_wavelengths_have_the_echo_of_the_method_of_moments(sid
     scene = ep.Scene()
     for name, face in zip(("left", "right"), faces_of_dihedral(side * WAVELENGTH, height * WAVELENGTH)):
         scene.add(rectangle(*face), name=name, material=METAL)
-    found = ep.rcs(scene, frequency=FREQUENCY, incidence=directions(ANGLES_DEG), num_rays=NUM_RAYS)
+    found = ep.rcs(scene, frequency=FREQUENCY, incidence=in_plane(ANGLES_DEG), num_rays=NUM_RAYS)
     expected = echo_width_of_corner(side) + decibel(2 * (height * WAVELENGTH) ** 2)
     assert np.max(np.abs(decibel(np.asarray(found)) - expected)) < CORNER_DB
 

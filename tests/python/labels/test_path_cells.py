@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.detections.echo_fields import EchoFields
-from support.radars import build_radar
+from support.radars import build_radar, with_waveform
 from support.shapes import lambert
 
 NEAR_AN_EDGE = 0.02  # cells: the peak of a finite transform is that close to its frequency (TDM slots, window sidelobes)
@@ -37,12 +37,8 @@ def test_the_map_of_a_path_peaks_in_its_cell(real, num_transmitters, zero_pad):
 
 def test_steps_that_repeat_with_the_transmitters_are_those_of_the_map():
     """By the start frequency the fastest path lies five cells of velocity aside, by the slope 10 cells of range at 25 m."""
-    radar = with_slots(radar_of(False, 2), frequency_steps=(0.0, 2e9), bandwidth_steps=(0.0, -6e7))
+    radar = with_waveform(radar_of(False, 2), frequency_steps=(0.0, 2e9), bandwidth_steps=(0.0, -6e7))
     assert_peaks_in_cells(radar, 1, carrier_ratio=1.0 + (2e9 - 3e7) / radar.waveform.centre_frequency)
-
-
-def with_slots(radar, **slots):
-    return radar.replace(waveform=radar.waveform.replace(**slots))
 
 
 def assert_peaks_in_cells(radar, zero_pad: int, carrier_ratio: float = 1.0):
@@ -92,7 +88,7 @@ def is_nearest(cells, path: int, peak, spectrum, carrier_ratio: float) -> bool:
 @pytest.mark.parametrize("steps", ["frequency_steps", "bandwidth_steps"])
 def test_chirps_of_a_transmitter_that_differ_are_told_and_lie_where_even_ones_do(steps):
     even = radar_of(False, 2)
-    radar = with_slots(even, **{steps: (0.0, 0.0, 1e7)})
+    radar = with_waveform(even, **{steps: (0.0, 0.0, 1e7)})
     empty = ep.range_doppler(np.zeros(cube_shape(radar), complex), radar)
     with pytest.warns(RuntimeWarning, match=f"transmitter 1 of their radar differ .{steps}.*cells of all velocities"):
         cells = ep.path_cells(traced(radar), empty, tx=1)
@@ -102,7 +98,7 @@ def test_chirps_of_a_transmitter_that_differ_are_told_and_lie_where_even_ones_do
 
 
 def test_detections_of_chirps_that_differ_say_nothing_of_it(recwarn):
-    radar = with_slots(radar_of(False, 1), frequency_steps=(0.0, 1e7, 4e6))
+    radar = with_waveform(radar_of(False, 1), frequency_steps=(0.0, 1e7, 4e6))
     paths = traced(radar)
     ep.detect(ep.range_doppler(ep.synthesize(paths), radar), radar, paths=paths)
     assert not [str(one.message) for one in recwarn if "cells of all velocities" in str(one.message)]

@@ -7,12 +7,6 @@ from support.files.gltf_files import BOX, GltfFile, box_file
 TO_SCENE = [2, 0, 1]
 
 
-def loaded(tmp_path, file: GltfFile, **options):
-    path = tmp_path / "model.glb"
-    path.write_bytes(file.glb())
-    return ep.load_model(path, **options)
-
-
 def scene_of(model) -> ep.Scene:
     scene = ep.Scene()
     scene.add(model, name="m")

@@ -3,7 +3,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..signals.placed_radar import turn as turned
+from ..signals.placed_radar import product, turn as turned
 
 CREASE_COSINE = np.cos(np.radians(30))
 
@@ -166,7 +166,7 @@ def _slerp(motion, time):
     if first @ second < 0:
         second = -second
     conjugate = first * [1, -1, -1, -1]
-    step = _product(second, conjugate)
+    step = product(second, conjugate)
     sine = np.linalg.norm(step[1:])
     axis = step[1:] / sine if sine > 0 else np.array([1.0, 0, 0])
     start = rodrigues(_rotation_vector(first))
@@ -176,10 +176,6 @@ def _slerp(motion, time):
 def _rotation_vector(q):
     sine = np.linalg.norm(q[1:])
     return 2 * np.arctan2(sine, q[0]) * q[1:] / sine if sine > 0 else np.zeros(3)
-
-
-def _product(p, q):
-    return np.concatenate([[p[0] * q[0] - p[1:] @ q[1:]], p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:])])
 
 
 def _between(times, values, time):

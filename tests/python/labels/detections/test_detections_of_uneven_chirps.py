@@ -7,6 +7,7 @@ import pytest
 import echopath as ep
 from echopath.detections.uneven_fields import echo_fields
 from echopath.paths.cells import cells_of
+from support.radars import with_waveform
 from support.scenes.small_spheres import TARGETS, radar_with, scene_of
 from support.shapes import lambert
 
@@ -18,14 +19,10 @@ SLOTS = {
     "all": dict(extra_idle=(0.0, 9e-6), frequency_steps=(0.0, 8e7, 3e7), bandwidth_steps=(0.0, -3e7, 2e7, 1e7))}
 
 
-def uneven(radar, slots):
-    return radar.replace(waveform=radar.waveform.replace(**slots))
-
-
 @pytest.mark.parametrize("window, zero_pad", [("hann", 1), ("rect", 2)])
 @pytest.mark.parametrize("slots", SLOTS.values(), ids=SLOTS)
 def test_the_field_of_a_single_path_is_that_of_its_signal_at_all_velocities(slots, window, zero_pad):
-    radar = uneven(radar_with(receivers=2, transmitters=2), slots)
+    radar = with_waveform(radar_with(receivers=2, transmitters=2), **slots)
     paths = ep.trace(scene_of(TARGETS), radar, num_rays=600, max_bounces=1, start_time=0.01)
     spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar, window, zero_pad)
     echoes, nearest_cell = echo_fields(paths, spectrum), cells_of(paths, spectrum)
@@ -48,7 +45,7 @@ def test_detections_have_the_strongest_family_of_their_cells_and_the_paths_behin
     scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)
     scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=lambert(0.27), position=(14, -1, 0),
               motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
-    radar = uneven(radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6), slots)
+    radar = with_waveform(radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6), **slots)
     paths = ep.trace(scene, radar, num_rays=1500, max_bounces=1)
     maps = {family.object: ep.range_doppler(cube, radar).values
             for family, cube in ep.decompose(paths, radar, ep.families(paths)).items()}

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.files.gltf_files import BOX, BOX_SIDES, box_file, rig_file
-from support.files.gltf_loaded import TO_SCENE, loaded, morph_file, rotated, scene_of, vertices_at
+from support.files.gltf_files import BOX, BOX_SIDES, box_file, loaded, rig_file
+from support.files.gltf_loaded import TO_SCENE, morph_file, rotated, scene_of, vertices_at
 
 SINGLE = 2e-6
 KEYS = np.array([0.5, 1.0, 2.0], np.float32)

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.files.gltf_files import BOX, rig_file, tube
-from support.files.gltf_loaded import TO_SCENE, loaded, morph_file, rotated, scene_of, vertices_at
+from support.files.gltf_files import BOX, loaded, rig_file, tube
+from support.files.gltf_loaded import TO_SCENE, morph_file, rotated, scene_of, vertices_at
 
 SINGLE = 2e-6
 

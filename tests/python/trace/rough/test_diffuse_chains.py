@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.shapes import WAVELENGTH, lambert, make_radar, rectangle, scene_of, sphere
+from support.shapes import WAVELENGTH, lambert, make_radar, rectangle, scene_of, sphere, unit
 
 WAVE_NUMBER = 2 * math.pi / WAVELENGTH
 STANDARD_ERRORS = 3.5          # of the errors that the batches tell, themselves known to 20 %
@@ -24,11 +24,6 @@ def quadrature(corner, edge_a, edge_b, count):
     corner, a, b = (np.asarray(value, float) for value in (corner, edge_a, edge_b))
     area = np.linalg.norm(np.cross(a, b)) * np.outer(weights, weights).ravel() / 4
     return corner + u[:, None] * a + v[:, None] * b, area
-
-
-def unit(vectors):
-    length = np.linalg.norm(vectors, axis=-1)
-    return vectors / length[..., None], length
 
 
 def order_powers(paths, expressions):

@@ -6,11 +6,10 @@ import pytest
 
 import echopath as ep
 from echopath.base.storage.data_folder import data_folder
-from support.shapes import WAVELENGTH, make_radar, rectangle, scene_of
+from support.shapes import WAVELENGTH, make_radar, rectangle, scene_of, unit
 
 BATCHES = 16
 STANDARD_ERRORS = 3.0
-SINGLE_PRECISION = 2e-6
 RHO = 0.4
 
 
@@ -39,11 +38,6 @@ def lobe(material, arrival, normal, departure):
     forward = ((1 + np.sum(mirrored * departure, 1)) / 2)**material.lobe_exponent
     backward = ((1 - np.sum(arrival * departure, 1)) / 2)**back
     return ((1 - share) * forward + share * backward) / ((1 - share) * forward_whole + share * back_whole)
-
-
-def unit(vectors):
-    length = np.linalg.norm(vectors, axis=-1)
-    return vectors / length[..., None], length
 
 
 def mean_and_error(paths):

@@ -29,7 +29,8 @@ TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "foreign_
                                          "ego_motion", "live_scene")),
          *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr")),
          *(f"results/{name}" for name in ("angle_map", "spectrogram", "breath_and_heartbeat", "arms_only", "rcs_over_angle",
-                                          "polarimetry", "label_masks", "detections", "truth_and_tracks")),
+                                          "polarimetry", "label_masks", "detections", "truth_and_tracks",
+                                          "synthetic_aperture")),
          *(f"runs/{name}" for name in ("frames_in_time", "several_processes", "dataset")))
 LARGEST_FILE = 200_000  # bytes
 

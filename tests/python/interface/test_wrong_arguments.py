@@ -53,6 +53,7 @@ def good(tmp_path_factory) -> dict:
         "annotate_frame": {"frame": frame, "parts": {"again": {"plate": "T 'plate' R"}}},
         "around_corners": {"scene": scene, "radar": radar, "num_rays": 50},
         "synthesize_around_corners": {"scene": scene, "radar": radar, "num_rays": 50},
+        "backproject": {"cube": cube, "radar": radar, "points": (1, 0, 0)},
         "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},
         "demultiplex": {"cube": cube, "radar": radar}, "load_radar": {"path": folder / "sensor.cfg"},
         "load_sensor": {"path": folder / "sensor.cfg"}, "receive": {"cube": cube, "radar": radar, "seed": 1},

@@ -179,7 +179,8 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
         scenes = [scene for scene in scenes if records[scene].state == "failed"]
         place.forget(scenes)
     missing = scenes if only_failed else [scene for scene in scenes if records[scene].state == "to do"]
-    yield _forecast(plan, place, missing, workers) if missing else Forecast(0, 0.0, 0)
+    forecast = _forecast(plan, place, missing, workers) if missing else Forecast(0, 0.0, 0)
+    yield forecast
     there = [scene for scene in scenes if scene not in set(missing)]
     for done, scene in enumerate(there, 1):
         yield MadeScene(scene, plan.split_of(scene), records[scene], True, done, len(scenes), None, _unresolved(place, scene))
@@ -189,7 +190,10 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
     run, begin = uuid.uuid4().hex, time.perf_counter()
     try:
         for number, (scene, record) in enumerate(front(missing, run), 1):
-            left = (time.perf_counter() - begin) / number * (len(missing) - number)
+            now = time.perf_counter()
+            if number == 1 and forecast.seconds is not None:  # workers take seconds to start, which no later scene does
+                begin = max(begin, now - forecast.seconds / len(missing))
+            left = (now - begin) / number * (len(missing) - number)
             yield MadeScene(scene, plan.split_of(scene), record, False, len(there) + number, len(scenes), left,
                             _unresolved(place, scene))
     finally:

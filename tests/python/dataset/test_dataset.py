@@ -3,6 +3,7 @@ import json
 import pickle
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli import main
 from echopath.cli.info import describe_file
+from echopath.dataset import making
 from echopath.dataset.classes import classes_of
 from echopath.dataset.folder import SceneRecord, damaged_files, scene_folder, write_manifest
 from echopath.dataset.unresolved import UnresolvedEchoes, summary, unresolved_in
@@ -274,6 +276,16 @@ def test_the_forecast_is_near_what_is_made(small_dataset, tmp_path):
     forecast = next(dataset.make(path, tmp_path))
     size = sum(file.stat().st_size for file in folder.rglob("*.h5"))
     assert forecast.frames == 12 and 0.8 * size < forecast.bytes < 1.6 * size  # scenes differ
+
+
+def test_the_time_left_does_not_count_the_start_of_workers_for_each_scene(path, tmp_path, monkeypatch):
+    """Workers of 6 scenes, 1 s each by the forecast, take 10 s more before the first one."""
+    moments = iter([0.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0])
+    monkeypatch.setattr(making, "time", SimpleNamespace(perf_counter=lambda: next(moments)))
+    monkeypatch.setattr(making, "_forecast", lambda *_: making.Forecast(12, 6.0, 0))
+    monkeypatch.setattr(making, "in_processes", lambda path, folder, scenes, *_: [(one, SceneRecord("done")) for one in scenes])
+    made = list(dataset.make(path, tmp_path / "out", workers=2))[1:]
+    assert [scene.seconds_left for scene in made] == pytest.approx([5.0, 4.0, 3.0, 2.0, 1.0, 0.0], abs=1e-12)
 
 
 def test_a_disk_that_is_too_small_is_told_before_the_first_frame(path, tmp_path, monkeypatch):

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kNodes = 129;
 constexpr double kLargest = 0.75;  // cells: noise may make the neighbour of the tone's own cell the higher one
+constexpr double kFlat = 1e-9;     // of a response that is the same in all cells, as of a single sample: above rounding
 
 double node(int i) { return kLargest * (2.0 * i / (kNodes - 1) - 1.0); }
 
@@ -36,6 +37,8 @@ ToneOffset::ToneOffset(const std::vector<double>& samples, int zero_pad)
   for (int i = 0; i < kNodes; ++i) difference_.push_back(difference(node(i)));
 }
 
+bool ToneOffset::is_flat() const { return difference_.back() - difference_.front() < kFlat; }
+
 double ToneOffset::difference(double offset) const {
   const std::complex<double> own = tone_response(samples_, -offset * step_);
   const std::complex<double> above = tone_response(samples_, (1.0 - offset) * step_);
@@ -44,6 +47,7 @@ double ToneOffset::difference(double offset) const {
 }
 
 double ToneOffset::offset(double above, double below) const {
+  if (is_flat()) return 0.0;
   const double value = std::clamp(above - below, difference_.front(), difference_.back());
   const auto next = std::ranges::upper_bound(difference_, value) - difference_.begin();
   const int first = std::clamp(static_cast<int>(next) - 2, 0, kNodes - 4);

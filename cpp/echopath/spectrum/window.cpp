@@ -100,6 +100,8 @@ double equivalent_noise_bandwidth(const std::vector<double>& samples) {
 double main_lobe_half_width(const std::vector<double>& samples) {
   constexpr int kSteps = 64;  // per bin
   const int last = kSteps * static_cast<int>(samples.size()) / 2;
+  const auto num_zeros = std::count(samples.begin(), samples.end(), 0.0);
+  if (num_zeros + 1 == static_cast<std::ptrdiff_t>(samples.size())) return static_cast<double>(last) / kSteps;  // no null
   double before = 1.0;
   for (int step = 1; step <= last; ++step) {
     const double level = std::abs(tone_response(samples, static_cast<double>(step) / kSteps));

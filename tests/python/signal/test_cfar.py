@@ -29,6 +29,17 @@ def test_false_alarms_come_at_the_rate_asked_for(of_map):
         assert row["ratio"] == pytest.approx(1.0, abs=RATE_TOLERANCE) and row["holds"], row
 
 
+@pytest.mark.parametrize(("num_chirps", "zero_pad"), [(1, 1), (1, 4), (2, 2), (2, 4)])
+def test_an_echo_in_one_or_two_chirps_is_found_with_any_padding(num_chirps, zero_pad):
+    """Cells of velocity are all the same then. A tone of 12.8 cells and 1e-8 W, 40 dB above the noise of a sample."""
+    radar = build_radar(num_chirps=num_chirps, num_samples=64)
+    noise = np.random.default_rng(1).normal(scale=7e-7, size=(2, 1, 1, num_chirps, 64))
+    cube = 1e-4 * np.exp(0.4j * np.pi * np.arange(64)) + noise[0] + 1j * noise[1]
+    found = ep.detect(ep.range_doppler(cube, radar, zero_pad=zero_pad), radar)
+    assert found.range == pytest.approx([12.8 * radar.waveform.range_resolution], rel=1e-3)
+    assert found.power == pytest.approx([1e-8], rel=0.02)
+
+
 BEHIND = {"low pass": dict(low_pass=8e6), "steep": dict(low_pass=5e6, low_pass_poles=8),
           "high pass": dict(high_pass=[3e5, 8e5], low_pass=8e6), "imbalance": dict(low_pass=4e6, iq_gain_db=1.0, iq_phase=0.1),
           "converter": dict(low_pass=5e6, adc=ep.Adc(bits=12, gain_db=40.0)),

@@ -22,7 +22,9 @@ class PeakFinder {
         range_(window_samples(map.window.range, waveform.num_samples), map.zero_pad) {}
 
   bool is_top(const Cell& cell) const {
-    for (int64_t v = -1; v <= 1; ++v) {
+    if (!tells_velocities() && cell[0] > 0) return false;  // all rows are the same, but for rounding
+    const int64_t reach = tells_velocities() ? 1 : 0;
+    for (int64_t v = -reach; v <= reach; ++v) {
       for (int64_t r = -1; r <= 1; ++r) {
         const auto other = index(cell[0] + v, cell[1] + r);
         const int64_t own = *index(cell[0], cell[1]);
@@ -36,6 +38,7 @@ class PeakFinder {
   double velocity_offset(const Cell& cell) const {
     return offset(velocity_, cell, index(cell[0] + 1, cell[1]), index(cell[0] - 1, cell[1]), num_velocities_);
   }
+  bool tells_velocities() const { return !velocity_.is_flat(); }
   double range_offset(const Cell& cell) const {
     return offset(range_, cell, index(cell[0], cell[1] + 1), index(cell[0], cell[1] - 1), num_ranges_);
   }
@@ -100,7 +103,8 @@ Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& 
     const auto [v, r] = peaks.cells[i];
     const double up = peaks.velocity_offset[i] = finder.velocity_offset(peaks.cells[i]);
     const double away = peaks.range_offset[i] = finder.range_offset(peaks.cells[i]);
-    peaks.velocity[i] = folded(map.velocity[v] + up * velocity_step, map.velocity.front() - 0.5 * velocity_step, span);
+    const double shown = finder.tells_velocities() ? map.velocity[v] + up * velocity_step : 0.0;
+    peaks.velocity[i] = folded(shown, map.velocity.front() - 0.5 * velocity_step, span);
     peaks.range[i] = map.range[r] + away * range_step;
     peaks.power[i] = found.power[v * std::ssize(map.range) + r] / finder.power_in_cell(up, away);
   });

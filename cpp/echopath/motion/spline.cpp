@@ -76,7 +76,7 @@ SplineKnots::SplineKnots(std::vector<double> times, Interpolation interpolation)
 }
 
 std::vector<double> SplineKnots::breakpoints() const {
-  if (interpolation_ == Interpolation::kCubic || times_.size() <= 2) return {};
+  if (interpolation_ == Interpolation::kCubic) return {};
   return {times_.begin() + 1, times_.end() - 1};
 }
 

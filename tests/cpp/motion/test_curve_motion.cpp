@@ -98,6 +98,17 @@ TEST(CurveMotion, LinearRotationsGoTheShorterWay) {
   EXPECT_NEAR(angle_at(motion, 1.0), -0.5, kRounding);
 }
 
+// 8-bit quaternions are off by as much.
+TEST(CurveMotion, KeysNearlyOfLengthOneAreScaled) {
+  Curve curve = turns(CurveInterpolation::kLinear, 1.0);
+  for (size_t c = 4; c < 8; ++c) curve.values[c] *= 1.007;
+  const CurveMotion motion({{}, curve, {}});
+  for (const double time : {0.0, 0.3, 2.0}) {
+    const Mat3 wanted = Eigen::AngleAxisd(0.5 * time, Vec3::UnitZ()).toRotationMatrix();
+    EXPECT_LT((motion.at(time).linear() - wanted).norm(), kRounding) << time;
+  }
+}
+
 TEST(CurveMotion, RotationsOfSplinesAreNormalised) {
   const CurveMotion motion({{}, turns(CurveInterpolation::kHermite, 1.0), {}});
   const double t = 0.5, t2 = t * t, t3 = t2 * t, step = 2.0;
@@ -139,6 +150,10 @@ TEST(CurveMotion, ScalesActBeforeTheRotation) {
 
 TEST(CurveMotion, KeysAndEndsOfRunsAreBreakpoints) {
   EXPECT_EQ(moving(CurveInterpolation::kStep).breakpoints(), kKeys);
+  Curve own = turns(CurveInterpolation::kLinear, 1.0);
+  own.times = {0.3, 0.4};
+  const CurveMotion both({positions(CurveInterpolation::kLinear), own, {}});
+  EXPECT_EQ(both.breakpoints(), (std::vector<double>{0.1, 0.3, 0.4, 1.0}));
   const CurveMotion looped = moving(CurveInterpolation::kLinear, {0.0, 1.0});
   EXPECT_EQ(looped.breakpoints({1.0, 2.05}), (std::vector<double>{1.0, 1.1, 1.4, 2.0}));
   const CurveMotion still({Curve{{0.5}, {1, 2, 3}, CurveInterpolation::kStep, {}, {}}, {}, {}}, {0.0, 1.0});
@@ -170,6 +185,9 @@ TEST(CurveMotion, RefusesWhatNoCurveIsBy) {
   refused({{0, std::nan("")}, {0, 0, 0, 1, 1, 1}}, "translation: must have times of at most 1e9 s");
   refused({{0}, {0, 0, HUGE_VAL}}, "translation: must have finite values");
   refused({{0}, {0, 0, 0}, CurveInterpolation::kHermite, {}, {}}, "translation: must have a row of in_tangents");
+  refused({{0}, {0, 0, 0}, CurveInterpolation::kHermite, {0, 0, 0}, {}}, "translation: must have a row of out_tangents");
+  expect_error<Invalid>([] { CurveMotion({{}, Curve{{0}, {1, 0, 0}}, {}}); }, {"rotation: must have a row of values"});
+  expect_error<Invalid>([] { CurveMotion({{}, {}, Curve{{0}, {1}}}); }, {"scale: must have a row of values"});
   expect_error<Invalid>([] { CurveMotion({{}, Curve{{0}, {2, 0, 0, 0}}, {}}); }, {"rotation: must hold unit quaternions"});
   expect_error<Invalid>([] { CurveMotion(MotionCurves{}); }, {"translation: must be given"});
   expect_error<Invalid>([] { moving(CurveInterpolation::kStep, {0.0, 1e-9}); }, {"period: must be 1e-6 to 1e9 s"});

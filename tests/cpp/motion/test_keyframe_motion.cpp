@@ -132,6 +132,20 @@ TEST(KeyframeMotion, TheSignOfAQuaternionDoesNotMatter) {
   }
 }
 
+TEST(KeyframeMotion, QuaternionsNearlyOfLengthOneAreScaledOnce) {
+  std::vector<Quaternion> rotations;
+  for (size_t i = 0; i < kTimes.size(); ++i) {
+    rotations.push_back(about(Vec3(1, 2, 3), 0.2 * static_cast<double>(i)));
+    rotations.back().coeffs() *= 1.0 + 9e-7;
+  }
+  const std::vector<Quaternion> once = KeyframeMotion(kTimes, {}, rotations).rotations();
+  const std::vector<Quaternion> twice = KeyframeMotion(kTimes, {}, once).rotations();
+  for (size_t i = 0; i < once.size(); ++i) {
+    EXPECT_NEAR(once[i].norm(), 1.0, kRounding);
+    EXPECT_EQ(twice[i].coeffs(), once[i].coeffs());
+  }
+}
+
 TEST(KeyframeMotion, CubicRotationsStayRotationsAndFollowASteadyTurn) {
   std::vector<double> times;
   std::vector<Quaternion> rotations;

@@ -48,6 +48,10 @@ TEST(MorphTargets, RefuseOtherNumbersOfVertices) {
                         {"targets: must have a displacement for each vertex"});
   expect_error<Invalid>([] { MorphTargets(kBase, {}, Curve{{0}, {1}}); }, {"targets: must hold at least one target"});
   expect_error<Invalid>([] { MorphTargets(kBase, kTargets, Curve{{0}, {1}}); }, {"weights: must have a row of values"});
+  const std::vector<Vec3> nowhere(kBase.size(), Vec3(0, std::nan(""), 0));
+  expect_error<Invalid>([&] { MorphTargets(nowhere, kTargets, Curve{{0}, {1, 1}}); }, {"vertices: must be finite"});
+  expect_error<Invalid>([&] { MorphTargets(kBase, {nowhere}, Curve{{0}, {1}}); }, {"targets: must be finite"});
+  expect_error<Invalid>([] { morph({0.0, -1.0}); }, {"period: must be 1e-6 to 1e9 s"});
   expect_error<Invalid>([] { MorphTargets({}, kTargets, Curve{{0}, {1, 1}}); }, {"vertices: must hold at least one vertex"});
 }
 

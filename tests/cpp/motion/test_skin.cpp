@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cpp/support/expect_error.h"
+#include "echopath/motion/deformation.h"
 #include "echopath/motion/skin.h"
 
 namespace echopath::test_skin {
@@ -93,35 +94,41 @@ TEST(Skin, BreakpointsAreThoseOfAllJointsAndTheSpanIsCommon) {
   };
   joints[0].motion = keys({0, 1, 2, 5});
   joints[1].motion = keys({-1, 1, 3, 4});
+  joints.push_back({"cap", 0, Transform::Identity(), nullptr, {}});
   const Skin skin(kVertices, joints, rows(1, {0, 0, 1}, {1, 1, 1}));
   EXPECT_EQ(skin.breakpoints(), (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(skin.span().begin, 0.0);
   EXPECT_EQ(skin.span().end, 4.0);
   EXPECT_TRUE(arm().breakpoints().empty());
+  const auto shape = std::make_shared<const VertexSequence>(std::vector{1.0, 2.5}, std::vector{kVertices, kVertices});
+  const Skin shaped(kVertices, joints, rows(1, {0, 0, 1}, {1, 1, 1}), shape);
+  EXPECT_EQ(shaped.span().begin, 1.0);
+  EXPECT_EQ(shaped.span().end, 2.5);
 }
 
 TEST(Skin, WeightsNearlyOneAreScaledAndTheirOwnStay) {
-  const double third = 1.0 / 3.0;
-  const Skin skin({{0, 0, 0}, {1, 0, 0}}, two_links(), rows(2, {0, 1, 0, 1}, {0.3, 0.70003, third, 1.0 - third}));
+  const double nearly = 0.7 + 0.2 + 0.1;  // as rounding has it
+  ASSERT_NE(nearly, 1.0);
+  const Skin skin({{0, 0, 0}, {1, 0, 0}}, two_links(), rows(3, {0, 1, 0, 0, 1, 0}, {0.3, 0.70003, 0, 0.7, 0.2, 0.1}));
   const SkinWeights once = skin.weights();
   EXPECT_NEAR(once.weight[0] + once.weight[1], 1.0, kRounding);
   EXPECT_NEAR(once.weight[1] / once.weight[0], 0.70003 / 0.3, kRounding);
-  EXPECT_EQ(once.weight[2], third);
+  EXPECT_EQ(std::vector(once.weight.begin() + 3, once.weight.end()), (std::vector<double>{0.7, 0.2, 0.1}));
   EXPECT_EQ(Skin(skin.vertices(), skin.joints(), once).weights().weight, once.weight);
 }
 
 TEST(Skin, RowsKeepOnlyWhatCounts) {
   const SkinWeights weights =
-      Skin({{0, 0, 0}, {1, 0, 0}}, two_links(), rows(3, {0, 1, 0, 1, 0, 0}, {0, 1, 0, 0.5, 0.5, 0})).weights();
+      Skin(kVertices, two_links(), rows(3, {0, 1, 0, 1, 0, 0, 0, 0, 1}, {0, 1, 0, 0.5, 0.5, 0, 0, 0, 1})).weights();
   EXPECT_EQ(weights.per_vertex, 2);
-  EXPECT_EQ(weights.joint, (std::vector<uint32_t>{1, 0, 1, 0}));
-  EXPECT_EQ(weights.weight, (std::vector<double>{1, 0, 0.5, 0.5}));
+  EXPECT_EQ(weights.joint, (std::vector<uint32_t>{1, 0, 1, 0, 1, 0}));
+  EXPECT_EQ(weights.weight, (std::vector<double>{1, 0, 0.5, 0.5, 1, 0}));
 }
 
 TEST(Skin, TheDominantJointHasTheLargestShareOfATriangle) {
   const Skin skin({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, two_links(),
                   rows(2, {0, 1, 0, 1, 0, 1, 0, 1}, {1, 0, 0.5, 0.5, 0, 1, 0.1, 0.9}));
-  const std::vector<std::array<uint32_t, 3>> triangles = {{0, 1, 1}, {0, 1, 2}, {1, 2, 3}};
+  const std::vector<std::array<uint32_t, 3>> triangles = {{0, 0, 1}, {0, 1, 2}, {1, 2, 3}};
   EXPECT_EQ(skin.dominant_joint(triangles), (std::vector<uint32_t>{0, 0, 1}));  // the second is a tie
 }
 

@@ -122,6 +122,17 @@ TEST(CellErrors, NoiseAloneIsNotTakenForPower) {
   EXPECT_NEAR(mean_of(errors.power_error, 0), 1.0 / kBatches, 0.5 / kBatches);
 }
 
+// Fields 1 and -1 of two batches cancel: their variance is 2, and that of the square of their mean, freed of bias, is
+// 2^2 / 2.
+TEST(CellErrors, OfFieldsThatCancelTheNoiseIsThatOfSecondOrder) {
+  const std::vector<double> none{0.0, 0.0}, ones{1.0, 1.0}, fours{4.0, 4.0};
+  const ShareErrors errors = share_errors({{none, ones, none}, {none, none, fours}}, 2, std::vector<int16_t>{1});
+  EXPECT_EQ(errors.power, (std::vector<double>{0.0, 4.0}));
+  EXPECT_NEAR(errors.power_error[0], std::sqrt(2.0), kRounding);
+  EXPECT_EQ(errors.power_error[1], 0.0);
+  for (const double error : errors.share_error) EXPECT_NEAR(error, std::sqrt(2.0) / 4.0, kRounding);
+}
+
 TEST(CellErrors, OnlyALeadOfTwoStandardErrorsIsCertain) {
   const ShareErrors even = errors_of({{{}, 0.0, 1.0}, {{}, 0.0, 1.0}}, std::vector<int16_t>(kDraws, 0));
   const ShareErrors clear = errors_of({{{}, 0.0, 20.0}, {{}, 0.0, 1.0}}, std::vector<int16_t>(kDraws, 0));

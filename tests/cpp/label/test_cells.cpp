@@ -49,6 +49,7 @@ TEST(Cells, MaskNeedsBothTheNoiseFloorAndTheDynamicRange) {
   const CellMask mask = cell_mask(power, 0.5, 0.05);
   EXPECT_EQ(mask.above_noise, (std::vector<uint8_t>{1, 1, 1, 0, 0}));
   EXPECT_EQ(mask.labelled, (std::vector<uint8_t>{1, 1, 0, 0, 0}));
+  EXPECT_EQ(cell_mask(power, 0.5, 1.0).labelled, (std::vector<uint8_t>{1, 0, 0, 0, 0}));  // the peak alone
 }
 
 TEST(Cells, WithoutNoiseAndLimitEveryCellWithPowerIsLabelled) {
@@ -72,12 +73,12 @@ TEST(Cells, TheStrongestPartIsTheFirstOfEqualOnesAndOnlyWithinTheMask) {
 }
 
 TEST(Cells, ABoxHoldsItsCells) {
-  const LabelRegion region = region_of({{2, 3}, {4, 1}, {3, 1}}, false);
-  EXPECT_EQ(region.num_cells, 3);
+  const LabelRegion region = region_of({{2, 3}, {4, 1}, {3, 4}, {5, 2}}, false);
+  EXPECT_EQ(region.num_cells, 4);
   EXPECT_EQ(region.first_row, 2);
-  EXPECT_EQ(region.last_row, 4);
+  EXPECT_EQ(region.last_row, 5);
   EXPECT_EQ(region.first_column, 1);
-  EXPECT_EQ(region.last_column, 3);
+  EXPECT_EQ(region.last_column, 4);
 }
 
 TEST(Cells, ABoxGoesOverTheEndOfFoldingVelocitiesWhereThatIsShorter) {
@@ -87,6 +88,9 @@ TEST(Cells, ABoxGoesOverTheEndOfFoldingVelocitiesWhereThatIsShorter) {
   const LabelRegion straight = region_of({{0, 2}, {1, 2}, {7, 2}}, false);
   EXPECT_EQ(straight.first_row, 0);
   EXPECT_EQ(straight.last_row, 7);
+  const LabelRegion scattered = region_of({{0, 2}, {5, 2}, {7, 2}}, true);  // round the widest gap, that of 1 to 4
+  EXPECT_EQ(scattered.first_row, 5);
+  EXPECT_EQ(scattered.last_row, 0);
   const LabelRegion half_way = region_of({{0, 2}, {4, 2}}, true);  // equal gaps: not over the end
   EXPECT_EQ(half_way.first_row, 0);
   EXPECT_EQ(half_way.last_row, 4);

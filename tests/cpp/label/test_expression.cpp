@@ -109,6 +109,9 @@ TEST(PathExpressionSyntax, DeepNestingIsAnErrorAndNotACrash) {
   EXPECT_NE(error_of("T " + deep).find("nested parentheses"), std::string::npos);
   const std::string allowed = std::string(100, '(') + "." + std::string(100, ')');
   EXPECT_NO_THROW(parse_path_expression("T " + allowed + " R"));
+  std::string beside;  // is not nested, however many there are
+  for (int i = 0; i < 101; ++i) beside += "(.)";
+  EXPECT_NO_THROW(parse_path_expression("T " + beside + " R"));
 }
 
 }  // namespace

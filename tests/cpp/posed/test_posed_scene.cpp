@@ -154,7 +154,33 @@ TEST(PosedScene, NormalsFollowTheWindingThroughReflectionsAndScales) {
   const auto [a, b, c] = posed.world_triangle(0, 0);
   const std::vector<Vec3> local = triangle()->vertices();
   const Vec3 normal = (local[1] - local[0]).cross(local[2] - local[0]).normalized();
-  EXPECT_LT(((posed.normal_matrix(0) * normal).normalized() - (b - a).cross(c - a).normalized()).norm(), kRounding);
+  const Vec3 wanted = (b - a).cross(c - a).normalized();
+  EXPECT_LT(((posed.normal_matrix(0) * normal).normalized() - wanted).norm(), kRounding);
+  for (const Vec3& of_vertex : posed.world_normals(0)) EXPECT_LT((of_vertex - wanted).norm(), kRounding);
+}
+
+TEST(PosedScene, NormalsOfWhatDeformsAreThoseOfItsShapeAtTheTime) {
+  const Scene scene = scene_of_flag(shift(1, 2, 3) * turn_z(0.7));
+  const Vec3 wanted = (turn_z(0.7) * Eigen::Vector4d(-1.0, 0.0, 1.0, 0.0)).head<3>() / std::sqrt(2.0);  // z rises as x does
+  const std::vector<Vec3> normals = PosedScene(scene, 1.0).world_normals(0);
+  ASSERT_EQ(normals.size(), 3u);
+  for (const Vec3& normal : normals) EXPECT_LT((normal - wanted).norm(), kRounding);
+}
+
+// Of a scene with other things.
+TEST(PosedScene, AFewMeshesArePlacedAsTheProductOfTheirMatrices) {
+  Scene scene;
+  scene.add(testing::with_mesh("tree"));
+  scene.add(node("car", -1, shift(10, 2, 0) * turn_z(0.5), std::make_shared<const LinearMotion>(Vec3(3, 1, 0))));
+  scene.add(testing::with_mesh("lamp", 0));
+  Node dish = testing::with_mesh("dish", 1);
+  dish.placement = transform(shift(0.4, 0, 0.2) * turn_x(-0.7));
+  scene.add(dish);
+  const Matrix4 car = shift(10 + 3 * 0.3, 2 + 0.3, 0) * turn_z(0.5), wanted = car * shift(0.4, 0, 0.2) * turn_x(-0.7);
+  const std::vector<uint32_t> meshes = {2};
+  const std::vector<Transform> placed = PlacingNodes(scene, meshes).world_from_meshes(0.3);
+  ASSERT_EQ(placed.size(), 1u);
+  EXPECT_LT((placed[0].matrix() - wanted).norm(), kRounding);
 }
 
 // A radar that turns by 0.5 rad/s about z while it goes on: its antennas, too, stand relative to the origin.

@@ -10,15 +10,15 @@ namespace {
 constexpr double kNoExtent = 1e-9;  // m: an axis along which no antenna is farther from another
 constexpr double kTie = 1e-9;       // of the extents: nearer than this, the antenna of lower index counts
 
-// Returns positions along their principal axes, each scaled to -1 to 1; axes without extent are 0.
+// Returns positions along their principal axes, each scaled to an extent of 1; axes without extent are 0.
 std::vector<Vec3> normalised(const std::vector<Antenna>& antennas) {
   std::vector<Vec3> positions;
   for (const Antenna& antenna : antennas) positions.push_back(antenna.position);
   const PrincipalBox found = principal_box(positions);
   const Vec3 sizes = found.box.sizes();
   for (Vec3& at : positions) {
-    at = found.coordinates(at) - found.box.center();
-    for (int axis = 0; axis < 3; ++axis) at[axis] = sizes[axis] > kNoExtent ? 2.0 * at[axis] / sizes[axis] : 0.0;
+    at = found.coordinates(at);
+    for (int axis = 0; axis < 3; ++axis) at[axis] = sizes[axis] > kNoExtent ? at[axis] / sizes[axis] : 0.0;
   }
   return positions;
 }

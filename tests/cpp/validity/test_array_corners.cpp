@@ -23,5 +23,16 @@ TEST(ArrayCorners, AreTheEndsOfALineAndTheCornersOfARectangle) {
   EXPECT_EQ(array_corners(antennas(grid)), (std::vector<int>{0, 2, 12, 14}));
 }
 
+// Ten times as long as it is wide: its corners are those of its shape, not the ends of its length four times.
+TEST(ArrayCorners, LengthAndWidthCountAlike) {
+  std::vector<Vec3> places;
+  for (const double sign : {1.0, -1.0}) {
+    for (const Vec3& at : {Vec3(0, 0.1, 0), Vec3(0, 0, 0.01), Vec3(0, 0.08, 0.008), Vec3(0, 0.08, -0.008)})
+      places.push_back(Vec3(1, 2, 3) + sign * at);
+  }
+  places.emplace_back(1, 2.03, 3.003);
+  EXPECT_EQ(array_corners(antennas(places)), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+}
+
 }  // namespace
 }  // namespace echopath::test_array_corners

@@ -22,6 +22,8 @@ double rotor_delay(double t, int order) {
   return 2.0 / kC * ((order == 0 ? 20.0 : 0.0) + kBlade * std::pow(kRate, order) * cosine);
 }
 
+const Complex kAmplitude(0.6, 0.8);
+
 // An echo whose "nodes" are the derivatives of its delay at each chirp.
 Echoes echo_of(const ChirpSequence& w, const std::function<double(double, int)>& delay) {
   Echoes echoes;
@@ -36,7 +38,7 @@ Echoes echo_of(const ChirpSequence& w, const std::function<double(double, int)>&
     for (int d = 0; d < 4; ++d) {
       for (int k = 0; k < 4; ++k) rows[d]->push_back(k == d ? 1.0 : 0.0);
       echoes.delay.push_back(delay(j * w.chirp_interval + w.window_centre(), d));
-      echoes.amplitude.push_back(d == 0 ? 1.0 : 0.0);
+      echoes.amplitude.push_back(d == 0 ? kAmplitude : 0.0);
     }
   }
   return echoes;
@@ -53,7 +55,8 @@ double phase_error(const ChirpSequence& w, const std::function<double(double, in
       const double t = n / w.sampling_rate;
       const Real tau = delay(j * w.chirp_interval + t, 0);
       const Real cycles = Real{w.start_frequency} * tau + slope * tau * (t - tau / 2);
-      const Complex model = std::polar(1.0, static_cast<double>(turn * (cycles - std::round(cycles))));
+      const Complex model =
+          std::conj(kAmplitude) * std::polar(1.0, static_cast<double>(turn * (cycles - std::round(cycles))));
       worst = std::max(worst, std::abs(std::arg(cube[static_cast<size_t>(j * w.num_samples + n)] / model)));
     }
   }

@@ -6,6 +6,7 @@
 #include "cpp/signal/slow_sum.h"
 #include "cpp/support/any_threads.h"
 #include "cpp/support/expect_error.h"
+#include "echopath/signal/echoes/echo_states.h"
 
 namespace echopath::test_synthesizer {
 namespace {
@@ -88,7 +89,14 @@ TEST(Synthesizer, GroupsAddUpToTheWhole) {
       const auto part = parts.cube(g);
       for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
     }
-    EXPECT_LT(testing::largest_difference(sum, whole), kAdditivity * testing::sum_of_magnitudes(points.amplitude));
+    const double rounding = kAdditivity * testing::sum_of_magnitudes(points.amplitude);
+    EXPECT_LT(testing::largest_difference(sum, whole), rounding);
+    Echoes of_third = echoes;
+    of_third.group.clear();
+    for (size_t i = 0; i < of_third.amplitude.size(); ++i) {
+      if (i % 301 % 7 != 3) of_third.amplitude[i] = 0.0;
+    }
+    EXPECT_LT(testing::largest_difference(parts.cube(3), testing::synthesize(w, of_third, {.method = method})), rounding);
   }
 }
 
@@ -118,26 +126,33 @@ TEST(Synthesizer, GroupsThatComeLateHoldTheirOwnAndNothingElse) {
   }
 }
 
-// Chebyshev nodes: the interpolated echo is the polynomial itself, so it must equal exact evaluation at the chirps.
+// Chebyshev nodes: the interpolated echo is the polynomial itself, so it must equal exact evaluation at the chirps. From the
+// chirp kJump on, it is another polynomial.
 TEST(Synthesizer, NodesWithWeightsAreInterpolatedPerChirp) {
+  constexpr int kJump = 6;
   const ChirpSequence w = short_frame();
   const auto times = testing::chirp_times(w);
   const double half = 0.5 * times.back();
   const double delay0 = 2e-7, rate = 2e-7;
   Echoes nodes;
   nodes.num_echoes = 1;
-  nodes.sampling.num_rows = nodes.sampling.order = 2;
-  nodes.sampling.first_row.assign(w.num_chirps, 0);
+  nodes.sampling.num_rows = 4;
+  nodes.sampling.order = 2;
+  for (int j = 0; j < w.num_chirps; ++j) nodes.sampling.first_row.push_back(j < kJump ? 0 : 2);
   for (const double t : times) {  // linear Lagrange weights for nodes at 0 and `half`
     nodes.sampling.value.insert(nodes.sampling.value.end(), {1.0 - t / half, t / half});
     nodes.sampling.slope.insert(nodes.sampling.slope.end(), {-1.0 / half, 1.0 / half});
   }
-  nodes.delay = {delay0, delay0 + rate * half};
-  nodes.amplitude = {{1.0, 0.0}, {0.0, 1.0}};
+  nodes.delay = {delay0, delay0 + rate * half, 2 * delay0, 2 * delay0 + rate * half};
+  nodes.amplitude = {{1.0, 0.0}, {0.0, 1.0}, {3.0, 0.0}, {0.0, 3.0}};
   const auto cube = testing::synthesize(w, nodes, {.method = Method::kDirect});
+  std::vector<EchoStates> states(w.num_chirps);
+  evaluate_states(nodes, 0, w.num_chirps, 0, 1, states.data());
   for (int j = 0; j < w.num_chirps; ++j) {
-    const double s = times[j] / half;
-    const auto expected = testing::slow_chirp(w, {delay0 + rate * times[j]}, {rate}, {Complex(1.0 - s, s)});
+    const double s = times[j] / half, delay = (j < kJump ? 1 : 2) * delay0 + rate * times[j];
+    const Complex amplitude = (j < kJump ? 1.0 : 3.0) * Complex(1.0 - s, s);
+    EXPECT_NEAR(states[j].delay[0], delay, kRounding * delay);
+    const auto expected = testing::slow_chirp(w, {delay}, {rate}, {amplitude});
     for (int n = 0; n < w.num_samples; ++n) EXPECT_NEAR(std::abs(cube[j * w.num_samples + n] - expected[n]), 0.0, 1e-9);
   }
 }
@@ -155,6 +170,20 @@ TEST(Synthesizer, ChannelsAreSeparateAndBlocksAddUp) {
   auto sum = testing::synthesize(w, a, {.method = Method::kRecurrence});
   const auto still = testing::synthesize(w, b, {.method = Method::kRecurrence});
   for (size_t i = 0; i < half; ++i) EXPECT_NEAR(std::abs(cube[half + i] - sum[i] - still[i]), 0.0, kRounding);
+}
+
+TEST(Synthesizer, OnlyGroupsOfChannelsThatGotEchoesHaveThem) {
+  const ChirpSequence w = short_frame();
+  Echoes moving = testing::exact_echoes(w, testing::MovingPoints(20, 1, 1.0, 70.0));
+  Echoes still = testing::static_echoes(w.num_chirps, {3e-7}, {0.5});
+  moving.group.assign(20, 0);
+  still.group = {1};
+  Synthesizer synthesizer(w, 2, 2, 20);
+  synthesizer.add(0, still);
+  synthesizer.add(1, moving);
+  for (const int channel : {0, 1}) {
+    for (const int group : {0, 1}) EXPECT_EQ(synthesizer.has_echoes(channel, group), channel != group);
+  }
 }
 
 // Many at once are shared among parts of all blocks together, few are not.

@@ -119,6 +119,19 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   EXPECT_GT(num_facing, 10);
 }
 
+TEST(Fading, APolynomialThatDoesNotFollowALengthServesNoChirps) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  Replayer replayer(paths, radar);
+  const PathGrids path_grids = replayer.path_grids();
+  const GridIndex polynomial = path_grids.first(0);
+  for (const bool is_turned : {false, true}) {
+    const NextGrid next = path_grids.next({.path = 0, .order_for_length = 20.0, .is_turned = is_turned}, polynomial);
+    EXPECT_FALSE(next.by_chirp);
+    EXPECT_FALSE(next.grid == polynomial);
+  }
+}
+
 // Lengths and amplitudes of the paths that a polynomial follows are those of the paths alone, wherever they stand in their
 // block.
 TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {

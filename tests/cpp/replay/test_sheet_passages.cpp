@@ -3,6 +3,7 @@
 
 #include "cpp/support/scenes.h"
 #include "echopath/replay/factors/path_passages.h"
+#include "echopath/replay/posed/hit_patches.h"
 
 namespace echopath::test_sheet_passages {
 namespace {
@@ -16,6 +17,7 @@ const Complex kPermittivity(6.3, -0.3);
 constexpr double kSingle = 1e-6;  // single precision of weights
 constexpr double kTable = 1e-6;   // of the tables of passages
 constexpr double kAngles = 0.02;  // of the field: directions differ over the target
+constexpr double kFacets = 2e-3;  // of the field: interpolated normals of a ball of 1280 triangles
 
 MaterialPtr glass() {
   Material material;
@@ -93,6 +95,45 @@ TEST(PathPassages, FieldsPassBothModesByTheirOwnCoefficients) {
   EXPECT_LT(std::abs(tm.y() / Airy(std::cos(angle)).tm - 1.0), kAngles);
   const FieldVector back = passages.through({1, Vec3::Zero(), false}, level);  // the way back is the same way
   EXPECT_LT((back - tm).norm(), kTable);
+}
+
+// Over a mirror, the wave of an antenna that stands elsewhere than that of the trace goes straight to the image of the
+// target.
+TEST(PathPassages, OnTheWayToAMirrorDirectionsAreThoseToTheImage) {
+  Material metal;
+  metal.conductor = metal.mirror = true;
+  Scene scene;
+  add_rectangle(scene, "target", {8, -0.01, -0.01}, {0, 0.02, 0}, {0, 0, 0.02}, lambert(0.5));
+  add_rectangle(scene, "floor", {-2, -5, -2}, {14, 0, 0}, {0, 10, 0}, share(metal));
+  add_rectangle(scene, "pane", {2, -3, -3}, {0, 6, 0}, {0, 0, 6}, glass());
+  const Paths paths = trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), with_rays(4000, 2));
+  const PathPreparer preparer(paths, std::vector<SurfacePatch>(paths.scene->meshes().size()));
+  const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
+  int64_t path = 0;
+  while (paths.num_bounces[path] != 2 || paths.hits_of(path)[0].mesh_id != 1) ++path;
+  PathPassages passages(sheets, path);
+  passages.pose(preparer.at_trace());
+  const Vec3 antenna(0, 0, 3), image(8, 0, -4);
+  const FieldVector passed = passages.through({0, antenna, true}, FieldVector(0.0, 1.0, 0.0));
+  EXPECT_LT(std::abs(passed.y() / Airy((image - antenna).normalized().x()).te - 1.0), kAngles);
+}
+
+// Waves from the centre of a smooth dome meet it upright everywhere.
+TEST(PathPassages, SmoothSheetsHaveTheNormalOfThePlaceWhereALineCrossesThem) {
+  Scene scene = scene_behind(nullptr, 0.0);
+  scene.add(node_with("dome", ellipsoid(Vec3::Zero(), Vec3::Constant(4.0), 3), glass(), true));
+  const Paths paths = traced(scene);
+  const PathPreparer preparer(paths, hit_patches(paths));
+  const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
+  int64_t path = 0;
+  while (paths.hits_of(path)->mesh_id != 0) ++path;
+  PathPassages passages(sheets, path);
+  passages.pose(preparer.at_trace());
+  for (const Vec3& antenna : {Vec3(0, 0, 0), Vec3(0, 0.4, 0)}) {
+    const double sine = (Vec3(8, 0, 0) - antenna).normalized().cross(antenna).norm() / 4.0;  // of the incidence
+    const FieldVector passed = passages.through({0, antenna, true}, FieldVector(0.0, 0.0, 1.0));
+    EXPECT_LT(std::abs(passed.z() / Airy(std::sqrt(1.0 - sine * sine)).te - 1.0), kFacets);
+  }
 }
 
 TEST(Attenuation, WeakensBothWaysAlike) {

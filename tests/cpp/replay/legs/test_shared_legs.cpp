@@ -5,8 +5,8 @@
 #include "cpp/replay/small_arrays.h"
 #include "cpp/support/path_by_path.h"
 #include "echopath/base/constants.h"
-#include "echopath/replay/evaluate/shared_legs.h"
-#include "echopath/replay/evaluate/single_bounces.h"
+#include "echopath/replay/evaluate/path_evaluator.h"
+#include "echopath/replay/posed/hit_patches.h"
 
 namespace echopath::test_shared_legs {
 namespace {
@@ -176,6 +176,53 @@ TEST(SharedLegs, PolarizedPathsAreThoseEvaluatedOneByOne) {
       expect_equal(differences(paths, radar, paths.frame.trace_time));
       expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02));
     }
+  }
+}
+
+TEST(SharedLegs, PathsThatAreAskedForTwiceAreEvaluatedTwice) {
+  const Radar radar = array_of_powers();
+  const Paths paths = record(radar);
+  std::vector<int64_t> twice;
+  for (const int64_t path : all_of(paths)) twice.insert(twice.end(), 2, path);
+  std::vector<double> once_lengths, lengths;
+  std::vector<std::complex<double>> once_amplitudes, amplitudes;
+  const Replayer replayer(paths, radar);
+  replayer.evaluate(all_of(paths), paths.frame.trace_time, once_lengths, once_amplitudes);
+  replayer.evaluate(twice, paths.frame.trace_time, lengths, amplitudes);
+  for (size_t at = 0; at < lengths.size(); ++at) {
+    ASSERT_NEAR(lengths[at], once_lengths[at / 2], kRounding * lengths[at]);
+    ASSERT_LE(std::abs(amplitudes[at] - once_amplitudes[at / 2]), kFilterRounding * std::abs(once_amplitudes[at / 2]));
+  }
+}
+
+// Of one point, which an antenna sees alike on both ways.
+TEST(SharedLegs, UnfilteredAmplitudesAreThoseOfCellsWithoutSize) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero(), 0.25);
+  const Paths paths = record(radar, false);
+  const PathPreparer preparer(paths, hit_patches(paths));
+  RadioConstants radio = radio_constants(paths, radar);
+  radio.cells.side = 0.0;
+  const SheetPassages sheets(preparer, radio.wavelength);
+  const std::vector<int64_t> indices = all_of(paths);
+  const PosedNodes nodes(
+      pose_at(*paths.scene, radar, preparer.patches(), paths.frame.transmitter, {&paths.frame.trace_time, 1}));
+  std::vector<double> lengths(indices.size()), unfiltered(indices.size());
+  std::vector<std::complex<double>> amplitudes(indices.size());
+  ChannelNodes to{lengths.data(), amplitudes.data(), indices.size(), 0, 1.0};
+  for (const bool as_chains : {false, true}) {
+    PathEvaluator evaluator;
+    evaluator.begin(preparer, radar, sheets, SpecularPoints::kMaterial, as_chains);
+    evaluator.plan(indices);
+    evaluator.evaluate(nodes, radio, {0, {&to, 1}}, {.unfiltered = unfiltered.data()});
+    int num_compared = 0;
+    for (size_t p = 0; p < indices.size(); ++p) {
+      const bool is_mirrored = preparer.is_image(paths.hits_of(indices[p])->mesh_id, paths.stratum[p]);
+      if (paths.diffuse[p] != 0 || paths.num_bounces[p] != 1 || is_mirrored) continue;
+      const double of_mirror = 0.25 * radio.wavelength / (4.0 * kPi * lengths[p]);  // what it never exceeds
+      EXPECT_NEAR(unfiltered[p] / std::min(of_mirror, std::abs(amplitudes[p])), 1.0, kGrazingRounding);
+      ++num_compared;
+    }
+    EXPECT_GT(num_compared, 100);
   }
 }
 

@@ -1,6 +1,8 @@
 // Frames longer than the knots of a keyframe motion are followed by polynomials between the knots.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "cpp/support/scenes.h"
 #include "echopath/replay/time/motion_cuts.h"
 #include "echopath/signal/echoes/echo_states.h"
@@ -178,6 +180,32 @@ TEST(PathGrids, AreThoseOfTheirMeshesAfterAnErrorToo) {
   EXPECT_THROW(asked_twice.path_grids(), std::runtime_error);
   const PathGrids second = asked_twice.path_grids(), first = asked_once.path_grids();
   for (int64_t path = 0; path < paths.num_paths(); ++path) EXPECT_TRUE(second.first(path) == first.first(path)) << path;
+}
+
+TEST(PathGrids, OfPathsOverSeveralMeshesHaveTheCutsOfAll) {
+  const auto slides_until = [](double time) {
+    return std::make_shared<KeyframeMotion>(std::vector<double>{0, time, 1},
+                                            std::vector<Vec3>{Vec3::Zero(), Vec3(1e-3, 0, 0), Vec3(1e-3, 0, 0)},
+                                            std::vector<Quaternion>(), Interpolation::kLinear);
+  };
+  Scene scene;  // a corner that opens toward the radar
+  add_rectangle(scene, "left", {8, 0, -0.5}, {-0.5, 0.5, 0}, {0, 0, 1}, share(Material::metal()), slides_until(0.11));
+  add_rectangle(scene, "right", {8, 0, -0.5}, {-0.5, -0.5, 0}, {0, 0, 1}, share(Material::metal()), slides_until(0.08));
+  TraceSettings settings = with_rays(500, 2);
+  settings.start_time = 0.05;
+  const Radar radar = long_frame();
+  const Paths paths = trace(scene, radar, settings);
+  Replayer replayer(paths, radar);
+  const PathGrids grids = replayer.path_grids();
+  std::set<std::vector<double>> found;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    std::set<double> cuts;
+    for (int k = 0; k < paths.num_bounces[path]; ++k) cuts.insert(paths.hits_of(path)[k].mesh_id == 0 ? 0.11 : 0.08);
+    found.emplace(cuts.begin(), cuts.end());
+    ASSERT_TRUE(grids.first(path).is_polynomial());
+    EXPECT_EQ(replayer.grids().polynomial(grids.first(path)).cuts, std::vector<double>(cuts.begin(), cuts.end()));
+  }
+  EXPECT_EQ(found.size(), 3u);
 }
 
 // A wing that beats at its tip alone: paths at its root have the same grid beside those at the tip and without these, which

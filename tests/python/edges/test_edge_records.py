@@ -52,6 +52,18 @@ def test_hits_on_edges_of_one_path_are_those_of_its_expression(of_a_box):
         assert (edge_hits(of_a_box, slice(path, path + 1)).tolist() == [1]) == is_single[path]
 
 
+def test_echoes_grow_with_the_root_of_both_gains(of_a_box):
+    """Of edges alone, and of waves from edge to edge."""
+    radar = of_a_box.radar
+    gained = radar.replace(transmitters=[one.replace(pattern=ep.Isotropic(0.25)) for one in radar.transmitters],
+                           receivers=[one.replace(pattern=ep.Isotropic(0.36)) for one in radar.receivers])
+    for selection in ("T E R", "T E E+ R"):
+        paths = of_a_box.select(selection)
+        before = ep.synthesize(paths, radar, tolerance=1e-9)
+        assert np.abs(before).max() > 0.0
+        assert ep.synthesize(paths, gained, tolerance=1e-9) == pytest.approx(0.3 * before, abs=1e-6 * np.abs(before).max())
+
+
 def test_files_and_pickles_keep_them(of_a_box, tmp_path):
     of_a_box.save(tmp_path / "box.h5")
     for again in (ep.Paths.load(tmp_path / "box.h5"), pickle.loads(pickle.dumps(of_a_box))):

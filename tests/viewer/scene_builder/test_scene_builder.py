@@ -243,7 +243,7 @@ def test_hits_are_dots_where_rays_turn(drawn_paths):
     distances = np.linalg.norm(changed[:, None] - places[None], axis=-1)
     assert distances.min(axis=1).max() < DOT
     in_sight = np.all((places > 0.0) & (places < np.array(SIZE)), axis=1)
-    assert np.count_nonzero(distances.min(axis=0)[in_sight] < DOT) > 0.7 * np.count_nonzero(in_sight) > 0  # some lie behind others
+    assert np.count_nonzero(distances.min(axis=0)[in_sight] < DOT) > 0.7 * np.count_nonzero(in_sight) > 0  # others are hidden
 
 
 def in_picture(plotter, point) -> tuple[float, float]:

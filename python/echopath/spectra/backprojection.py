@@ -10,7 +10,7 @@ from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, Progress, anything, array, checked, real, refused
 from ..arguments.settings import SignalSettings
 from ..base.process.progress import with_progress
-from ..transmit import is_coded
+from ..transmit import is_coded, signal_shape
 from ..transmit.signals import has_steps
 from .windows import of_range, of_velocity, samples_of
 
@@ -66,8 +66,7 @@ def backproject(cube: ArrayLike, radar: _core.Radar, points: ArrayLike, *, posit
 def _checked_cube(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]:
     if is_coded(radar) or has_steps(radar):
         raise refused(ValueError, "radar", "one with transmitters in turns and chirps that are all alike", radar)
-    found, waveform = np.asarray(cube), radar.waveform
-    shape = (len(radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples)
+    found, shape = np.asarray(cube), signal_shape(radar)
     if found.shape != shape or found.dtype.kind not in "fc" or not np.all(np.isfinite(found)):
         raise refused(ValueError, "cube", f"an array {list(shape)} of finite numbers, as the radar makes it", cube)
     return found

@@ -42,11 +42,18 @@ std::vector<int64_t> fading(const Paths& paths, Replayer& replayer, GridIndex po
   return found;
 }
 
+// The rotor's paths, ready to be replayed, and the first polynomial over the frame.
+struct RotorReplay {
+  Radar radar = two_by_two();
+  Paths paths = record(radar);
+  Replayer replayer{paths, radar};
+  PathGrids path_grids = replayer.path_grids();
+  GridIndex polynomial = path_grids.first(0);
+};
+
 TEST(Fading, AmplitudesAreThoseOfTheChirps) {
-  const Radar radar = two_by_two();
-  const Paths paths = record(radar);
-  Replayer replayer(paths, radar);
-  const GridIndex polynomial = replayer.path_grids().first(0);
+  RotorReplay rotor;
+  auto& [radar, paths, replayer, path_grids, polynomial] = rotor;
   replayer.pose_polynomial(polynomial, all_of(paths));
   const std::vector<int64_t> indices = fading(paths, replayer, polynomial);
   ASSERT_GT(indices.size(), 20u);
@@ -88,12 +95,9 @@ double facing(const Paths& paths, const PathPreparer& preparer, const Radar& rad
 }
 
 TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
-  const Radar radar = two_by_two();
-  const Paths paths = record(radar);
-  Replayer replayer(paths, radar);
+  RotorReplay rotor;
+  auto& [radar, paths, replayer, path_grids, polynomial] = rotor;
   const PathPreparer preparer(paths, hit_patches(paths));
-  const PathGrids path_grids = replayer.path_grids();
-  const GridIndex polynomial = path_grids.first(0);
   replayer.pose_polynomial(polynomial, all_of(paths));
   std::vector<int64_t> indices = all_of(paths);
   std::vector<UnfollowedPath> failed;
@@ -120,11 +124,8 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
 }
 
 TEST(Fading, APolynomialThatDoesNotFollowALengthServesNoChirps) {
-  const Radar radar = two_by_two();
-  const Paths paths = record(radar);
-  Replayer replayer(paths, radar);
-  const PathGrids path_grids = replayer.path_grids();
-  const GridIndex polynomial = path_grids.first(0);
+  RotorReplay rotor;
+  auto& [radar, paths, replayer, path_grids, polynomial] = rotor;
   for (const bool is_turned : {false, true}) {
     const NextGrid next = path_grids.next({.path = 0, .order_for_length = 20.0, .is_turned = is_turned}, polynomial);
     EXPECT_FALSE(next.by_chirp);
@@ -135,11 +136,8 @@ TEST(Fading, APolynomialThatDoesNotFollowALengthServesNoChirps) {
 // Lengths and amplitudes of the paths that a polynomial follows are those of the paths alone, wherever they stand in their
 // block.
 TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
-  const Radar radar = two_by_two();
-  const Paths paths = record(radar);
-  Replayer replayer(paths, radar);
-  const PathGrids path_grids = replayer.path_grids();
-  const GridIndex polynomial = path_grids.first(0);
+  RotorReplay rotor;
+  auto& [radar, paths, replayer, path_grids, polynomial] = rotor;
   replayer.pose_polynomial(polynomial, all_of(paths));
   std::vector<int64_t> indices = all_of(paths);
   std::vector<UnfollowedPath> failed, none;

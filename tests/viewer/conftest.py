@@ -14,9 +14,11 @@ from support import shapes
 NEEDS_SCREEN = "test_window_"  # how their files' names begin
 
 
-def pytest_configure():
+def pytest_configure(config):
     """Settings that windows remember are not those of the person who runs the tests."""
-    os.environ["XDG_CONFIG_HOME"] = tempfile.mkdtemp(prefix="echopath-settings-")
+    folder = tempfile.TemporaryDirectory(prefix="echopath-settings-")
+    config.add_cleanup(folder.cleanup)
+    os.environ["XDG_CONFIG_HOME"] = folder.name
 
 
 def pytest_collection_modifyitems(items):

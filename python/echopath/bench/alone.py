@@ -4,6 +4,7 @@ from __future__ import annotations
 import multiprocessing
 import warnings
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 
 from ..base.process.callers import warn_user
 
@@ -11,10 +12,11 @@ from ..base.process.callers import warn_user
 def alone(work: Callable, *arguments, start: str = "spawn"):
     """What `work(*arguments)` returns in a new process; what it warns of there is warned of here, once for each text.
 
-    work: a function of a module; start: how multiprocessing starts the process
+    work: a function of a module; start: how multiprocessing starts the process. Raises BrokenProcessPool where that process
+    ends before it returns, as for want of memory.
     """
-    with multiprocessing.get_context(start).Pool(1) as pool:
-        found, warned = pool.apply(_with_warnings, (work, arguments))
+    with ProcessPoolExecutor(max_workers=1, mp_context=multiprocessing.get_context(start)) as pool:
+        found, warned = pool.submit(_with_warnings, work, arguments).result()
     for text, category in warned:
         warn_user(text, category)
     return found

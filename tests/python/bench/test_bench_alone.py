@@ -1,6 +1,7 @@
 """Measurements in processes of their own: what comes back, and what is said of it."""
 import os
 import warnings
+from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
@@ -19,3 +20,8 @@ def test_warnings_of_a_process_are_those_of_the_run_once_each():
         found = alone(noisy, 5)
     assert found != os.getpid()
     assert [one.filename for one in told] == [__file__]
+
+
+def test_a_process_that_ends_before_it_returns_is_an_error():
+    with pytest.raises(BrokenProcessPool):
+        alone(os._exit, 3)

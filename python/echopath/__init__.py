@@ -63,6 +63,7 @@ from ._core import (
 )
 from .actors import Actor, Part
 from .arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from .base.materials import materials
 from .base.process.threads import num_threads, set_num_threads
 from .cavities.cavity import Cavity
 from .detections import Detections, detect
@@ -98,7 +99,6 @@ from .scene.foreign import mesh_from
 from .scene.found_objects import find_objects
 from .scene.interferers import Interferer
 from .scene.large_planes import mark_mirrors
-from .scene.materials import materials
 from .scene.meshes import load_mesh, load_meshes
 from .scene.node import SceneNode
 from .scene.scene import Scene

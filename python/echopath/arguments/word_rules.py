@@ -7,7 +7,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from .. import _core
-from ..base.storage.folder_kinds import folder_hint
+from .folder_kinds import folder_hint
 from .number_rules import Rule, is_number
 from .shown import refused, writable
 

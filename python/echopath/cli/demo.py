@@ -11,7 +11,8 @@ from ..base.process.stages import StageClock
 from ..base.storage.data_folder import data_folder
 from ..frame.frame import Frame
 from ..scene_file import load_scene
-from ..signals.measures import EXTENT_BELOW_PEAK_DB, residual
+from ..signals.measures import residual
+from ..spectra.moving import EXTENT_BELOW_PEAK_DB
 from . import report
 from .run import certify, simulate_file, write_outputs
 

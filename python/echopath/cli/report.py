@@ -13,7 +13,8 @@ from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words
 from ..scene.closing_speeds import bodies_faster_than
-from ..signals.measures import power_dbm, velocity_extent, with_error
+from ..signals.measures import power_dbm, with_error
+from ..spectra.moving import velocity_extent
 from .lists import more_line, strongest
 
 NOTHING_DBM = -300.0  # of filters and tails that numbers alone can hold, 100 dB and more below any receiver

@@ -9,9 +9,9 @@ from typing import Any, Literal, NamedTuple, get_args
 
 from .. import _core
 from ..arguments.checks import refused
+from ..arguments.folder_kinds import folder_hint
 from ..arguments.shown import shown
 from ..base.storage.files import write_texts
-from ..base.storage.folder_kinds import folder_hint
 from ..base.text.counts import counted
 from ..scene_file.load import parse
 from .template import Template

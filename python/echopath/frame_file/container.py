@@ -5,8 +5,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .. import _core
+from ..arguments.folder_kinds import folder_hint
 from ..base.storage.files import written_whole
-from ..base.storage.folder_kinds import folder_hint
 from .h5 import read_attribute, write_attribute, writing
 from .opening import reading
 

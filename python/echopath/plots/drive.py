@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..signals.measures import STATIC_SPEED
+from ..spectra.moving import STATIC_SPEED
 from .maps import (
     CELLS_OF_MARGIN,
     MAP_SIZE,

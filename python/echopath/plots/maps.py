@@ -11,7 +11,8 @@ import numpy as np
 from ..arguments.checks import optional, real, refused
 from ..arguments.part_names import REST
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
-from ..signals.measures import for_pictures, static_speed, with_error
+from ..signals.measures import for_pictures, with_error
+from ..spectra.moving import static_speed
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, require_drawable, set_title
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import math
 
 from .. import _core
-from ..scene.materials import materials
+from ..base.materials import materials
 from .material_names import Meaning
 
 LIBRARY_FREQUENCY, NEARLY = 77e9, 0.1  # Hz, of ep.materials; share by which another frequency is taken for that

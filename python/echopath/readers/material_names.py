@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping, MutableMapping
 
 from .. import _core
 from ..arguments.checks import refused
+from ..base.materials import known_material, materials
 from ..base.text.counts import counted
 from ..base.text.node_names import composed
-from ..scene.materials import known_material, materials
 
 Meaning = _core.Material | str
 

@@ -2,18 +2,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arguments.checks import anything, checked, real, vector
+from ..arguments.checks import an, anything, checked, optional, positive, real, vector
 from ..base.classes.equality import has_same_fields
+from ..base.numerics.placements import placement
 from ..base.text.counts import counted
-
-if TYPE_CHECKING:
-    from ..trajectories import Trajectory
+from ..trajectories import Trajectory
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +75,6 @@ class Model:
         Returns a Model with one node more. Raises TypeError or ValueError naming the argument; warns (RuntimeWarning) of a yaw
         beyond a turn, which looks like degrees.
         """
-        from ..scene.placements import placement
-
         _core.warn_of_turns(yaw)
         above = ModelNode("placed", placement=placement(position, yaw, None))
         return replace(self, nodes=(above, *(replace(node, parent=node.parent + 1) for node in self.nodes)))
@@ -94,9 +90,7 @@ class Model:
         Returns a Model that `Scene.add` puts on its trajectory. Raises TypeError or ValueError naming the argument, also where
         the animation is not looped, or nothing tells the way.
         """
-        from ..arguments.checks import an, optional, positive
-        from ..trajectories import Trajectory
-        from .along import model_along
+        from ..scene.along import model_along
 
         return model_along(self, an(Trajectory)("trajectory", trajectory), optional(positive("m"))("way", way))
 

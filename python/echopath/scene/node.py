@@ -9,10 +9,10 @@ from .. import _core
 from ..arguments.checks import flag, real, refused, vector
 from ..base.classes.known_attributes import known_attributes
 from ..base.classes.made_by import made_by
+from ..base.materials import known_material
+from ..base.numerics import placements
 from ..base.text.counts import counted
 from ..trajectories.trajectory import Trajectory
-from . import placements
-from .materials import known_material
 
 ANGLE = real(unit="rad")
 ALWAYS = -math.inf, math.inf  # s, the lifetime of what has none

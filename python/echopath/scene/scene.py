@@ -12,13 +12,13 @@ from .. import _core
 from ..actors import Actor
 from ..arguments.checks import an, anything, checked, flag, optional, real, refused, text, vector
 from ..base.classes.known_attributes import known_attributes
+from ..base.materials import known_material, materials
+from ..base.numerics.placements import ORIGIN, motion_ahead, placement
 from ..readers.model import Model
 from ..weather import Weather
 from ..weather.weather import weather_text
 from .interferers import Interferer, interferers_of, interferers_rule, interferers_text
-from .materials import known_material, materials
 from .node import SceneNode, lifetime_of, split_motion
-from .placements import ORIGIN, motion_ahead, placement
 from .seams import without_seams, without_seams_between
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None

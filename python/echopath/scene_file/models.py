@@ -4,9 +4,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from .. import _core
+from ..base.materials import known_with, material_fields, materials
 from ..readers import load_model
 from ..readers.model import Model
-from ..scene.materials import known_with, material_fields, materials
 from ..trajectories import Trajectory
 from .errors import blamed
 from .tables.object_tables import MODEL_KEYS, ModelKeys

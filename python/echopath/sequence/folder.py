@@ -7,8 +7,8 @@ from pathlib import Path
 
 from .. import _core
 from ..arguments.checks import refused
+from ..arguments.folder_kinds import folder_hint
 from ..base.storage.files import require_writable, written_whole
-from ..base.storage.folder_kinds import folder_hint
 from ..frame.frame import Frame
 from ..frame_file.h5 import writing
 from ..frame_file.opening import is_cut_off

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..base.numerics.rates import step_within
 from ..base.radar.antennas import ahead_of, middle_of_antennas
 from ..base.text.mesh_names import object_of
-from ..signals.measures import STATIC_SPEED
+from ..spectra.moving import STATIC_SPEED
 from ..truth.boxes import boxes_at
 
 BESIDE = 0.5  # m, from the box of an object: an antenna that is as near stands in or on it,

@@ -10,7 +10,7 @@ from ..arguments.checks import Progress
 from ..base.process.progress import with_progress
 from ..scene.lifetimes import scene_in_frame
 from ..signals.beside import leakage_map
-from ..signals.measures import static_speed
+from ..spectra.moving import static_speed
 from .movers import movers_at, own_speed
 
 if TYPE_CHECKING:

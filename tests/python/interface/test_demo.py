@@ -10,7 +10,8 @@ import pytest
 
 import echopath as ep
 from echopath.cli.demo import run_demo
-from echopath.signals.measures import residual, velocity_extent
+from echopath.signals.measures import residual
+from echopath.spectra.moving import velocity_extent
 
 NUM_RAYS = 2_500
 SUM_TOLERANCE = 1e-12

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...arguments.shown import shown
-from ...scene.placements import ORIGIN, placement
+from ...base.numerics.placements import ORIGIN, placement
 from ...scene_file.errors import validated
 from ...scene_file.objects import motion_of
 from ...scene_file.tables.object_tables import ObjectTable

@@ -8,8 +8,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
-from .model import Model
-from .played import PlayedCurve
+from ..readers.model import Model
+from ..readers.played import PlayedCurve
 
 SAMPLES = 48          # poses of a loop, in which the way of the feet is measured
 ON_GROUND = 0.02      # of the height, within which points of the lowest ones are on the ground
@@ -112,7 +112,7 @@ def _way_of(model: Model, period: float) -> tuple[float | None, float]:
 
 def _poses(model: Model, period: float):
     """Vertices [SAMPLES + 1, V, 3] in m of all meshes over a loop."""
-    from ..scene.scene import Scene
+    from .scene import Scene
 
     scene = Scene()
     scene.add(dataclasses.replace(model, motion=None), name="model")

@@ -8,7 +8,7 @@ from functools import cached_property
 from .. import _core
 from ..arguments.checks import refused
 from ..arguments.shown import writable
-from ..base.storage.data_folder import data_folder
+from .storage.data_folder import data_folder
 
 
 class MaterialLibrary(Mapping[str, _core.Material]):

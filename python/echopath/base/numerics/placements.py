@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from .. import _core
-from ..arguments.checks import array, refused
+from ... import _core
+from ...arguments.checks import array, refused
 
 ORIGIN = (0.0, 0.0, 0.0)
 _ROUNDING = 1e-12  # of the squared length of a column that is meant to be a unit vector

@@ -1,4 +1,4 @@
-"""Colours of objects and of their meshes."""
+"""Colours of objects and of their meshes, and of tracks."""
 from __future__ import annotations
 
 import colorsys
@@ -6,6 +6,7 @@ import colorsys
 import numpy as np
 
 from echopath.base.text.mesh_names import object_of
+from echopath.plots.style import CURVE_COLOURS
 
 # Paul Tol's "muted" and "light" colours without the greys: told apart with most colour vision.
 _PALETTE = ("#cc6677", "#44aa99", "#aa4499", "#999933", "#88ccee", "#117733", "#ddcc77", "#882255", "#332288",
@@ -39,6 +40,11 @@ def mesh_palette(scene):
         counters[is_plane] += 1
         colours[meshes] = _shades(base, len(meshes))
     return _all_different(colours)
+
+
+def track_colour(number: int) -> str:
+    """That of a track by its number, "#rrggbb": the same in the strip and in the scene."""
+    return CURVE_COLOURS[number % len(CURVE_COLOURS)]
 
 
 def rgb_of(text: str) -> tuple:

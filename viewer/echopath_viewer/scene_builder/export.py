@@ -1,13 +1,13 @@
 """Rays and meshes as VTK files, for ParaView and its like."""
 from __future__ import annotations
 
-import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from echopath.base.storage.files import written_whole
 from echopath.base.storage.origin import origin_texts
 
+from .joined import joined_meshes
 from .polydata import lines_of, triangles_of
 
 
@@ -39,16 +39,10 @@ def export_meshes(session, path) -> int:
 
     Returns the number of meshes.
     """
-    shown = [mesh for mesh in session.scene.meshes if mesh.id not in session.hidden_meshes]
-    points, faces, mesh_id, first = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)], 0
-    for mesh in shown:
-        vertices = session.scene.world_vertices(mesh.id, session.time)
-        points.append(vertices)
-        faces.append(np.asarray(mesh.triangles, np.int64) + first)
-        mesh_id.append(np.full(len(mesh.triangles), mesh.id))
-        first += len(vertices)
-    poly = triangles_of(np.concatenate(points), np.concatenate(faces))
-    poly.cell_data["mesh_id"] = np.concatenate(mesh_id)
+    shown = [mesh.id for mesh in session.scene.meshes if mesh.id not in session.hidden_meshes]
+    joined = joined_meshes(session, shown)
+    poly = triangles_of(joined.points, joined.triangles)
+    poly.cell_data["mesh_id"] = joined.mesh_of_triangle
     poly.field_data["mesh_names"] = list(session.mesh_names)
     _write(poly, path, session)
     return len(shown)

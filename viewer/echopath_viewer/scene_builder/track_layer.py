@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from echopath.plots.style import CURVE_COLOURS
-
-from ..model.palette import rgb_of
+from ..model.palette import rgb_of, track_colour
 from .polydata import coloured_actor, loose_lines_of, set_segment_colours
 
 WIDTH = 3.0  # pixels
@@ -26,7 +24,7 @@ class TrackLayer:
         for number in np.unique(tracks.track) if tracks is not None else []:
             rows = np.flatnonzero(tracks.track == number)
             ends += list(zip(rows[:-1], rows[1:]))
-            colours += [rgb_of(CURVE_COLOURS[number % len(CURVE_COLOURS)])] * (len(rows) - 1)
+            colours += [rgb_of(track_colour(number))] * (len(rows) - 1)
         self._actor.SetVisibility(bool(ends))
         if ends:
             points = np.column_stack([tracks.state[:, :2], np.full(len(tracks.track), height)])

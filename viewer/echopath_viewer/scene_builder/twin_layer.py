@@ -1,11 +1,10 @@
 """Ghosts in the scene, as translucent twins of the objects that make them."""
 from __future__ import annotations
 
-import numpy as np
-
 from echopath.plots.labels import CLASSES
 
 from ..model.maps.layers import TWINS
+from .joined import joined_meshes
 from .polydata import triangles_of
 
 OPACITY = 0.28
@@ -29,24 +28,13 @@ class TwinLayer:
         self._actors = []
         tops, twins = [], twins or []
         for number, twin in enumerate(twins):
-            points, faces = _joined(session, twin.meshes)
-            points = points + twin.offset
+            joined = joined_meshes(session, twin.meshes)
+            points = joined.points + twin.offset
             tops.append(points[points[:, 2].argmax()])
-            self._add(f"twin {number}", triangles_of(points, faces), CLASSES[twin.ghost_type][1])
+            self._add(f"twin {number}", triangles_of(points, joined.triangles), CLASSES[twin.ghost_type][1])
         self._set_names("twins", tops, [twin.name for twin in twins])
 
     def _add(self, name: str, poly, colour: str) -> None:
         self._actors.append(name)
         self._plotter.add_mesh(poly, name=name, color=colour, opacity=OPACITY, lighting=False, pickable=False,
                                show_scalar_bar=False, reset_camera=False, render=False)
-
-
-def _joined(session, meshes) -> tuple:
-    """(points [V, 3] m, triangles [F, 3]) of meshes at the time on display."""
-    points, faces, first = [], [], 0
-    for mesh in meshes:
-        vertices = np.asarray(session.scene.world_vertices(mesh, session.time))
-        points.append(vertices)
-        faces.append(np.asarray(session.scene.meshes[mesh].triangles, np.int64) + first)
-        first += len(vertices)
-    return np.concatenate(points), np.concatenate(faces)

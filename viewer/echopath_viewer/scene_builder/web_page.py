@@ -11,6 +11,7 @@ from echopath.base.storage.files import written_whole
 from echopath.base.storage.origin import origin_texts
 
 from ..model.palette import objects_of
+from .joined import joined_meshes
 
 MESH_OPACITY, MIRROR_OPACITY, RAY_WIDTH, CHOSEN_WIDTH = 0.6, 0.18, 2, 7
 CHOSEN_COLOUR = "#000000"
@@ -77,17 +78,15 @@ class ScenePage:
         return found
 
     def _body(self, name: str, meshes: list, opacity: float, is_listed: bool):
-        session, points, faces, colours, texts = self._session, [], [], [], []
-        for mesh in meshes:
-            triangles = np.asarray(session.scene.meshes[mesh].triangles, np.int64)
-            faces.append(triangles + sum(map(len, points)))
-            points.append(np.asarray(session.scene.world_vertices(int(mesh), session.time), np.float32))
-            colours += [_css(session.palette[mesh])] * len(triangles)
-            texts += [escape(session.mesh_names[mesh])] * len(points[-1])
-        (x, y, z), (i, j, k) = np.concatenate(points).T, np.concatenate(faces).T
-        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text",
-                                   opacity=opacity, flatshading=True, showlegend=is_listed, name=escape(name),
-                                   legendgroup=escape(name), showscale=False, color=_css(session.palette[meshes[0]]))
+        session = self._session
+        joined = joined_meshes(session, meshes)
+        colour = {mesh: _css(session.palette[mesh]) for mesh in meshes}
+        text = {mesh: escape(session.mesh_names[mesh]) for mesh in meshes}
+        (x, y, z), (i, j, k) = joined.points.astype(np.float32).T, joined.triangles.T
+        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=[colour[mesh] for mesh in joined.mesh_of_triangle],
+                                   hovertext=[text[mesh] for mesh in joined.mesh_of_point], hoverinfo="text", opacity=opacity,
+                                   flatshading=True, showlegend=is_listed, name=escape(name), legendgroup=escape(name),
+                                   showscale=False, color=colour[meshes[0]])
 
     def _antennas(self):
         x, y, z = np.array(self._session.antennas_at(self._session.time)).T

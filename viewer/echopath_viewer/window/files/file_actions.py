@@ -10,8 +10,8 @@ from ...scene_builder import export_meshes, export_rays
 from ..busy import run_with_progress, waiting_cursor
 from ..qt import QtCore, QtWidgets
 from .exporting import export
+from .kinds import FRAMES, VIEWS
 
-FRAMES, VIEWS = "Frames (*.h5 *.hdf5)", "Views (*.json)"
 # What the dialog offers: suffix, and how many times the pixels of the screen.
 PICTURES = {"Picture (*.png)": (".png", 1), "Picture, twice the resolution (*.png)": (".png", 2),
             "Picture, 4 times the resolution (*.png)": (".png", 4), "Maps (*.svg)": (".svg", 1), "Maps (*.pdf)": (".pdf", 1),

@@ -11,6 +11,7 @@ from echopath.signals.measures import for_pictures
 from ...model import CellBox, Session, from_file
 from ...model.maps.comparison import difference, kept_map
 from ...model.maps.part_set import level_text
+from ..files.kinds import FRAMES
 from ..qt import QtCore, QtWidgets
 from .colour_bar import ColourBar
 from .map_area import title_of
@@ -82,7 +83,7 @@ class ComparePanel(SeenPanel):
         self.refresh()
 
     def _ask(self) -> None:
-        path, _ = QtWidgets.QFileDialog.getOpenFileName(self, "Compare with", "", "Frames (*.h5 *.hdf5)")
+        path, _ = QtWidgets.QFileDialog.getOpenFileName(self, "Compare with", "", FRAMES)
         if path:
             self.keep_file(path)
 

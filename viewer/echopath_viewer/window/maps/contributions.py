@@ -13,6 +13,7 @@ from ...model.maps.part_set import level_text
 from ..background_work import BackgroundWork
 from ..banner import ThinBar
 from ..qt import Qt, QtGui, QtWidgets
+from ..swatch import swatch
 from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 from .ticks import place_text
 
@@ -202,7 +203,7 @@ class ContributionsPanel(QtWidgets.QWidget):
                 if column:
                     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 self.table.setItem(number, column, item)
-            self.table.item(number, 0).setIcon(_swatch(COLOURS[min(number, MAX_ARROWS - 1)]))
+            self.table.item(number, 0).setIcon(swatch(QtGui.QColor(COLOURS[min(number, MAX_ARROWS - 1)])))
             self.table.item(number, 0).setToolTip(f"{one.name}: {phase:+z.0f}° from the sum; own peak at {peak or 'no place'}")
         self.table.blockSignals(False)
 
@@ -223,9 +224,3 @@ def kind_of(contribution) -> str:
     if family is None or not (family.object and family.is_ghost):
         return contribution.name
     return f"a ghost: {family.object} by way of {' and '.join(family.via)}"
-
-
-def _swatch(colour: str) -> QtGui.QIcon:
-    pixmap = QtGui.QPixmap(12, 12)
-    pixmap.fill(QtGui.QColor(colour))
-    return QtGui.QIcon(pixmap)

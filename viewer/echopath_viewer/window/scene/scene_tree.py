@@ -3,7 +3,8 @@ from __future__ import annotations
 
 from echopath.base.text.node_names import composed
 
-from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
+from ..qt import Qt, QtGui, QtWidgets, Signal
+from ..swatch import swatch
 
 NAME, COUNT = 0, 1
 MOST_OPEN = 24  # rows: more objects than that show their own alone
@@ -93,7 +94,7 @@ class SceneTree(QtWidgets.QTreeWidget):
         for item, count in zip(self._items.values(), session.node_counts()):
             item.setText(COUNT, f"{count:,}")
         for mesh, item in self._mesh_items.items():
-            item.setIcon(NAME, _swatch(session.palette[mesh]))
+            item.setIcon(NAME, swatch(QtGui.QColor(*map(int, session.palette[mesh]))))
             hidden = mesh in session.hidden_meshes
             item.setCheckState(NAME, Qt.CheckState.Unchecked if hidden else Qt.CheckState.Checked)
         with_mesh = set(session.mesh_names)
@@ -170,9 +171,3 @@ def _state_of_all(item, has_mesh: bool) -> Qt.CheckState:
 def _plain(name: str) -> str:
     """A name as it is looked for."""
     return composed(name).casefold()
-
-
-def _swatch(rgb) -> QtGui.QIcon:
-    pixmap = QtGui.QPixmap(QtCore.QSize(12, 12))
-    pixmap.fill(QtGui.QColor(*map(int, rgb)))
-    return QtGui.QIcon(pixmap)

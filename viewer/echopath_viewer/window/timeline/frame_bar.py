@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from echopath.plots.style import CURVE_COLOURS, MAP_COLOURS
+from echopath.plots.style import MAP_COLOURS
 
 from ...model.colours import colour_table, levels_of
 from ...model.frames.overview import AXES, has_map, level_image, track_values, tracks_of
+from ...model.palette import track_colour
 from ..maps.ticks import nice_ticks, tick_text
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
@@ -178,14 +179,9 @@ class TimeStrip(QtWidgets.QWidget):
             rows = np.flatnonzero(self.tracks.track == number)
             line = QtGui.QPolygonF([QtCore.QPointF(self.x_of(int(self.tracks.frame[row])), self._y_of(values[row]))
                                     for row in rows])
-            for colour, width in ((QtGui.QColor("white"), 3.5), (track_colour(int(number)), 1.8)):
+            for colour, width in ((QtGui.QColor("white"), 3.5), (QtGui.QColor(track_colour(number)), 1.8)):
                 painter.setPen(QtGui.QPen(colour, width))
                 painter.drawPolyline(line)
-
-
-def track_colour(number: int) -> QtGui.QColor:
-    """The same in the strip and in the scene."""
-    return QtGui.QColor(CURVE_COLOURS[number % len(CURVE_COLOURS)])
 
 
 def _rows_with_signal(level, floor: float) -> slice:

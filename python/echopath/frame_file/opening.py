@@ -9,6 +9,7 @@ from shlex import quote
 
 from .. import _core
 from ..base.process.interrupts import interrupts_are_kept
+from ..base.storage.files import require_readable
 from .changing import end_in, has_journal, mend
 from .h5 import FAULTS, first_line, read_group
 from .h5_items import library
@@ -44,6 +45,7 @@ def reading(path):
     Whatever is wrong with it becomes an ep.FileError that names the file and the reason.
     """
     place, group = file_and_group(path)
+    require_readable(place)
     try:
         with interrupts_are_kept(), _opened(place) as file:
             yield read_group(file, group) if group else file

@@ -12,6 +12,7 @@ from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.storage.data_folder import data_folder
+from ..base.storage.files import require_readable
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
@@ -148,6 +149,7 @@ def parse(path: Path) -> dict:
 
 def text_of(path: Path) -> str:
     """The text of a TOML file. Raises ep.FileError, ValueError naming the file."""
+    require_readable(path)
     try:
         return path.read_bytes().decode("utf-8-sig")  # with a byte-order mark, too
     except OSError as error:

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import checked, flag
+from ..base.storage.files import require_readable
 
 COLUMNS = ("azimuth_deg", "elevation_deg", "gain_db", "phase_deg")
 REQUIRED = COLUMNS[:3]
@@ -28,6 +29,7 @@ def load_antenna(path: str | os.PathLike[str], *, normalize: bool = False) -> _c
     Returns an AntennaPattern as `GainTable` makes it. Raises FileError naming the file, and the line if there is one.
     """
     path = Path(path)
+    require_readable(path)
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()  # with a byte-order mark, too
     except OSError as error:

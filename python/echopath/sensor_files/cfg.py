@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from .. import _core
+from ..base.storage.files import require_readable
 
 # Names of the arguments of each command that is understood, in their order; more may follow.
 ARGUMENTS = {
@@ -72,6 +73,7 @@ class Lines:
 
 def read_lines(path: Path) -> Lines:
     """Reads a configuration. Raises ep.FileError naming the line where arguments are missing or no numbers."""
+    require_readable(path)
     try:
         text = path.read_bytes().decode("utf-8-sig", "replace")
     except OSError as error:

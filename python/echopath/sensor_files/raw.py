@@ -17,7 +17,7 @@ from .. import _core
 from ..arguments.checks import checked, path, refused
 from ..arguments.iterables import iterable
 from ..base.process.callers import warn_user
-from ..base.storage.files import written_whole
+from ..base.storage.files import require_readable, written_whole
 from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..receiver.chain import Reception
@@ -65,6 +65,7 @@ def load_raw(path: str | os.PathLike[str], radar: _core.Radar) -> Iterator[Recep
     """
     shape = _slot_shape(radar)
     length = 2 * _num_words(shape, _adc_of(radar))
+    require_readable(path)
     try:
         with open(path, "rb") as file:
             count, rest = divmod(os.fstat(file.fileno()).st_size, length)

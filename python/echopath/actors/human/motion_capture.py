@@ -8,6 +8,7 @@ import numpy as np
 
 from ... import _core
 from ...base.numerics.rotations import about_x, about_y, about_z
+from ...base.storage.files import require_readable
 
 MOST_JOINTS = 10_000
 MOST_VALUES = 200_000_000  # joints times frames
@@ -65,6 +66,7 @@ class _Words:
 
     def __init__(self, path: Path):
         self._path = path
+        require_readable(path)
         try:
             if path.stat().st_size > MAX_BYTES:
                 raise _core.FileError(f"{path}: is larger than {MAX_BYTES} bytes")

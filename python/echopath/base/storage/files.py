@@ -12,6 +12,19 @@ from ... import _core
 from ..process.interrupts import heed, interrupts_are_kept
 
 
+def require_readable(path) -> None:
+    """Raises ep.FileError for a device, and for a pipe that has a name, at which a reader may wait without end.
+
+    A pipe that the shell makes has none, but a writer: `echopath run <(...)` reads it. What is not there is told by who reads.
+    """
+    if _is_device_or_pipe(path) and os.path.exists(os.path.realpath(path)):
+        raise _core.FileError(f"{path}: is no regular file")
+
+
+def _is_device_or_pipe(path) -> bool:
+    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
+
+
 @contextmanager
 def written_whole(path, suffix: str | None = None):
     """Yields the path of a temporary file beside `path` that takes its place when the block ends well. A link stays one: the file
@@ -28,7 +41,7 @@ def written_whole(path, suffix: str | None = None):
 
 
 def _written(path: Path, suffix: str | None):
-    if path.exists() and not path.is_file() and not path.is_dir():  # nothing but folders refuses to be replaced
+    if _is_device_or_pipe(path):  # nothing but folders refuses to be replaced
         raise _core.FileError(f"{path}: cannot be written (a device or a pipe, not a file)")
     ending = path.suffix if suffix is None else suffix
     place = Path(os.path.realpath(path)) if path.is_symlink() else path

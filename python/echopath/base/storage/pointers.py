@@ -7,13 +7,18 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ... import _core
+from .files import require_readable
 
 LFS = b"version https://git-lfs"
 
 
 @contextmanager
 def pointers_are_told(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Says of a file that cannot be read that it is a pointer, where it is one: what is wrong with its content tells nothing."""
+    """Says of a file that cannot be read that it is a pointer, where it is one: what is wrong with its content tells nothing.
+
+    Raises ep.FileError before, where there is no file (`require_readable`).
+    """
+    require_readable(path)
     try:
         yield
     except _core.FileError:

@@ -11,8 +11,10 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import Rule, carrier, checked, choice, flag, optional, path as file_or_folder, real, refused, text
+from ..arguments.names import first_names
 from ..arguments.number_rules import unit_rule
 from ..base.process.callers import warn_user
+from ..base.storage.files import require_readable
 from ..base.storage.pointers import pointers_are_told
 from .material_names import Meaning, checked_materials, note_of_unused
 from .model import Model
@@ -55,8 +57,8 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     frequency: Hz, at which permittivities of materials by name are those of Recommendation ITU-R P.2040; None: materials are
         those of `ep.materials`, at 77 GHz. The notes name those that stay at 77 GHz
     Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
-    place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install. Warns (RuntimeWarning)
-    of a figure with a skeleton whose size is hardly right, unless its unit is given.
+    place in it, also of a file without any surface; ValueError or TypeError naming the argument; ModuleNotFoundError saying what
+    to install. Warns (RuntimeWarning) of a figure with a skeleton whose size is hardly right, unless its unit is given.
     """
     file = Path(path)
     model = read_model(file, ReadOptions(unit, up, materials or {}, animation, loop, offset, smooth, frequency))
@@ -74,8 +76,17 @@ def read_model(file: Path, options: ReadOptions) -> Model:
             model = reader.read(file, options)
     except RecursionError:
         raise _core.FileError(f"{file}: is nested too deeply") from None
+    _require_surfaces(file, model)
     notes = note_of_unused(options.materials, [node.foreign_material for node in model.nodes])
     return dataclasses.replace(model, notes=(*model.notes, *notes)) if notes else model
+
+
+def _require_surfaces(file: Path, model: Model) -> None:
+    """Raises ep.FileError for a model without meshes, with what its notes tell of why."""
+    if any(node.mesh is not None for node in model.nodes):
+        return
+    alone = f"; it has animations alone ({first_names(model.animations)})" if model.animations else ""
+    raise _core.FileError("; ".join([f"{file}: holds no surface{alone}", *model.notes[:3]]))
 
 
 def is_foreign(path: Path) -> bool:
@@ -93,6 +104,7 @@ def reader_of(path: Path) -> str:
         raise refused(ValueError, "path", f"a file of the kinds {', '.join(READERS)}, or a folder of OBJ files{hint}", str(path))
     if path.is_dir():
         raise _core.FileError(f"{path}: is a directory")
-    if not path.is_file():  # devices and pipes have no end
-        raise _core.FileError(f"{path}: {'is no regular file' if path.exists() else 'cannot be opened'}")
+    require_readable(path)
+    if not path.is_file():
+        raise _core.FileError(f"{path}: cannot be opened")
     return module

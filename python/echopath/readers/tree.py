@@ -61,8 +61,6 @@ class Tree:
         counted = [f"{what} ({count} times)" if count > 1 else what for what, count in self._counted.items()]
         notes = (*self._notes, *counted, *note_of_unknown(self._unknown),
                  *note_of_library_values(self._at_library_frequency))
-        if not any(node.mesh is not None for node in self.nodes):
-            notes += ("the file holds no surface",)
         return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
 
     def _material(self, name: str, kind: str):

@@ -1,6 +1,7 @@
 """Foreign scenes: names of materials, scene files that name models, what the command line says of them."""
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -233,10 +234,20 @@ def test_info_tells_content_size_axes_unit_and_materials(town, capsys):
         assert words in said, words
 
 
-def test_a_file_without_surfaces_says_so(tmp_path, capsys):
-    (tmp_path / "empty.xml").write_text('<scene version="3.0.0"><integrator type="path"/></scene>')
-    assert main(["info", str(tmp_path / "empty.xml")]) == 0
-    assert "the file holds no surface" in capsys.readouterr().out
+WITHOUT_SURFACES = {  # files, and what is said of them beside that
+    "a.xml": ('<scene version="3.0.0"><integrator type="path"/></scene>', ""),
+    "a.usda": ('#usda 1.0\n(upAxis = "Z")\ndef Xform "a" {}\n', ""),
+    "a.gltf": (json.dumps({"asset": {"version": "2.0"}, "nodes": [{}], "animations": [
+        {"name": name, "samplers": [], "channels": []} for name in ("walk", "run")]}),
+        "; it has animations alone (walk, run)")}
+
+
+@pytest.mark.parametrize("name", WITHOUT_SURFACES)
+def test_a_file_without_surfaces_is_refused_in_any_format(tmp_path, name):
+    content, said = WITHOUT_SURFACES[name]
+    (tmp_path / name).write_text(content)
+    with pytest.raises(ep.FileError, match=re.escape(f"{name}: holds no surface{said}") + "$"):
+        ep.load_model(tmp_path / name)
 
 
 @pytest.mark.parametrize("extent, unit, names, words", [

@@ -40,8 +40,6 @@ def read(path: Path, options: ReadOptions) -> Model:
     motions = Motions(nodes, animation)
     surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes), animation)
     _Content(document, accessors, nodes, motions, surfaces, tree).add_all()
-    if not tree.nodes:
-        document.json.fail("shows no triangles" + "".join(f"; {note}" for note in tree.notes[:3]))
     model = tree.model(format="glTF 2.0", unit=axes.unit, up=axes.up, animations=names, animation=animation.name,
                        duration=animation.duration)
     return model.placed(yaw=np.pi) if VRM_0 in document.json["extensions"] else model

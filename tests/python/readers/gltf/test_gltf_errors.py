@@ -76,7 +76,7 @@ def test_each_fault_is_told_with_its_place(tmp_path, place, value, said):
     (b"glTF\1\0\0\0\0\0\0\0", "is a GLB of version 1"),
     (b"glTF\2\0\0\0", "is cut off within its head"),
     (b"glTF\2\0\0\0\xff\0\0\0", "is cut off: should have 255 bytes, has 12"),
-    (b'{"asset": {"version": "2.0"}}', "shows no triangles"),
+    (b'{"asset": {"version": "2.0"}}', "holds no surface"),
     (b'{"asset": {"version": "1.0"}, "buffers": {"box": {"uri": "box.bin"}}}', r"must be 2\.0, is '1\.0'; only glTF 2\.0 is"),
 ])
 def test_what_is_no_gltf_is_told_so(tmp_path, content, said):

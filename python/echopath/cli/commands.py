@@ -137,11 +137,11 @@ def dataset(options) -> None:
 
 
 def dataset_report(options) -> None:
-    from ..dataset import write_report
+    from ..dataset import open as open_dataset, write_report
 
     page = options.out or Path(options.folder) / "report.html"
     with told_as(folder="DIR"):
-        write_report(options.folder, page)
+        write_report(open_dataset(options.folder), page)
     print(f"wrote {page}")
 
 

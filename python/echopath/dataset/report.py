@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import checked, path as file_or_folder
+from ..arguments.checks import checked, path as path_rule
 from ..base.numerics.decibels import in_dbm
 from ..base.storage.files import write_texts
 from ..paths.resolution import RESOLVED_DB
@@ -23,7 +23,7 @@ from ..signals.measures import for_pictures
 from ..tracing.validity import validity
 from .classes import CODES
 from .folder import read_record
-from .opened import Dataset, open
+from .opened import Dataset, dataset_rule
 from .statistics import Statistics, statistics_of
 
 EXAMPLES, MOST_DRAWN, FEW = 4, 12, 6  # pictures of frames; drawn numbers that are shown; values that have a bar each
@@ -33,16 +33,15 @@ _STYLE = ("body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:
           "td:first-child,th:first-child{text-align:left}img{max-width:100%}")
 
 
-@checked(folder=file_or_folder, path=file_or_folder)
-def write_report(folder: str | os.PathLike[str], path: str | os.PathLike[str]) -> None:
+@checked(dataset=dataset_rule, path=path_rule)
+def write_report(dataset: Dataset, path: str | os.PathLike[str]) -> None:
     """Writes one HTML file about a dataset: what is done, objects by class, range and power, ghosts, detections, what was drawn,
     how well the rays know the powers, and frames chosen evenly with their validity (`ep.validity`).
 
-    folder: of the dataset; path: of the file, written whole or not at all. At most 2000 frames, evenly spread, are read; those
+    dataset: as of `open`; path: of the file, written whole or not at all. At most 2000 frames, evenly spread, are read; those
         that are shown are made again where their paths were not kept.
-    Raises ep.FileError where the folder is no dataset, or the file cannot be written.
+    Raises ep.FileError where the file cannot be written.
     """
-    dataset = open(folder)
     found = statistics_of(dataset)
     parts = [f"<h1>{html.escape(str(dataset.template.table.get('title') or dataset.folder.name))}</h1>", *_facts(dataset, found),
              *_classes(dataset, found), *_histograms(found), *_errors(found), *_detections(found), *_drawn(found),

@@ -5,6 +5,7 @@ from html.parser import HTMLParser
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from echopath import dataset
 from echopath.cli import main
@@ -79,3 +80,9 @@ def test_numbers_that_were_drawn_have_no_empty_axes_beside_them(monkeypatch):
         list(report._drawn(SimpleNamespace(drawn=drawn)))
         shown = [axes for axes in figures[-1].axes if axes.axison]
         assert len(shown) == several and all(axes.has_data() for axes in shown)
+
+
+@pytest.mark.parametrize("writer", [name for name in dataset.__all__ if name.startswith("write_")])
+def test_each_writer_takes_the_opened_dataset(tmp_path, writer):
+    with pytest.raises(TypeError, match="dataset: must be a Dataset of ep.dataset.open"):
+        getattr(dataset, writer)(tmp_path, tmp_path / "out")

@@ -13,7 +13,7 @@ from echopath import dataset
 
 # Parameters that are objects, names or counts: they have neither a unit nor a shape.
 NO_QUANTITY = {
-    "actor", "args", "arguments", "batches", "block", "clothing", "color_by", "evaluate", "exponent", "folder",
+    "actor", "args", "arguments", "batches", "block", "clothing", "color_by", "dataset", "evaluate", "exponent", "folder",
     "footprint", "frame", "function", "glob", "interpolation", "keep", "keyframes", "keywords", "kwargs", "material", "max",
     "max_bounces",
     "ax", "figure", "labels", "map", "mesh", "mesh_or_actor", "method", "min", "mirror", "modelled", "motion", "multiplexing",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _core
+from ..base.text.lengths import length_text
 
 if TYPE_CHECKING:
     from .model import Model
@@ -76,7 +77,7 @@ def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = F
         return None
     fits = [f"unit={value:g} ({name})" for name, value in _UNITS.items() if least <= extent / unit * value <= most]
     advice = f"; with {' or '.join(fits)} it would be right" if fits else "; unit tells how long a unit of the file is, in m"
-    return f"{what} of {_length(extent)} is hardly right{advice}"
+    return f"{what} of {length_text(extent)} is hardly right{advice}"
 
 
 def _expected(names: list[str]) -> tuple[str, float, float] | None:
@@ -89,9 +90,3 @@ def _expected(names: list[str]) -> tuple[str, float, float] | None:
             if words & set(known) and not words & _PLACES:
                 return what, least, most
     return None
-
-
-def _length(extent: float) -> str:
-    """A length in words: mm below 0.1 m, km from 1 km on."""
-    scale, unit = (1e3, "mm") if extent < 0.1 else (1e-3, "km") if extent >= 1e3 else (1.0, "m")
-    return f"{extent * scale:.3g} {unit}"

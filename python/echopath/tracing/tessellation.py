@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..base.process.callers import warn_user
+from ..base.text.lengths import length_text
 from ..scene.seams import is_soup, without_seams
 from .polarization import COHERENT_SHARE
 
@@ -130,12 +131,12 @@ def _fault(measured: Tessellation, wavelength: float, smooth: bool) -> str:
     """What is wrong with a mesh that is too coarse."""
     coarser = SMOOTH_GAIN if smooth else 1.0
     ratio = measured.ratio(wavelength) / coarser
-    advice = f"edges of {_rounded_down(1e3 * coarser * measured.good_edge(wavelength)):g} mm would do"
+    advice = f"edges of {length_text(_rounded_down(coarser * measured.good_edge(wavelength)))} would do"
     if not smooth and ratio <= SMOOTH_GAIN * MAX_RATIO:
         advice += ", or smooth=True"
     error = f"about {facet_error_db(ratio):.1f} dB" if ratio <= EDGE_RATIOS[-1] else f"{ERRORS_DB[-1]:.0f} dB or more"
-    return (f"edges of {1e3 * measured.edge:.3g} mm on a surface curved with a radius of "
-            f"{measured.radius:.2g} m err by {error} in its coherent echo; {advice}")
+    return (f"edges of {length_text(measured.edge)} on a surface curved with a radius of {length_text(measured.radius)} err by "
+            f"{error} in its coherent echo; {advice}")
 
 
 def _rounded_down(value: float) -> float:

@@ -1,4 +1,5 @@
 """The warning of coarse curved surfaces, against levels of icospheres known from an independent simulator."""
+import re
 import warnings
 
 import numpy as np
@@ -85,6 +86,12 @@ def test_coarse_spheres_are_warned_of_and_fine_ones_are_not():
     assert "7.7 mm would do" in text  # 0.4 sqrt(97.5 mm 3.89 mm) = 7.79 mm, rounded down
     for subdivisions in (4, 5):
         assert warnings_of(icosphere(2**subdivisions)) == []
+
+
+def test_lengths_are_told_in_units_that_fit_them():
+    """A dome of 2.5 km: edges of 0.4 sqrt(2500 m 3.89 mm) = 1.25 m would do."""
+    (text,) = warnings_of(ep.actors.sphere(2500.0, subdivisions=8))
+    assert re.search(r"edges of \d{3} m on a surface curved with a radius of 2.\d+ km .* 1.2 m would do", text)
 
 
 def test_smooth_spheres_may_be_four_times_coarser():

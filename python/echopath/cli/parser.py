@@ -178,20 +178,22 @@ def _add_bench(commands) -> None:
                        help="; ".join(f"{what}: {measured}" for what, measured in BENCHES.items()))
     bench.add_argument("--out", type=named, required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
-    bench.add_argument("--rays-max", type=positive, default=None, metavar="N",
-                       help=f"physics: most rays of a trace (default: {2**16})")
-    bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
-    bench.add_argument("--seeds", type=positive, default=None, metavar="N",
-                       help="crowd: scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)")
-    bench.add_argument("--suite", default=None, metavar="DIR",
-                       help="measured: a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
-    bench.add_argument("--cities", default=None, metavar="DIR",
-                       help="worlds: a folder of scenes as sionna-rt ships them (default: its own, where it is installed)")
-    bench.add_argument("--sionna", default=None, metavar="PYTHON",
-                       help="worlds: a Python that has sionna-rt, whose paths and seconds stand beside ours (default: this one)")
-    bench.add_argument("--models", default=None, metavar="DIR",
-                       help="worlds: a folder of models and cities, each of which is read in one call")
+    _add_of_one(bench, "--rays-max", "N", f"most rays of a trace (default: {2**16})", positive)
+    _add_of_one(bench, "--scenes", "N", "how many (default: a few dozen)", positive)
+    _add_of_one(bench, "--seeds", "N",
+                "scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)", positive)
+    _add_of_one(bench, "--suite", "DIR", "a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
+    _add_of_one(bench, "--cities", "DIR", "a folder of scenes as sionna-rt ships them (default: its own, where it is installed)")
+    _add_of_one(bench, "--sionna", "PYTHON",
+                "a Python that has sionna-rt, whose paths and seconds stand beside ours (default: this one)")
+    _add_of_one(bench, "--models", "DIR", "a folder of models and cities, each of which is read in one call")
     bench.set_defaults(command=work.bench)
+
+
+def _add_of_one(bench, option: str, metavar: str, text: str, kind=str) -> None:
+    """Adds an option that one benchmark alone has, which its help tells first."""
+    owner = work.BENCH_OPTIONS[option.removeprefix("--").replace("-", "_")]
+    bench.add_argument(option, type=kind, default=None, metavar=metavar, help=f"{owner}: {text}")
 
 
 def _add_trace_options(parser, default_rays) -> None:

@@ -11,6 +11,7 @@ from echopath import _core
 from ...actors import shapes
 from ...paths.absent import NO_MESH
 from ..physics import closed_forms as exact
+from ..physics.read_outs import field, rcs_of
 from .case import Cases
 from .scenes import (
     METAL,
@@ -20,11 +21,9 @@ from .scenes import (
     broadside_rcs,
     decibels,
     edge_points,
-    field,
     make_radar,
     misses,
     plate_at,
-    rcs_of,
     scene_of,
     traced,
 )

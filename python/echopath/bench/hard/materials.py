@@ -6,8 +6,9 @@ import numpy as np
 import echopath as ep
 
 from ...actors import shapes
+from ..physics.read_outs import rcs_of
 from .case import Cases
-from .scenes import METAL, decibels, make_radar, rcs_of, scene_of, traced
+from .scenes import METAL, decibels, make_radar, scene_of, traced
 
 cases = Cases("Materials")
 

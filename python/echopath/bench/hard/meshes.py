@@ -8,8 +8,9 @@ from echopath import _core
 
 from ...actors import shapes
 from ...paths.absent import NO_MESH
+from ..physics.read_outs import field, rcs_of
 from .case import Cases
-from .scenes import METAL, UTM, decibels, field, level_of, make_radar, plate_at, rcs_of, scene_of, traced
+from .scenes import METAL, UTM, decibels, level_of, make_radar, plate_at, scene_of, traced
 
 cases = Cases("Meshes")
 

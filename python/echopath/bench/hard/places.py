@@ -7,6 +7,7 @@ import echopath as ep
 
 from ...actors import shapes
 from ..physics import closed_forms as exact
+from ..physics.read_outs import field, rcs_of
 from .case import Cases
 from .scenes import (
     METAL,
@@ -14,10 +15,8 @@ from .scenes import (
     ROUGH,
     broadside_rcs,
     decibels,
-    field,
     make_radar,
     plate_at,
-    rcs_of,
     scene_of,
     traced,
     traced_quietly,

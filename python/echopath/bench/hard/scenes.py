@@ -11,6 +11,7 @@ from echopath import _core
 from ...actors import shapes
 from ...paths.absent import NO_MESH
 from ..physics import closed_forms as exact
+from ..physics.read_outs import rcs_of
 
 UTM = np.array([450_000.0, 5_400_000.0, 120.0])  # m, a place in coordinates of maps
 METAL = ep.Material.metal()
@@ -47,18 +48,6 @@ def traced_quietly(scene, radar, num_rays: int, **settings):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return ep.trace(scene, radar, num_rays=num_rays, **settings)
-
-
-def field(paths) -> np.ndarray:
-    """[P] amplitudes with the phase of their lengths, sqrt(W)."""
-    lengths = np.asarray(paths.lengths([paths.frame.trace_time]))[0]
-    return np.asarray(paths.amplitude) * np.exp(-2j * np.pi * np.mod(lengths / exact.WAVELENGTH, 1.0))
-
-
-def rcs_of(paths, distance: float, keep=slice(None)) -> float:
-    """Radar cross section in m^2 of the coherent sum of some paths of a target at `distance` m."""
-    power = abs(np.sum(field(paths)[keep])) ** 2
-    return float(power * (4 * np.pi) ** 3 * distance ** 4 / (POWER * exact.WAVELENGTH ** 2))
 
 
 def decibels(ratio: float) -> float:

@@ -10,6 +10,7 @@ import echopath as ep
 
 from ...actors import shapes
 from . import closed_forms as exact
+from .read_outs import field, rcs_of, rcs_of_power
 
 CAR = (2.2, 0.9, 0.7)            # m, semi-axes of the ellipsoid
 CAR_EDGE = 0.052                 # m
@@ -95,7 +96,7 @@ def _lambert_plate():
     scene.add(shapes.plate(1.0, 1.0), name="plate", material=_lambert(reflectivity), position=(distance, 0.0, 0.0))
     truth = exact.lambert_plate_rcs(1.0, reflectivity, distance)
     return Target("lambert_plate", "Lambert plate 1 m, mean", scene, truth,
-                  lambda paths: _rcs(np.sum(np.abs(paths.amplitude) ** 2), distance), compares_footprints=False)
+                  lambda paths: rcs_of_power(paths, np.sum(np.abs(paths.amplitude) ** 2), distance), compares_footprints=False)
 
 
 def _two_ray():
@@ -133,12 +134,12 @@ def _over_direct(paths, wanted: str) -> float:
     on_patch = np.where(diffuse, on_patch, paths.offsets)
     place = paths.u[on_patch] + 1j * paths.v[on_patch] + 2.0 * paths.triangle_id[on_patch]
     _, hit = np.unique(place, return_inverse=True)
-    field = _field(paths)
+    fields = field(paths)
     families = {"direct": diffuse & (count == 1), "pair": diffuse & (count == 2), "all": diffuse}
 
     def power(keep):
         sums = np.zeros(len(place), complex)
-        np.add.at(sums, hit[keep], field[keep])
+        np.add.at(sums, hit[keep], fields[keep])
         return float(np.sum(np.abs(sums) ** 2))
 
     return power(families[wanted]) / max(power(families["direct"]), 1e-300)
@@ -155,24 +156,13 @@ def _in_far_field(name, title, mesh, distance, truth, *, smooth=False, to_radar=
     scene.add(mesh, name="target", material=ep.Material.metal(), transform=placement, smooth=smooth)
 
     def value(paths):
-        return _rcs(abs(np.sum(_field(paths)[np.asarray(paths.num_bounces) == bounces])) ** 2, distance)
+        return rcs_of(paths, distance, np.asarray(paths.num_bounces) == bounces)
 
     return Target(name, title, scene, truth, value, max_bounces=bounces)
 
 
 def _lambert(reflectivity: float) -> ep.Material:
     return ep.Material(reflectivity=reflectivity, scattering=1.0)
-
-
-def _field(paths):
-    """Amplitude with the phase of the length, [P] complex, sqrt(W)."""
-    lengths = np.asarray(paths.lengths([paths.frame.trace_time]))[0]
-    return np.asarray(paths.amplitude) * np.exp(-2j * np.pi * np.mod(lengths / exact.WAVELENGTH, 1.0))
-
-
-def _rcs(power: float, distance: float) -> float:
-    """Of a power at the antenna port in W; transmit power 10 mW, isotropic antennas."""
-    return float(power) * (4.0 * np.pi) ** 3 * distance ** 4 / (0.01 * exact.WAVELENGTH ** 2)
 
 
 def _turn(angles):

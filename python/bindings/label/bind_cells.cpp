@@ -108,10 +108,9 @@ py::tuple errors_of(const py::object& cross, const py::object& coherent, const p
   const Powers coherents = checked_array<double>(coherent, "coherent", "[K, B, V, R]");
   const Powers diffuses = checked_array<double>(diffuse, "diffuse", "[K, B, V, R]");
   const Cells labels = checked_array<int16_t>(dominant, "dominant", "[V, R]");
+  const auto of_cross = by_part(crosses), of_coherent = by_part(coherents), of_diffuse = by_part(diffuses);
   std::vector<BatchPowers> parts;
-  for (size_t k = 0; k < static_cast<size_t>(crosses.shape(0)); ++k) {
-    parts.push_back({by_part(crosses)[k], by_part(coherents).at(k), by_part(diffuses).at(k)});
-  }
+  for (size_t k = 0; k < of_cross.size(); ++k) parts.push_back({of_cross[k], of_coherent.at(k), of_diffuse.at(k)});
   ShareErrors made = run_job("errors", py::none(), [&](Job& job) {
     return share_errors(parts, static_cast<int>(crosses.shape(1)), view(labels), &job);
   });

@@ -127,13 +127,15 @@ ORDER = ("_startup", "arguments", "base", "trajectories", "actors", "weather", "
          "paths", "cavities", "tracing", "signals", "spectra", "presentation", "effects", "plots", "labels", "detections",
          "truth", "guard", "frame", "frame_file", "tracks", "in_time", "sequence", "sensor_files", "live", "scene_file",
          "dataset", "viewing", "bench", "cli", "__main__")
+VIEWER_ORDER = ("libraries", "off_screen", "model", "scene_builder", "plot", "window")  # behind all of echopath
 AGAINST_ORDER = {*CLOSING, ("echopath.scene.scene", "echopath.presentation.notebook")}  # the table of Scene in a notebook
 
 
 def against_order(imports) -> set:
-    """Imports of a package of echopath by one before it, but for those in methods that are known to close a circle."""
+    """Imports of a package by one before it, but for those in methods that are known to close a circle."""
     known = {(source, one) for source, target in AGAINST_ORDER for one in with_packages(target, source)}
-    place = {f"echopath.{name}": index for index, name in enumerate(ORDER)}
+    in_order = [*(f"echopath.{name}" for name in ORDER), *(f"echopath_viewer.{name}" for name in VIEWER_ORDER)]
+    place = {name: index for index, name in enumerate(in_order)}
     placed = [(edge, *(place.get(".".join(name.split(".")[:2])) for name in edge)) for edge in imports if edge not in known]
     return {edge for edge, source, target in placed if None not in (source, target) and source < target}
 
@@ -144,12 +146,14 @@ def test_packages_import_in_their_order(imports):
 
 def test_an_import_against_the_order_is_found():
     edges = [("echopath.labels.cells", "echopath.spectra.maps"), ("echopath.spectra.maps", "echopath.labels"),
-             ("echopath", "echopath.labels"), ("echopath.signals.sums", "echopath.signals")]
-    assert against_order(edges) == {edges[1]}
+             ("echopath", "echopath.labels"), ("echopath.signals.sums", "echopath.signals"),
+             ("echopath_viewer.model.rays", "echopath.labels"), ("echopath_viewer.model.rays", "echopath_viewer.window")]
+    assert against_order(edges) == {edges[1], edges[-1]}
 
 
-def test_the_order_names_each_package():
-    assert sorted(ORDER) == sorted({name.split(".")[1] for name in modules_of(PACKAGES[:1]) if name != "echopath"})
+@pytest.mark.parametrize("package, order", list(zip(PACKAGES, (ORDER, VIEWER_ORDER))), ids=["echopath", "viewer"])
+def test_the_order_names_each_package(package, order):
+    assert sorted(order) == sorted({name.split(".")[1] for name in modules_of([package]) if "." in name})
 
 
 def test_the_package_loads_without_its_viewer(imports):

@@ -243,3 +243,11 @@ def test_unknown_keyword_names_the_nearest_right_one():
 def test_a_speed_that_is_not_for_a_height_names_both(person):
     with pytest.raises(ValueError, match="^speed: must be a finite number from .* m/s for a height of 0.5 m, got"):
         person(height=0.5)
+
+
+@pytest.mark.parametrize("actor, most", [("pedestrian", 0.089), ("runner", 0.089), ("standing_person", 0.089),
+                                         ("cyclist", 0.089), ("child", 0.0575)])
+def test_no_person_has_triangles_too_long_for_a_body(actor, most):
+    """A twentieth of the height, 1.78 m or 1.15 m."""
+    with pytest.raises(ValueError, match=f"edge: must be a finite number from 0 to {most} m, got 0.5"):
+        getattr(ep.actors, actor)(edge=0.5)

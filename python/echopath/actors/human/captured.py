@@ -15,13 +15,12 @@ from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import refuse_beside_trajectory, trajectory_rule
 from ..keyframes import Frames, key_times, with_rates
-from ..surfaces import edge_length
 from .anthropometry import ANKLE_HEIGHT, HIP_HEIGHT, Proportions
 from .body import surface
 from .captured_along import CaptureAlong, cycle_of
 from .captured_joints import find_joints, missing_joints
 from .motion_capture import POSE_HELD, read_capture
-from .pedestrian import HEIGHTS, SKIN_PARTS, material_rule
+from .pedestrian import HEIGHTS, SKIN_PARTS, edge_of, material_rule
 
 UNITS = (1.0, 0.01, 0.0254, 0.3048, 0.001, 0.0254 / 0.45)  # m: metre, cm, inch, foot, mm, that of the CMU conversions
 TYPICAL_HEIGHT = 1.75   # m
@@ -134,7 +133,7 @@ class CapturedBody:
 
     def _surfaced(self, offset: float, edge: float) -> tuple[dict[str, Frames], dict]:
         """Frames of every part as they stand in the actor, and (vertices, triangles) of its surface."""
-        edge = edge_length(edge, 3.0 * self.body.height)
+        edge = edge_of(self.body, edge)
         frames, stretch = self._frames()
         kinds = {name: name.rsplit("/")[-1] for name in frames}
         of_kind = {kind: surface(kind, self.body, edge) for kind in dict.fromkeys(kinds.values())}

@@ -11,11 +11,12 @@ from ...base.numerics.rotations import about_x, about_y, about_z
 from ..keyframes import Frames
 from .boulic import LIMIT, Cycle, Walk
 from .foot import Sole
+from .posture import bend_leg, hanging_arm, trunk
 from .steps import Steps
 
 MIN_KNEE = np.radians(7.0)     # least bend of a knee: near a straight leg its rate has no bound
 PELVIS_EARLIER = 0.03          # phase by which the pelvis rises earlier than in the model, as a planted leg allows
-ARM_ABDUCTION = np.radians(7.0)
+HAND_PITCH = np.radians(8.0)   # of the hands forward, against the forearms
 SEARCH_PHASES = 400            # per cycle, in the search for the pelvis height
 LEADS = np.linspace(0.10, 0.30, 81)   # tried distances from hips to the flat ankle at its strike, in cycle lengths
 
@@ -41,8 +42,7 @@ class Gait:
         """
         phase = np.asarray(phase, dtype=float)
         pelvis = self._pelvis(phase, self.pelvis_height)
-        parts = {"pelvis": pelvis}
-        parts.update(self._trunk(phase, pelvis))
+        parts = self._trunk(phase, pelvis)
         for side, sign in (("left", 1.0), ("right", -1.0)):
             parts.update(_prefixed(f"leg_{side}/", self._leg(phase, sign, pelvis)))
             parts.update(_prefixed(f"arm_{side}/", self._arm(phase, sign, parts["torso"])))
@@ -88,55 +88,17 @@ class Gait:
         return {"thigh": Frames(hip, thigh), "shank": Frames(knee, shank), "foot": Frames(ankle, foot)}
 
     def _trunk(self, phase, pelvis):
-        body, walk = self.body, self.walk
-        yaw, lean = walk.thorax(phase), walk.lean(phase)
-        base = pelvis.origin + pelvis.rotation @ np.array([0.0, 0.0, body.spine_base])
-        torso = Frames(base, about_z(yaw) @ about_y(lean))
-        neck = Frames(base + torso.rotation @ np.array([0.0, 0.0, body.neck_above_spine_base]),
-                      about_z(yaw / 2) @ about_y(lean / 2 + np.radians(8.0)))
-        head = Frames(neck.origin + neck.rotation @ np.array([0.0, 0.0, body.neck]), about_z(0.0 * yaw))
-        return {"torso": torso, "neck": neck, "head": head}
+        return trunk(self.body, pelvis, self.walk.lean(phase), yaw=self.walk.thorax(phase))
 
     def _arm(self, phase, sign, torso):
         own = _own_phase(phase, sign)
-        body, elbow_bend = self.body, self.walk.elbow(own)
-        shoulder = torso.origin + torso.rotation @ np.array(
-            [0.0, sign * body.shoulder_offset, body.shoulder_above_spine_base])
-        upper = torso.rotation @ about_y(-self.walk.shoulder(own)) @ about_x(np.full_like(phase, sign * ARM_ABDUCTION))
-        # The forearm hangs back towards the body by as much as the upper arm is spread.
-        forearm = upper @ about_y(-elbow_bend) @ about_x(np.full_like(phase, -0.8 * sign * ARM_ABDUCTION))
-        elbow = shoulder + upper @ np.array([0.0, 0.0, -body.upper_arm])
-        wrist = elbow + forearm @ np.array([0.0, 0.0, -body.forearm])
-        hand = forearm @ about_y(np.full_like(phase, np.radians(-8.0)))
-        return {"upper": Frames(shoulder, upper), "forearm": Frames(elbow, forearm), "hand": Frames(wrist, hand)}
+        return hanging_arm(self.body, torso, sign, swing=self.walk.shoulder(own), elbow=self.walk.elbow(own),
+                           hand_pitch=HAND_PITCH)
 
 
 def relative_speed_limit(body):
     """Greatest walking speed in m/s that the model covers."""
     return LIMIT * body.hip_height
-
-
-def bend_leg(hip, ankle, thigh, shank, heading):
-    """Knee [T, 3] and axes of thigh and shank [T, 3, 3] of a leg from hip [T, 3] to ankle [T, 3] that bends forwards.
-
-    thigh, shank: lengths in m; heading [T]: direction in rad, about z from x, of the vertical plane that the knee
-    bends in when the leg is upright. The axes have z up the segment and y along the knee's axis, to the left.
-    """
-    leg = hip - ankle
-    distance = np.linalg.norm(leg, axis=-1)
-    up = leg / distance[:, None]
-    axis = np.cross(up, np.stack([np.cos(heading), np.sin(heading), 0.0 * heading], axis=-1))
-    axis /= np.linalg.norm(axis, axis=-1)[:, None]
-    forward = np.cross(axis, up)
-    below = (distance**2 + shank**2 - thigh**2) / (2 * distance)
-    out = np.sqrt(shank**2 - below**2)
-    knee = ankle + below[:, None] * up + out[:, None] * forward
-    return knee, _segment_axes(hip - knee, axis), _segment_axes(knee - ankle, axis)
-
-
-def _segment_axes(up, left):
-    up = up / np.linalg.norm(up, axis=-1)[:, None]
-    return np.stack([np.cross(left, up), left, up], axis=-1)
 
 
 def _own_phase(phase, sign):

@@ -10,7 +10,8 @@ from ...arguments.checks import refused
 from ...base.numerics.rotations import about_y, about_z
 from ..keyframes import Frames
 from ..laid_line import LaidLine
-from .gait import MIN_KNEE, bend_leg
+from .gait import MIN_KNEE
+from .posture import bend_leg
 
 LEAST_ROOM = 0.3        # m, of a leg under a hip
 
@@ -31,7 +32,7 @@ class GaitAlong:
         times = np.asarray(times, float)
         phase = self._line.at(times)[0] / self._length
         pelvis = self._pelvis(phase)
-        parts = {"pelvis": pelvis, **self._gait._trunk(phase, pelvis)}
+        parts = self._gait._trunk(phase, pelvis)
         for side, sign in (("left", 1.0), ("right", -1.0)):
             limbs = self._leg(times, phase, sign, pelvis)
             parts.update({f"leg_{side}/{name}": frames for name, frames in limbs.items()})

@@ -51,7 +51,7 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
     height: of the body in m, 0.5 to 2.5. speed: in m/s, 0.1 to 3 hip heights a second (where walking ends).
     start_time, duration: first time and length of the motion in s; a scene can be posed at no other time.
     phase: of the walking cycle (two steps, about 1.1 s) at time 0, in cycles; 0 is the strike of the right heel.
-    edge: length in m of the triangles' sides; about 18 000 triangles in all by default.
+    edge: length in m of the triangles' sides, at most 0.05 heights; about 18 000 triangles in all by default.
     keyframe_rate: in 1/s, at least 60.
     clothing, skin: materials, names in echopath.materials or objects; skin are head, neck and hands.
     trajectory: a Trajectory of the origin that is followed instead of speed, start_time, duration and phase; the steps go with
@@ -65,44 +65,42 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
                    keyframe_rate=keyframe_rate, clothing=clothing, skin=skin, trajectory=trajectory)
 
 
-def walking(body, *, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin, trajectory):
-    """The Actor of a body that walks. Arguments as of pedestrian()."""
-    most = relative_speed_limit(body)
+def walking(body, **settings):
+    """The Actor of a body that walks. Settings as of pedestrian()."""
+    return on_foot(body, Gait, (MIN_SPEED, round(relative_speed_limit(body), 3)), **settings)
+
+
+def on_foot(body, gait_of, speeds, *, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin, trajectory):
+    """The Actor of a body that moves by a gait.
+
+    gait_of: (body, usual speed in m/s) -> Gait; speeds: least and greatest in m/s of the gait; others as of pedestrian()
+    """
+    looks = {"edge": edge_of(body, edge), "clothing": clothing, "skin": skin}
     if trajectory is not None:
-        return walk_along(body, lambda speed: Gait(body, speed), (MIN_SPEED, most), trajectory, edge=edge,
-                          keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    real(MIN_SPEED, round(most, 3), f"m/s for a height of {body.height:g} m")("speed", speed)
-    edge = edge_length(edge, 3.0 * body.height)
-    real(0.0, 0.05 * body.height, "m")("edge", edge)
-    arrays = walker_arrays(body, Gait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
-                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    return Actor([part.build() for part in arrays])
-
-
-def walker_arrays(body, gait, *, start_time, duration, phase, edge, keyframe_rate, clothing, skin):
-    """The parts of a body that moves by a gait, as plain arrays. Arguments as of pedestrian()."""
-    times = keyframe_times(start_time, duration, keyframe_rate)
+        return _along(body, gait_of, speeds, trajectory, keyframe_rate, looks)
+    real(*speeds, f"m/s for a height of {body.height:g} m")("speed", speed)
+    times, gait = keyframe_times(start_time, duration, keyframe_rate), gait_of(body, speed)
     frames = gait.frames(phase + times / gait.cycle.duration)
     start = np.array([phase * gait.cycle.length, 0.0, 0.0])
     moved = {name: Frames(frame.origin - start, frame.rotation) for name, frame in frames.items()}
-    return body_arrays(body, moved, times, edge=edge, clothing=clothing, skin=skin)
+    return Actor([part.build() for part in body_arrays(body, moved, times, **looks)])
 
 
-def walk_along(body, gait_at, speeds, trajectory, *, edge, keyframe_rate, clothing, skin):
-    """The Actor of a body that follows a trajectory by a gait.
-
-    gait_at: usual speed in m/s -> Gait; speeds: least and greatest in m/s of the gait
-    """
-    edge = edge_length(edge, 3.0 * body.height)
-    real(0.0, 0.05 * body.height, "m")("edge", edge)
+def _along(body, gait_of, speeds, trajectory, keyframe_rate, looks):
+    """The Actor of a body that follows a trajectory by a gait."""
     speed = usual_speed(trajectory._track)
     if speed > speeds[1]:
         rule = f"one of at most {speeds[1]:.3g} m/s for a person of {body.height:g} m, as most of its way is"
         raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
     times = key_times(trajectory, keyframe_rate)
-    gait = GaitAlong(gait_at(max(speed, speeds[0])), trajectory._track)
-    arrays = body_arrays(body, gait.frames(times), times, edge=edge, clothing=clothing, skin=skin)
+    gait = GaitAlong(gait_of(body, max(speed, speeds[0])), trajectory._track)
+    arrays = body_arrays(body, gait.frames(times), times, **looks)
     return Actor([part.build() for part in with_rates(arrays, gait.frames, times)], trajectory)
+
+
+def edge_of(body, edge: float) -> float:
+    """The length of the triangles' sides in m: with longer ones than a twentieth of its height, a body has no shape."""
+    return real(0.0, 0.05 * body.height, "m")("edge", edge_length(edge, 3.0 * body.height))
 
 
 def body_arrays(body, frames, times, *, edge, clothing, skin):

@@ -8,9 +8,8 @@ from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
 from ..following import refuse_beside_trajectory, trajectory_rule
 from ..laid_line import usual_speed
-from ..surfaces import edge_length
 from .anthropometry import ChildProportions, Proportions
-from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, walk_along, walker_arrays, walking
+from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, edge_of, material_rule, on_foot, walking
 from .posture import standing
 from .running import RunningGait, running_speeds
 
@@ -39,16 +38,9 @@ def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5
                    keyframe_rate=keyframe_rate, clothing=clothing, skin=skin, trajectory=trajectory)
 
 
-def running(body, *, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin, trajectory):
-    """The Actor of a body that runs. Arguments as of runner()."""
-    if trajectory is not None:
-        return walk_along(body, lambda speed: RunningGait(body, speed), running_speeds(body), trajectory, edge=edge,
-                          keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    real(*running_speeds(body), f"m/s for a height of {body.height:g} m")("speed", speed)
-    edge = edge_length(edge, 3.0 * body.height)
-    arrays = walker_arrays(body, RunningGait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
-                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    return Actor([part.build() for part in arrays])
+def running(body, **settings):
+    """The Actor of a body that runs. Settings as of runner()."""
+    return on_foot(body, RunningGait, running_speeds(body), **settings)
 
 
 @checked(height=real(*HEIGHTS, unit="m"), edge=positive("m"), clothing=material_rule, skin=material_rule)
@@ -56,7 +48,7 @@ def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str 
                     skin: str | _core.Material = "skin") -> Actor:
     """A person who stands still at the origin and looks along +x, arms hanging; the parts are those of `pedestrian`.
 
-    height: of the body in m, 0.5 to 2.5. edge: length in m of the triangles' sides. clothing, skin: materials.
+    height: of the body in m, 0.5 to 2.5. edge: in m, clothing, skin: as of `pedestrian`.
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
     return standing_body(Proportions(height), edge=edge, clothing=clothing, skin=skin)
@@ -64,7 +56,7 @@ def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str 
 
 def standing_body(body, *, edge, clothing, skin):
     """The Actor of a body that stands. Arguments as of standing_person()."""
-    arrays = body_arrays(body, standing(body), None, edge=edge_length(edge, 3.0 * body.height), clothing=clothing, skin=skin)
+    arrays = body_arrays(body, standing(body), None, edge=edge_of(body, edge), clothing=clothing, skin=skin)
     return Actor([part.build() for part in arrays])
 
 

@@ -14,11 +14,10 @@ from ..actor import Actor, PartArrays
 from ..following import refuse_beside_trajectory, trajectory_rule
 from ..human.anthropometry import Proportions
 from ..human.foot import Sole
-from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, material_rule
+from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, edge_of, material_rule
 from ..human.posture import leg, reaching_arm, trunk
 from ..keyframes import Frames, key_times, keyframe_times, with_rates
 from ..solids import block
-from ..surfaces import edge_length
 from .bicycle import CRANK, DEVELOPMENT, GRIP, PEDAL, Ride, bicycle_parts, pedal_corners, seat_point
 from .driving import Driving
 
@@ -56,7 +55,7 @@ def cyclist(*, height: float = 1.78, speed: float = 5.0, start_time: float = -0.
     else:
         ride = Ride(phase=2.0 * np.pi * phase, trajectory=trajectory)
         times = key_times(trajectory, keyframe_rate)
-    arrays = body_arrays(body, _ridden(body, ride, times), times, edge=edge_length(edge, 3.0 * height), clothing=clothing,
+    arrays = body_arrays(body, _ridden(body, ride, times), times, edge=edge_of(body, edge), clothing=clothing,
                          skin=skin)
     arrays += [_pedal(ride, times, side) for side in ("left", "right")]
     if trajectory is not None:

@@ -11,7 +11,6 @@ electric one, magnetic ones times 377 ohm; e^{jwt}.
 from __future__ import annotations
 
 import threading
-from concurrent.futures import Future
 
 import numpy as np
 
@@ -50,6 +49,8 @@ def cavity_field(walls: Facets, mouth: Facets, wavenumber: float, incidence, obs
 def _solved(matrix, excited) -> np.ndarray:
     """numpy.linalg.solve, in a thread: it hears no Ctrl-C, but whoever waits for it does. Python itself ends with it, no sooner:
     a library that is left while it works crashes."""
+    from concurrent.futures import Future  # some 10 ms, which no other start of the package takes
+
     found = Future()
 
     def solve():

@@ -72,7 +72,7 @@ def test_packed_files_of_sumo_are_read_as_the_same_files(tmp_path):
 
 
 def test_what_unpacks_to_more_than_files_may_hold_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("echopath.trajectories.files.markup.MAX_BYTES", 1000)
+    monkeypatch.setattr("echopath.base.storage.markup.MAX_BYTES", 1000)
     (tmp_path / "fcd.xml.gz").write_bytes(gzip.compress(b"<fcd-export>" + b" " * 100_000 + b"</fcd-export>"))
     with pytest.raises(ep.FileError, match="is larger than 1000 bytes"):
         ep.read_trajectories(tmp_path / "fcd.xml.gz")

@@ -6,14 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
-from xml.parsers import expat
 
-from ... import _core
+from ...base.storage.lines import refuse
+from ...base.storage.markup import parse
 
-MAX_DEPTH = 64       # of nested elements
 MAX_INCLUDES = 15    # files within files
 MAX_ELEMENTS = 10_000_000
-MAX_BYTES = 2**30
 
 
 @dataclass(eq=False)
@@ -69,7 +67,7 @@ class Element:
 
     def refuse(self, what: str) -> NoReturn:
         """Raises FileError naming the file, the line and the element."""
-        raise _core.FileError(f"{self.file}, line {self.line}: <{self.tag}>: {what}")
+        refuse(self.file, self.line, f"<{self.tag}>: {what}")
 
 
 def read_elements(path: Path) -> Element:
@@ -126,31 +124,18 @@ class _Reader:
         return self.read(path).children
 
     def _parse(self, path: Path) -> Element:
-        parser = expat.ParserCreate()
         stack: list[Element] = []
         roots: list[Element] = []
 
-        def begin(tag, attributes):
+        def begin(tag, attributes, line):
             self._count += 1
-            element = _of_today(Element(tag, attributes, path, parser.CurrentLineNumber))
-            if len(stack) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
-                element.refuse(f"more than {MAX_DEPTH} elements within each other, or {MAX_ELEMENTS} in all")
+            element = _of_today(Element(tag, attributes, path, line))
+            if self._count > MAX_ELEMENTS:
+                element.refuse(f"more than {MAX_ELEMENTS} elements in all")
             (stack[-1].children if stack else roots).append(element)
             stack.append(element)
 
-        def refuse_types(*_):
-            raise _core.FileError(f"{path}, line {parser.CurrentLineNumber}: a document type, which may expand without end, "
-                                  "is refused")
-
-        parser.StartElementHandler, parser.EndElementHandler = begin, lambda tag: stack.pop()
-        parser.StartDoctypeDeclHandler = refuse_types
-        try:
-            parser.Parse(_bytes(path), True)
-        except expat.ExpatError as error:
-            reason = expat.errors.messages[error.code] if error.code in expat.errors.messages else str(error)
-            raise _core.FileError(f"{path}, line {error.lineno}: is no XML ({reason})") from None
-        except (LookupError, ValueError) as error:  # an encoding that is not known
-            raise _core.FileError(f"{path}: is no XML ({error})") from None
+        parse(path, begin, lambda tag, line: stack.pop())
         return roots[0]
 
 
@@ -161,15 +146,6 @@ def _of_today(element: Element) -> Element:
     if element.tag != "default" and "name" in element.attributes:  # else of a parameter, which may have any
         element.attributes["name"] = re.sub(r"(?<=[a-z0-9])[A-Z]", lambda letter: f"_{letter[0].lower()}", element.get("name"))
     return element
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise _core.FileError(f"{path}: is larger than {MAX_BYTES} bytes")
-        return path.read_bytes()
-    except (OSError, ValueError) as error:
-        raise _core.FileError(f"{path}: cannot be opened ({getattr(error, 'strerror', None) or error})") from None
 
 
 def file_of(element: Element, name: str) -> Path:

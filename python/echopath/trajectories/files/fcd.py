@@ -11,10 +11,11 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from ... import _core
+from ...base.storage.lines import refuse
+from ...base.storage.markup import attribute, parse
 from ...base.text.node_names import unique
 from .absences import parted
-from .markup import attribute, parse
-from .samples import MOST_SAMPLES, Samples, number, refuse
+from .samples import MOST_SAMPLES, Samples, number
 
 _GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
 _CLOCK = re.compile(r"(?:(\d{1,5}):)?(\d\d?):(\d\d):(\d\d(?:\.\d+)?)")

@@ -5,9 +5,10 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
+from ...base.storage.lines import refuse
+from ...base.storage.markup import attribute, parse
 from ...base.text.node_names import unique
-from .markup import attribute, parse
-from .samples import Samples, instant, number, refuse
+from .samples import Samples, instant, number
 
 
 def read_gpx(path: Path) -> dict[str, Samples]:

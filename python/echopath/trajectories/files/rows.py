@@ -9,10 +9,11 @@ import numpy as np
 
 from ... import _core
 from ...base.storage.files import file_state
+from ...base.storage.lines import refuse
+from ...base.storage.markup import PACKED
 from .fcd import read_fcd
 from .gpx import read_gpx
-from .markup import PACKED
-from .samples import Samples, refuse
+from .samples import Samples
 from .table import read_table
 
 MOST_SECONDS = 1e6     # from which on times are taken to count from some day long ago

@@ -7,14 +7,12 @@ from array import array
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import NoReturn
 
 import numpy as np
 
-from ... import _core
+from ...base.storage.lines import refuse
 
 MOST_SAMPLES = 20_000_000
-MAX_BYTES = 2**31
 LATEST = 1e12           # s, of any time
 
 _numbers = partial(array, "d")  # 8 bytes each: files have millions
@@ -53,11 +51,6 @@ class Samples:
             times = np.array(self.times)
             heights = np.interp(times, times[is_known], heights[is_known]) if is_known.any() else np.zeros(len(times))
             self.coordinates[2::3] = array("d", heights)
-
-
-def refuse(path: Path, line: int, what: str) -> NoReturn:
-    """Raises FileError naming the file and the line."""
-    raise _core.FileError(f"{path}, line {line}: {what}")
 
 
 def number(path: Path, line: int, name: str, text: str, most: float = 1e9) -> float:

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ... import _core
-from .samples import MAX_BYTES, MOST_SAMPLES, Samples, instant, number, refuse
+from ...base.storage.lines import MAX_BYTES, refuse
+from .samples import MOST_SAMPLES, Samples, instant, number
 
 # What a column may be called, without case, blanks, marks and a unit in brackets.
 NAMES = {

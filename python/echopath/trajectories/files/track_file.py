@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ... import _core
 from ...arguments.checks import Rule, anything, array, checked, file as file_rule, is_writable, one_of, real, refused, vector
 from ...base.process.callers import warn_user
+from ...base.storage.lines import refuse
 from ...base.storage.pointers import pointers_are_told
 from ...base.text.counts import counted
 from ..arguments import FARTHEST, GOES_ON, NEAREST, Outside
@@ -21,7 +22,7 @@ from ..trajectory import Trajectory
 from .doubts import doubt_of_turns, doubts_of
 from .geodesy import east_north_up
 from .rows import Rows, read_rows
-from .samples import Samples, refuse
+from .samples import Samples
 from .smoothing import smoothed
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from ... import _core
-from .samples import MAX_BYTES, refuse
+from .lines import MAX_BYTES, refuse
 
 MAX_DEPTH = 64          # of nested elements
 PACKED = ".gz"          # suffix behind that of the file, as SUMO writes large ones
@@ -37,7 +37,7 @@ class _Bounded:
 
 def parse(path: Path, begin, end=None, text=None, comment=None) -> None:
     """Calls begin(tag, attributes, line), end(tag, line), text(words) and comment(words, line) for the content of an XML file
-    without entities."""
+    without entities. Raises FileError naming the file, and the line."""
     parser = expat.ParserCreate()
     depth = [0]
 

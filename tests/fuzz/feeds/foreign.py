@@ -9,7 +9,7 @@ from random import Random
 import numpy as np
 
 import echopath as ep
-from fuzz.feeds.foreign_seeds import frame_text, seeds_by_suffix
+from fuzz.feeds.foreign_seeds import frame_text, seeds_of
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
 from fuzz.usd_trials import fork_trials
@@ -33,7 +33,7 @@ def feed_foreign(suffix: str):
     """Cases of one kind of file: a model that a scene takes, or an error that names the file."""
     if suffix.startswith(".usd"):
         fork_trials()
-    folder, seeds = _folder(), seeds_by_suffix()[suffix]
+    folder, seeds = _folder(), seeds_of(suffix)
     path = Path(folder.name) / f"scene{suffix}"
     for seed in seeds:
         path.write_bytes(seed)

@@ -263,29 +263,31 @@ f 1 2 3
 """.encode()
 
 
-def packed_stages() -> dict[str, list[bytes]]:
-    """The stages of USD in its binary format, and in packages, as its library writes them."""
+def packed_stages(suffix: str) -> list[bytes]:
+    """The stages of USD in its binary format (.usdc) or in packages (.usdz), as its library writes them."""
     from pxr import Sdf, Usd, UsdUtils
 
-    found: dict[str, list[bytes]] = {".usdc": [], ".usdz": []}
+    found = []
     with tempfile.TemporaryDirectory() as folder:
-        for number, text in enumerate(USD):
-            files = [Path(folder) / f"{number}{suffix}" for suffix in (".usda", ".usdc", ".usdz")]
-            files[0].write_text(text)
-            Usd.Stage.Open(str(files[0])).Export(str(files[1]))
-            UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(files[1])), str(files[2]))
-            for file in files[1:]:
-                found[file.suffix].append(file.read_bytes())
+        text, binary, package = (Path(folder) / f"stage{kind}" for kind in (".usda", ".usdc", ".usdz"))
+        for stage in USD:
+            text.write_text(stage)
+            Usd.Stage.Open(str(text)).Export(str(binary))
+            UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(binary)), str(package))
+            found.append((binary if suffix == ".usdc" else package).read_bytes())
     return found
 
 
-def seeds_by_suffix() -> dict[str, list[bytes]]:
-    """Contents of each kind of file, by suffix."""
+def seeds_of(suffix: str) -> list[bytes]:
+    """Contents of files of one kind."""
+    if suffix in (".usdc", ".usdz"):
+        return packed_stages(suffix)
+    if suffix in (".obj", ".stl", ".off"):
+        return [file.read_bytes() for file in sorted((CORPUS / suffix[1:]).iterdir())]
     moving = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, i], [0, 1, 0]] for i in range(3)], float)
     faces = [[0, 1, 2], [0, 2, 3]]
-    return {**packed_stages(), ".xml": [text.encode() for text in MITSUBA], ".usda": [text.encode() for text in USD],
+    return {".xml": [text.encode() for text in MITSUBA], ".usda": [text.encode() for text in USD],
             ".npz": [archive(vertices=moving, triangles=faces, times=[0.0, 0.1, 0.2]),
                      archive(vertices=moving[:1], faces=faces), archive(vertices=moving, triangles=faces, frame_rate=25),
                      archive(vertices=moving, triangles=faces, normals=moving[2])],
-            ".bvh": [bvh_text(walk_frames(3)).encode(), bvh_text(walk_frames(1)).encode()],
-            **{f".{kind}": [file.read_bytes() for file in sorted((CORPUS / kind).iterdir())] for kind in ("obj", "stl", "off")}}
+            ".bvh": [bvh_text(walk_frames(3)).encode(), bvh_text(walk_frames(1)).encode()]}[suffix]

@@ -9,7 +9,7 @@ import pytest
 import echopath as ep
 from echopath.readers.usd import trial
 from fuzz import targets, usd_trials, worker
-from fuzz.feeds.foreign_seeds import seeds_by_suffix
+from fuzz.feeds.foreign_seeds import seeds_of
 from fuzz.seeds import frames
 
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
@@ -34,7 +34,7 @@ def test_readers_refuse_or_read_whatever_comes(target):
 def test_a_fork_ends_on_a_stage_as_a_new_process_does(name, tmp_path):
     pytest.importorskip("pxr", reason="usd-core, of the extra 'usd', is not installed")
     corpus = Path(targets.__file__).parent / "corpus" / "usdc"
-    whole = seeds_by_suffix()[".usdc"][0]
+    whole = seeds_of(".usdc")[0]
     path = tmp_path / "stage.usdc"
     path.write_bytes({"whole": whole, "cut off": whole[:600], "crashes USD": next(corpus.iterdir()).read_bytes()}[name])
     new, forked = (opened(path, 60.0, 2 ** 33) for opened in (trial._opened_apart, usd_trials.opened_by_fork))

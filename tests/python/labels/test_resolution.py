@@ -30,8 +30,7 @@ def power_of(rcs: float, distance: float) -> float:
 
 def plates():
     """(scene, distance in m, truth in W): metal plates in the lobe and beside it, and a Lambert plate, by closed forms."""
-    cases = [(targets.plate(angle), 2e3) for angle in (0.0, 3.0, 5.0, 8.0)]
-    cases += [(target, 20.0) for target in targets.all_targets() if target.name == "lambert_plate"]
+    cases = [*((targets.plate(angle), 2e3) for angle in (0.0, 3.0, 5.0, 8.0)), (targets.lambert_plate(), 20.0)]
     return [(target.scene, power_of(target.truth, distance)) for target, distance in cases]
 
 
@@ -95,7 +94,7 @@ def test_a_wall_whose_point_of_reflection_lies_abeam_is_resolved():
 def test_facets_that_cells_do_not_resolve_may_hide_all():
     """A sphere of facets, each flat and much smaller than a launch cell: what one of them says holds for no other."""
     scene = ep.Scene()
-    scene.add(shapes.sphere(1.0, edge=0.01), name="ball", material=ep.Material.metal(), position=(30.0, 0.0, 0.0))
+    scene.add(shapes.sphere(1.0, edge=0.02), name="ball", material=ep.Material.metal(), position=(30.0, 0.0, 0.0))
     for batches in (1, 4):
         ball = ep.received_power(ep.trace(scene, targets.radar(), num_rays=1024, max_bounces=1, batches=batches))
         assert ball.between_rays == pytest.approx(batches * ball.unfiltered, rel=1e-12) and not ball.resolved
@@ -103,9 +102,11 @@ def test_facets_that_cells_do_not_resolve_may_hide_all():
 
 
 @pytest.mark.parametrize("seed", [1003, 1016, 1029])
-def test_a_wave_of_two_bounces_that_wide_cells_fade_lies_in_its_interval(seed):
-    """A ball, then a flank, by geometrical optics: of 4096 rays the filter leaves a thousandth of the power, which is known no
-    more; interval ends that grow like the root of what lies between rays were up to 9 dB below the truth."""
+def test_a_wave_of_two_bounces_that_wide_cells_fade_lies_in_its_interval(seed, monkeypatch):
+    """A ball, then a flank, by geometrical optics: of 4096 rays the filter leaves a hundredth of the power, which is known no
+    more; interval ends that grow like the root of what lies between rays were up to 9 dB below the truth. Triangles three
+    times as wide as those of the benchmark do not show yet."""
+    monkeypatch.setattr(crowd_echoes, "_body", lambda axes: shapes.ellipsoid(axes, edge=3.0 * crowd_echoes._edge(axes)))
     echo = next(one for one in crowd_echoes.all_echoes() if one.kind == "two bounces, ball then flank")
     scene, truth = echo.draw(seed)
     found, _ = crowd_coverage.power_of(echo, scene, num_rays=4096, seed=seed, batches=8)

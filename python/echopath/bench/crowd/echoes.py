@@ -57,12 +57,11 @@ def class_of(kind: str) -> str:
 
 
 def all_echoes() -> list[Echo]:
-    plate = next(target for target in targets.all_targets() if target.name == "lambert_plate")
     return [Echo("coherent, spheres", _sphere, "T 'target' R"),
             Echo("coherent, car's ellipsoid", _ellipsoid, "T 'target' R"),
             Echo("coherent, plates", _plate, "T 'plate' R", differs=True),
             Echo("coherent, lofted cars", _lofted_car, "T 'car' R", differs=True),
-            Echo("diffuse, plate", lambda seed: (plate.scene, None), "T 'plate' R"),
+            Echo("diffuse, plate", lambda seed: (targets.lambert_plate().scene, None), "T 'plate' R"),
             Echo("diffuse, patch far away", lambda seed: (_far_patch(), None), "T 'pair/patch' R",
                  {"patch": "pair/patch", "board": "pair/board"}),
             Echo("ghost, patch then wall", lambda seed: (_ghost(), None), "T 'patch' 'mirror' R", None, 2),

@@ -47,7 +47,7 @@ def radar(polarization: tuple = UPRIGHT) -> ep.Radar:
 
 
 def all_targets() -> list[Target]:
-    return [*_spheres(), _ellipsoid(), *map(plate, (0.0, 5.0, 20.3)), _dihedral(), _trihedral(), _lambert_plate(),
+    return [*_spheres(), _ellipsoid(), *map(plate, (0.0, 5.0, 20.3)), _dihedral(), _trihedral(), lambert_plate(),
             _two_ray(),
             _wall_ghost()]
 
@@ -90,7 +90,8 @@ def _trihedral():
                          exact.trihedral_rcs(0.1), to_radar=(-1.0, 0.0, 0.0), bounces=3)
 
 
-def _lambert_plate():
+def lambert_plate() -> Target:
+    """A diffuse plate of 1 m at 20 m."""
     distance, reflectivity = 20.0, 0.3
     scene = ep.Scene()
     scene.add(shapes.plate(1.0, 1.0), name="plate", material=_lambert(reflectivity), position=(distance, 0.0, 0.0))

@@ -1,4 +1,5 @@
 """Fixtures of several tests."""
+import functools
 import os
 import signal
 from pathlib import Path
@@ -51,6 +52,16 @@ def plain_pictures():
     """The figures of commands are drawn but not laid out."""
     with plain():
         yield
+
+
+@pytest.fixture
+def coarse_bodies(monkeypatch):
+    """Curved bodies of the benchmark of crowds have triangles three times as wide, which do not show yet: making a fine mesh takes
+    longer than tracing it."""
+    from echopath.bench.crowd import echoes
+
+    monkeypatch.setattr(echoes, "EDGE", 3.0 * echoes.EDGE)
+    monkeypatch.setattr(echoes, "_body", functools.cache(echoes._body.__wrapped__))
 
 
 @pytest.fixture

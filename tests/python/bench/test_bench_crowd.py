@@ -141,7 +141,7 @@ def test_scenes_whose_truth_is_not_known_are_no_truth(monkeypatch):
     assert found["left_out"] == {echo.kind: 4} and [row["count"] for row in found["rows"]] == [4] * len(crowd_coverage.RAYS)
 
 
-@pytest.mark.usefixtures("plain_pictures")
+@pytest.mark.usefixtures("plain_pictures", "coarse_bodies")
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     names = ["car_smooth_15", "pole_20", "pedestrian_10", "wall_left"]
     assert set(names) <= set(scenes.street_names())

@@ -152,9 +152,8 @@ def test_frames_are_those_of_the_drawn_scene(small_dataset):
     assert theirs.seed == alone.paths.frame.seed
 
 
-@pytest.mark.parametrize("options", [[{"workers": 2}], [{"shard": (2, 3)}, {"shard": (1, 3)}, {"shard": (3, 3)}],
-                                     [{"frames": (3, 6)}, {}]])
-def test_bytes_are_the_same_from_workers_shards_and_pieces(small_dataset, tmp_path, options):
+@pytest.mark.parametrize("options", [[{"shard": (2, 3)}, {"shard": (1, 3)}, {"shard": (3, 3)}], [{"frames": (3, 6)}, {}]])
+def test_bytes_are_the_same_from_shards_and_pieces(small_dataset, tmp_path, options):
     path, folder = small_dataset
     for one in options:
         make(path, tmp_path, **one)

@@ -1,4 +1,4 @@
-"""Pictures: what is cut off, what is cropped, and that the same figure gives the same file."""
+"""Pictures: what is cut off, what is cropped, and what shares a scale."""
 from __future__ import annotations
 
 import itertools
@@ -207,12 +207,6 @@ def test_pictures_of_a_run_with_leakage_have_the_scale_of_the_scene(leaking, tmp
     assert all(len(found) == 1 for found in scales[0].values()) and scales[0] == scales[1]
 
 
-def test_the_same_figure_gives_the_same_file(spectrum, tmp_path):
-    for name in ("one.png", "two.png"):
-        save_png(plot_range_doppler(spectrum), tmp_path / name)
-    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
-
-
 @pytest.fixture
 def from_above():
     """Noise and one strong cell at 30 degrees to the left, 6 m away."""
@@ -305,7 +299,7 @@ def test_a_picture_of_a_town_names_the_objects_of_its_labels_and_shows_rays_to_e
 
 
 # m, as the triangle is wide and high
-@pytest.mark.parametrize("size", [(1.0, 1.0), (20.0, 20.0), (0.3, 40.0), (60.0, 5.0), (40.0, 0.3)])
+@pytest.mark.parametrize("size", [(20.0, 20.0), (0.3, 40.0), (40.0, 0.3)])
 @pytest.mark.filterwarnings("error:constrained_layout")
 def test_high_scenes_have_room_for_their_labels(size, tmp_path):
     scene = ep.Scene()

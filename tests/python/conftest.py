@@ -56,8 +56,8 @@ def plain_pictures():
 
 @pytest.fixture
 def coarse_bodies(monkeypatch):
-    """Curved bodies of the benchmark of crowds have triangles three times as wide, which do not show yet: making a fine mesh takes
-    longer than tracing it."""
+    """Curved bodies of the benchmark of crowds have triangles three times as wide, which do not show yet: making a fine mesh
+    takes longer than tracing it."""
     from echopath.bench.crowd import echoes
 
     monkeypatch.setattr(echoes, "EDGE", 3.0 * echoes.EDGE)

@@ -53,7 +53,7 @@ std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, GridInde
       is_followed[p] &= take_logarithms(num_nodes, indices.size(), &turns[channel][p], &here.amplitude[p]);
     }
     const std::vector<double> tails = tails_of_logarithms(grid.nodes, here);
-    const double tolerance = kShareOfTolerance * settings_.amplitude_tolerance;
+    const double tolerance = kShareOfTolerance * settings_.amplitude_tolerance();
     for (size_t p = 0; p < indices.size(); ++p) is_followed[p] &= tails[p] <= tolerance;
   }
   std::vector<size_t> followed;

@@ -67,10 +67,10 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
   for (size_t p = 0; p < needed.size(); ++p) {
     raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
           needed[p].order_for_length);
-    if (tails.amplitude[p] <= settings_.amplitude_tolerance) continue;
-    const double dark = settings_.amplitude_tolerance * kDarkShare * unfiltered[p];
+    if (tails.amplitude[p] <= settings_.amplitude_tolerance()) continue;
+    const double dark = settings_.amplitude_tolerance() * kDarkShare * unfiltered[p];
     if (is_dark(nodes, echoes, p, dark)) continue;
-    raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
+    raise(settings_.amplitude_tolerance(), tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
   }
 }
 

@@ -192,9 +192,12 @@ cpp/echopath/sim/stream/cell_bounds.h has the rule.)");
 
 void bind_sim(py::module_& m) {
   bind_part_pass(m);
-  const ReplaySettings aims;
-  m.attr("PHASE_TOLERANCE") = aims.phase_tolerance;
-  m.attr("AMPLITUDE_TOLERANCE") = aims.amplitude_tolerance;
+  m.attr("PHASE_TOLERANCE") = ReplaySettings{}.phase_tolerance;
+  const auto amplitude_tolerance = [](double phase_tolerance) {
+    return ReplaySettings{.phase_tolerance = phase_tolerance}.amplitude_tolerance();
+  };
+  m.def("amplitude_tolerance", amplitude_tolerance, py::arg("phase_tolerance"),
+        "Aim for interpolated amplitudes, relative to the largest of each path, beside one for phases in rad.");
   def_signal(m, "synthesize", "What ep.synthesize calls.", &synthesize_cube, py::arg("radar") = py::none());
   def_signal(m, "decompose", R"(The signals of parts of the paths, several views of them replayed once.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from .._core import AMPLITUDE_TOLERANCE
+from .._core import amplitude_tolerance
 from ..arguments.checks import ArrayLike, an, checked
 from ..arguments.settings import SignalSettings
 from .check import Check
@@ -32,7 +32,7 @@ def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float 
     name = "moving echoes"
     phase, amplitude = float(np.max(probe.phase_error)), float(np.max(probe.amplitude_error))
     return [*checks, Check(f"{name}, phase", phase, BEYOND_TAIL * phase_tolerance, "rad rms", count),
-            Check(f"{name}, size", amplitude, BEYOND_TAIL * AMPLITUDE_TOLERANCE, "of the amplitude rms", count)]
+            Check(f"{name}, size", amplitude, BEYOND_TAIL * amplitude_tolerance(phase_tolerance), "of the amplitude rms", count)]
 
 
 def _samples(cube, probe, tolerance: float) -> Check:

@@ -35,9 +35,9 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
     method: "auto", "direct" (the reference), "recurrence" or "nufft"
     replay: where specular hits on surfaces that are no mirrors stand: "material" (where the trace found them, moving with
         their triangles) or "fermat" (one Newton step from there to the moved point of reflection, for each antenna)
-    evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to 1e-4 of the largest of
-        each path), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving echoes with the delay of
-        every sample: for fast rotors, a sine and a cosine per path and sample)
+    evaluate: "interpolated" (by polynomials in time: lengths to phase_tolerance in rad, amplitudes to ten times that of the
+        largest of each path, at most 1e-4), "chirps" (in every chirp: the reference), or "samples" (interpolated, and moving
+        echoes with the delay of every sample: for fast rotors, a sine and a cosine per path and sample)
     retrace: for each of `keyframes` stretches of chirps, "never" (one record serves the frame), "invalid" (shadows and points
         of reflection are renewed, see `renew`; surface that comes into view gets paths of its own if `paths` are those of a
         whole trace, and none if they are a selection) or "always" (the scene is traced anew with the same settings and seed;

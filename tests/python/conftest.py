@@ -56,7 +56,7 @@ def plain_pictures():
 
 @pytest.fixture
 def coarse_bodies(monkeypatch):
-    """Curved bodies of the benchmark of crowds have triangles three times as wide, which do not show yet: making a fine mesh
+    """Triangles of curved bodies of the benchmark of crowds are three times as wide, which does not show yet: making a fine mesh
     takes longer than tracing it."""
     from echopath.bench.crowd import echoes
 

@@ -4,7 +4,7 @@ from collections import Counter
 import numpy as np
 
 import echopath as ep
-from echopath.actors.surfaces import joined, signed_volume
+from echopath.actors.surfaces import joined
 
 
 def scene_of(actor, name="a"):
@@ -13,7 +13,7 @@ def scene_of(actor, name="a"):
     return scene
 
 
-def boundary_edges(vertices, triangles):
+def boundary_edges(triangles):
     """Directed edges that no triangle beside them runs the other way."""
     count = Counter()
     for a, b, c in np.asarray(triangles).tolist():
@@ -29,7 +29,8 @@ def joined_parts(actor, takes):
 
 
 def volume_of(vertices, triangles):
-    return signed_volume(vertices, triangles)
+    """By Gauss's theorem, in m^3; negative where a surface is inside out."""
+    return np.linalg.det(np.asarray(vertices)[np.asarray(triangles)]).sum() / 6.0
 
 
 def extent(actor, takes=lambda name: True, time=0.0):

@@ -35,7 +35,7 @@ def test_the_skin_and_the_underside_close_without_gaps(name, kind):
     actor = made(name, kind)
     outer = ("body/", "glass/", "bumper/", "lamp/", "underside/")
     vertices, triangles = joined_parts(actor, lambda part: part.startswith(outer) and "mirror" not in part)
-    assert boundary_edges(vertices, triangles) == []
+    assert boundary_edges(triangles) == []
     assert volume_of(vertices, triangles) > 0.4 * np.prod(PUBLISHED[name, kind][:3])
 
 
@@ -62,7 +62,7 @@ WHOLE = {"cyclist": ep.actors.cyclist, "motorcycle": ep.actors.motorcycle, "dog"
 def test_each_part_of_these_is_closed_with_its_front_outside_and_fine_enough(name):
     actor = WHOLE[name]()
     for part in actor.parts:
-        assert boundary_edges(part.mesh.vertices, part.mesh.triangles) == [], part.name
+        assert boundary_edges(part.mesh.triangles) == [], part.name
         assert volume_of(part.mesh.vertices, part.mesh.triangles) > 0.0, part.name
     scene = scene_of(actor)
     assert scene.coplanar_overlaps() == []
@@ -73,7 +73,7 @@ def test_the_truck_closes():
     for group, parts in (("cab/", None), ("trailer/", ("front", "side_left", "side_right", "roof", "doors", "floor"))):
         vertices, triangles = joined_parts(ep.actors.truck(), lambda name, group=group, parts=parts: name.startswith(group) and (
             parts is None or name.removeprefix(group) in parts))
-        assert boundary_edges(vertices, triangles) == []
+        assert boundary_edges(triangles) == []
         assert volume_of(vertices, triangles) > 0.0
 
 

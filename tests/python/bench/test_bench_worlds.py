@@ -140,7 +140,7 @@ def test_modules_beside_the_script_are_not_those_of_the_peer(tmp_path, monkeypat
     assert peer.asked(None, {}) == [1]
 
 
-def test_a_peer_that_fails_is_quoted(tmp_path):
+def test_a_peer_that_fails_is_quoted():
     with pytest.raises(RuntimeError, match="No module named"):
         peer.asked(sys.executable, {"cities": []})
 

@@ -66,7 +66,7 @@ def test_scenes_without_a_template_are_not_taken_over(monkeypatch, address, temp
 
 
 @pytest.mark.parametrize("kind", ["memory", "file"])
-def test_a_put_that_is_cut_short_leaves_what_was_there(monkeypatch, tmp_path, kind, templates):
+def test_a_put_that_is_cut_short_leaves_what_was_there(monkeypatch, tmp_path, kind):
     address = Address(f"{kind}://{tmp_path / 'out'}")
     address.put("dataset.toml", b"before")
     whole = type(address._files).pipe_file

@@ -278,7 +278,7 @@ def test_sensors_are_as_many_as_places_of_antennas(tmp_path):
         np.testing.assert_allclose(points["x_cc"], way, atol=1e-5)
 
 
-def test_clutter_is_static_or_left_out(written, tmp_path):
+def test_clutter_is_static_or_left_out(tmp_path):
     """Thresholds just above the noise have it detected: what is left out is all of it, and nothing else."""
     (tmp_path / "noisy.toml").write_text(TEMPLATE.replace("scenes = 4", "scenes = 1").replace(
         "[detections]\n", "[detections]\nfalse_alarm_rate = 1e-3\n"))

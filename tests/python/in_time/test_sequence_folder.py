@@ -83,8 +83,10 @@ def test_a_folder_in_the_place_of_a_frame_is_no_frame(tmp_path):
     assert ep.load_sequence(tmp_path).is_done.tolist() == [True, False]
 
 
-def test_frames_are_saved_one_by_one_behind_bars(tmp_path, capsys):
+def test_frames_are_saved_one_by_one_behind_bars(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("echopath.base.process.progress.DELAY", 0.0)  # quick ones show, too
     assert len(list(make_sequence(frames=2).save_frames(tmp_path, progress=True))) == 2
+    assert capsys.readouterr().err.count("\rtrace ") >= 2
 
 
 def test_a_folder_grows_with_its_sequence(tmp_path, unbroken):

@@ -62,7 +62,7 @@ def test_windows_of_other_libraries(frame, given, meant):
         ep.range_doppler(frame.cube, RADAR, window=given)
 
 
-def test_values_without_their_names_are_told_the_name(scene, frame):
+def test_values_without_their_names_are_told_the_name(scene):
     told = r"^trace: takes scene, radar alone without a name; write num_rays=1000 if that is meant, got 1000$"
     with pytest.raises(TypeError, match=told):
         ep.trace(scene, RADAR, 1000)

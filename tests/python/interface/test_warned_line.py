@@ -92,7 +92,7 @@ def test_a_package_beside_this_one_is_not_the_user():
     assert _lines(record, "drawn") == ["/beside/plot.py", "/beside/plot.py", __file__]
 
 
-def test_an_empty_scene_traced_by_itself_and_in_sequences(radar, tmp_path):
+def test_an_empty_scene_traced_by_itself_and_in_sequences(radar):
     with warnings.catch_warnings(record=True) as record:
         warnings.simplefilter("always")
         ep.trace(ep.Scene(), radar, num_rays=100)

@@ -48,7 +48,7 @@ def test_comparisons_beside_operators_are_told_to_stand_in_parentheses(joined):
         joined()
 
 
-def test_text_is_joined_as_a_selection(paths):
+def test_text_is_joined_as_a_selection():
     for joined, meant in ((REAR & "T . R", REAR & ONE), ("T . R" & REAR, ONE & REAR), ("T . R" | TWO, ONE | TWO)):
         assert joined == meant
     with pytest.raises(ValueError, match="path expression: expected"):

@@ -1,3 +1,4 @@
+"""Waveforms, antennas and radars: their axes, what they refuse by name, and how they print."""
 import numpy as np
 import pytest
 

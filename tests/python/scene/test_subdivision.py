@@ -49,7 +49,7 @@ def box_cage(label):
 def test_a_box_of_cells_is_closed_with_its_front_outside_and_rounded():
     cage = refined(box_cage(lambda face: ("skin", "body")), 2)
     triangles = triangulated(cage.quads, cage.vertices)
-    assert boundary_edges(cage.vertices, triangles) == []
+    assert boundary_edges(triangles) == []
     assert 0.9 * 2.0 < volume_of(cage.vertices, triangles) < 2.0
     np.testing.assert_allclose(np.ptp(cage.vertices, axis=0), (2.0, 1.0, 1.0), atol=1e-9)   # flat middles stay in place
     corner = np.linalg.norm(cage.vertices - [2.0, 1.0, 1.0], axis=1).min()
@@ -68,6 +68,6 @@ def test_an_empty_cell_is_a_notch():
     full[1, 0, 0] = False
     cage = cage_of(points, full, lambda face: ("skin", "outer" if face.outer else "notch"))
     triangles = triangulated(cage.quads, cage.vertices)
-    assert boundary_edges(cage.vertices, triangles) == []
+    assert boundary_edges(triangles) == []
     assert volume_of(cage.vertices, triangles) == pytest.approx(26.0)
     assert [name for _, name in cage.labels].count("notch") == 4

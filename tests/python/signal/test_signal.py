@@ -1,3 +1,4 @@
+"""Beat signals of given echoes against their exact phase, and the thermal noise that is added to them."""
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,3 +1,4 @@
+"""Range-Doppler maps: places, levels, windows and noise against closed forms and NumPy."""
 import pickle
 
 import numpy as np

@@ -268,7 +268,7 @@ def test_wrong_choices_are_refused(choices, error, text):
         ep.simulate(ball_scene(), build_radar(num_chirps=4), num_rays=50, effects=choices)
 
 
-def test_weather_travels_with_its_scene(tmp_path):
+def test_weather_travels_with_its_scene():
     scene = ball_scene(WET)
     assert pickle.loads(pickle.dumps(scene)).weather == WET and scene.copy().weather == WET
     assert pickle.loads(pickle.dumps(WET)) == WET == WET.replace()

@@ -17,7 +17,7 @@ BORDER = 0.01    # of a colour of 256: single precision
 SINGLE = 2e-6    # relative, of positions kept in single precision
 
 
-def test_segments_lead_from_the_transmitter_by_all_hits_to_the_receiver(session, frame):
+def test_segments_lead_from_the_transmitter_by_all_hits_to_the_receiver(frame):
     rng = np.random.default_rng(5)
     chosen = rng.choice(frame.paths.num_paths, 200, replace=False)  # in no order
     time = frame.radar.chirp_time(0, 3)

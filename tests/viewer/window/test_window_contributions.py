@@ -74,7 +74,7 @@ def test_a_chosen_row_lights_its_paths_wherever_they_lie(qtbot, window, frame, p
             assert set(window.view3d.builder.lit.segments.rays) <= set(np.flatnonzero(wanted))
 
 
-def test_groups_of_paths_hold_each_path_once(qtbot, window, frame, panel):
+def test_groups_of_paths_hold_each_path_once(qtbot, window, panel):
     window.session.select_cells(None)
     click_cell(qtbot, window, WHOLE, *strongest_cell(window, WHOLE))
     wait_for(qtbot, panel)

@@ -83,7 +83,7 @@ def test_rays_come_where_nothing_is_drawn(qtbot, shared_window, frame, large_fil
     assert window.session.paths.num_paths == frame.paths.num_paths and view._is_behind
 
 
-def test_a_picture_after_the_window_was_closed_is_no_error(shared_window, frame, monkeypatch):
+def test_a_picture_after_the_window_was_closed_is_no_error(shared_window, monkeypatch):
     view, builder = shared_window.view3d, shared_window.view3d.builder
     monkeypatch.setattr(view, "builder", None)
     monkeypatch.setattr(view, "_pace", view._turning)

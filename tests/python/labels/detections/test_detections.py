@@ -222,7 +222,7 @@ def test_no_detection_is_nearer_than_the_antennas(real, beat, speed, expected):
     assert found.range[i] == pytest.approx(expected * spectrum.range[1], abs=PLACE * spectrum.range[1])
 
 
-def test_one_antenna_gives_no_directions(spheres):
+def test_one_antenna_gives_no_directions():
     radar = radar_with(receivers=1)
     spectrum = ep.range_doppler(ep.add_noise(np.zeros((1, 1, 64, 256), complex), radar, seed=1), radar)
     found = ep.detect(spectrum, radar, false_alarm_rate=1e-3)

@@ -1,5 +1,4 @@
 """Fixtures of several tests."""
-import functools
 import os
 import signal
 from pathlib import Path
@@ -52,16 +51,6 @@ def plain_pictures():
     """The figures of commands are drawn but not laid out."""
     with plain():
         yield
-
-
-@pytest.fixture
-def coarse_bodies(monkeypatch):
-    """Triangles of curved bodies of the benchmark of crowds are three times as wide, which does not show yet: making a fine mesh
-    takes longer than tracing it."""
-    from echopath.bench.crowd import echoes
-
-    monkeypatch.setattr(echoes, "EDGE", 3.0 * echoes.EDGE)
-    monkeypatch.setattr(echoes, "_body", functools.cache(echoes._body.__wrapped__))
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from echopath.bench.physics.closed_forms import FREQUENCY
 from echopath.cli import main
 from echopath.paths.resolution import Interval
 from echopath.tracing.tessellation import coarse_meshes
+from support.scenes.coarse_bodies import coarse_bodies
 
 MID_FRAME = 0.0128   # s
 LEAST_GAP = 0.2      # deg between neighbours as the radar sees them
@@ -141,7 +142,7 @@ def test_scenes_whose_truth_is_not_known_are_no_truth(monkeypatch):
     assert found["left_out"] == {echo.kind: 4} and [row["count"] for row in found["rows"]] == [4] * len(crowd_coverage.RAYS)
 
 
-@pytest.mark.usefixtures("plain_pictures", "coarse_bodies")
+@pytest.mark.usefixtures("plain_pictures")
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     names = ["car_smooth_15", "pole_20", "pedestrian_10", "wall_left"]
     assert set(names) <= set(scenes.street_names())
@@ -152,7 +153,8 @@ def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
         monkeypatch.setattr(crowd_coverage, limit, least)
     of_class = {echo.of_class: echo for echo in crowd_coverage.all_echoes()}  # the last of each
     monkeypatch.setattr(crowd_coverage, "all_echoes", lambda: list(of_class.values()))
-    assert main(["bench", "crowd", "--quick", "--out", str(tmp_path / "b")]) == 0
+    with coarse_bodies():
+        assert main(["bench", "crowd", "--quick", "--out", str(tmp_path / "b")]) == 0
     results = json.loads((tmp_path / "b" / "crowd.json").read_text())
     assert (tmp_path / "b" / "crowd.png").stat().st_size > 10_000
     assert [len(street["rows"]) for street in results["streets"]] == [len(names)] * 2

@@ -35,11 +35,6 @@ def marked(mesh, *, material="concrete", at=None, **more):
     return names
 
 
-def test_a_plate_is_a_mirror_from_twice_the_zone_on():
-    assert marked(plate(2.02 * ZONE)) == ("plate",)
-    assert marked(plate(1.98 * ZONE)) == ()
-
-
 def test_what_counts_is_the_distance_from_the_radar_where_it_stands():
     near = radar(position=(DISTANCE - 1.0, 0.0, 0.0))
     assert marked(plate(ZONE), at=near) == ("plate",) and marked(plate(ZONE)) == ()
@@ -66,9 +61,10 @@ def in_strips(side: float, heights=(0.0, 0.17, 0.6, 1.0)) -> ep.Mesh:
     return ep.Mesh(vertices, triangles)
 
 
-def test_how_a_file_cuts_a_wall_into_triangles_does_not_count():
-    assert marked(in_strips(2.02 * ZONE)) == ("plate",)
-    assert marked(in_strips(1.98 * ZONE)) == ()
+@pytest.mark.parametrize("cut", [plate, in_strips])
+def test_a_plate_is_a_mirror_from_twice_the_zone_on_however_a_file_cuts_it(cut):
+    assert marked(cut(2.02 * ZONE)) == ("plate",)
+    assert marked(cut(1.98 * ZONE)) == ()
 
 
 def test_triangles_that_a_file_lists_twice_are_as_wide_as_by_themselves():

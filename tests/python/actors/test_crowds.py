@@ -40,7 +40,7 @@ def test_poles_and_people_of_a_street_are_those_alone(mirrors, request):
         alone = ep.trace(crowd_scenes.alone(name, mirrors=mirrors), radar, num_rays=many)
         here, truth = (ep.received_power(crowd.direct(one, name)) for one in (paths, alone))
         error = abs(decibels(here.power, truth.power))
-        assert error < ALONE_DB or not here.resolved, name
+        assert error < ALONE_DB or here.low <= truth.power <= here.high, name  # a person at 40 m is not resolved
         assert error < POLE_DB or not name.startswith("pole"), name
 
 

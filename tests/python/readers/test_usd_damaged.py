@@ -107,9 +107,11 @@ def test_rotations_by_what_is_no_angle_are_refused(tmp_path, samples):
 
 
 def test_indices_of_instances_that_are_no_list_leave_them_out(tmp_path):
-    notes = notes_of(tmp_path, 'def PointInstancer "trees"\n{\n    rel prototypes = </trees/tree>\n    int protoIndices = 3\n'
-                               '    point3f[] positions = [(0, 0, 0)]\n    def Sphere "tree"\n    {\n    }\n}\n')
-    assert "the point instancer /trees is left out: it has protoIndices of another type than the schema of USD" in notes
+    text = ('def PointInstancer "trees"\n{\n    rel prototypes = </trees/tree>\n    int protoIndices = 3\n'
+            '    point3f[] positions = [(0, 0, 0)]\n    def Sphere "tree"\n    {\n    }\n}\n')
+    with pytest.raises(ep.FileError, match="holds no surface; the point instancer /trees is left out: it has protoIndices of "
+                                           "another type than the schema of USD"):
+        notes_of(tmp_path, text)
 
 
 def test_points_over_time_that_are_no_points_stay(tmp_path):

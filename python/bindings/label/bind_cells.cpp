@@ -2,6 +2,7 @@
 #include <pybind11/complex.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -96,9 +97,9 @@ py::list regions_of(const py::object& label, const py::object& power, int64_t nu
 
 // [K, B, V, R] -> views [B, V, R] of each part.
 std::vector<std::span<const double>> by_part(const Powers& values) {
-  const auto size = static_cast<size_t>(values.size() / values.shape(0));
+  const auto count = static_cast<size_t>(values.shape(0)), size = values.size() / std::max<size_t>(count, 1);
   std::vector<std::span<const double>> parts;
-  for (size_t k = 0; k < static_cast<size_t>(values.shape(0)); ++k) parts.push_back(view(values).subspan(k * size, size));
+  for (size_t k = 0; k < count; ++k) parts.push_back(view(values).subspan(k * size, size));
   return parts;
 }
 

@@ -105,3 +105,9 @@ def test_errors_need_the_selections_of_the_parts():
     assert np.array_equal(again.share_error, labels.share_error)
     with pytest.raises(ValueError, match="errors: need the selections"):
         ep.annotate(paths, dict(made), errors=True)
+
+
+def test_sums_of_no_parts_are_refused():
+    none = np.zeros((0, 2, 3, 4))
+    with pytest.raises(ValueError, match="parts: must be one or more, got none"):
+        ep._core.share_errors(none, none, none, np.full((3, 4), -1, np.int16))

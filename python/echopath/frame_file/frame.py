@@ -43,6 +43,7 @@ from .scene import KeptMeshes, read_scene, write_scene
 from .scene.interferers import read_interferers, write_interferers
 from .scene.weather import read_effect_choices, scene_in_weather, write_weather
 from .seeds import read_optional_seed, write_seed
+from .settings import write_setting
 from .truth import truth_in, write_truth
 
 # Settings of a signal and the values that each may have.
@@ -198,7 +199,7 @@ def _write_signal(file, frame: Frame) -> None:
 
 def _write_spectra(file, frame: Frame) -> None:
     group = file.create_group("spectra")
-    write_attribute(group, "settings", json.dumps(frame.spectrum_settings))
+    write_setting(group, "settings", frame.spectrum_settings)
     write_array(group, "velocity", frame.spectrum.velocity, unit="m/s")
     write_array(group, "range", frame.spectrum.range, unit="m")
     write_array(group, "values", frame.spectrum.values, unit="sqrt(W)")
@@ -208,7 +209,7 @@ def _write_range_azimuth(file, frame: Frame) -> None:
     if frame.range_azimuth is None:
         return
     group = file.create_group("range_azimuth")
-    write_attribute(group, "settings", json.dumps(frame.angle_settings, default=np.ndarray.tolist))
+    write_setting(group, "settings", frame.angle_settings)
     for name in ("azimuth", "elevation"):
         write_array(group, name, getattr(frame.range_azimuth, name), unit="rad")
     write_array(group, "range", frame.range_azimuth.range, unit="m")

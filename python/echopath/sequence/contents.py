@@ -10,10 +10,11 @@ import numpy as np
 from .. import _core
 from ..arguments.shown import shown
 from ..frame_file.container import SEQUENCE, our_file, write_head
-from ..frame_file.h5 import blames_group, read_attribute, read_group, write_attribute
+from ..frame_file.h5 import blames_group, read_attribute, read_group
 from ..frame_file.radar import read_radar, write_radar
 from ..frame_file.scene import read_scene, write_scene
 from ..frame_file.scene.interferers import read_interferers, write_interferers
+from ..frame_file.settings import write_setting
 from ..scene.scene import Scene
 
 FRAMES = "frames"           # group of the frames in a file of all
@@ -41,7 +42,7 @@ def write_contents(file, contents: Contents) -> None:
 def write_settings(group, settings: dict[str, Any]) -> None:
     """Writes settings in place of those that a group has."""
     for name, value in settings.items():
-        write_attribute(group, name, json.dumps(value, default=_plain))
+        write_setting(group, name, value)
 
 
 def read_contents(path) -> Contents:
@@ -59,11 +60,6 @@ def read_settings(file) -> dict[str, Any]:
 @blames_group
 def _read_settings(group) -> dict[str, Any]:
     return {name: json.loads(read_attribute(group, name, str)) for name in group.attrs}
-
-
-def _plain(value) -> Any:
-    """What JSON does not know: arrays and NumPy's numbers, selections."""
-    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else str(value)
 
 
 def what_differs(mine: Path, theirs: Path) -> str:

@@ -25,7 +25,8 @@ HIT_COLUMNS = ("mesh_id", "triangle_id", "u", "v")
 def test_every_keyword_of_a_map_from_above_is_read_again(tmp_path):
     wave = ep.speed_of_light / 77e9
     radar = build_radar(receivers=tuple((0, 0.5 * wave * n, 0) for n in range(4)), num_chirps=16)
-    angles = {"overlaps": "first", "compensate": False, "velocity_gate": (-2.0, 2.0), "combine": "sum", "velocity_neighbours": 2}
+    angles = {"overlaps": "first", "compensate": np.False_, "velocity_gate": (np.float32(-2.0), 2.0), "combine": "sum",
+              "velocity_neighbours": np.int64(2)}
     made = ep.simulate(curved_scene(), radar, num_rays=300, angles=angles, guard=False)
     ep.save_frame(made, tmp_path / "frame.h5")
     found = ep.load_frame(tmp_path / "frame.h5")

@@ -67,10 +67,10 @@ def _without_slivers(vertices, triangles):
     return vertices, triangles[(a != b) & (b != c) & (c != a)]
 
 
-def round_segments(radius, least=8):
+def round_segments(radius):
     """Segments of a round bar of `radius` m whose coherent echo at 77 GHz is right to 0.3 dB where it is smooth."""
     edge = 1.4 * np.sqrt(radius * 0.0039)   # 4 times 0.4 sqrt(radius wavelength) would do
-    return max(least, int(np.ceil(2.0 * np.pi * radius / edge)))
+    return max(14, int(np.ceil(2.0 * np.pi * radius / edge)))
 
 
 def extruded(outline, length):

@@ -120,10 +120,10 @@ def pedestrian(step_deg: float = AZIMUTH_STEP) -> list[Comparison]:
             Comparison("pedestrian, deviation of single looks", "dB", float(looks.std()), 3.9, 6.5, TR38901)]
 
 
-def single_looks(coherent, diffuse, seed: int = 1):
+def single_looks(coherent, diffuse):
     """Cross sections [NUM_LOOKS, A] in m^2 that single maps show: the coherent field and one realisation of the diffuse
     one, whose phases are random."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(1)
     size = (NUM_LOOKS, len(diffuse))
     field = (random.standard_normal(size) + 1j * random.standard_normal(size)) * np.sqrt(0.5 * diffuse)
     return np.abs(np.sqrt(np.maximum(coherent, 0.0)) + field) ** 2

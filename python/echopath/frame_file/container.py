@@ -18,15 +18,15 @@ OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and
 
 
 @contextmanager
-def new_file(path, kind: str = FRAME):
-    """A new HDF5 file of ours that takes its place when the block ends well; kind: one of KINDS."""
+def new_file(path):
+    """A new HDF5 file of a frame that takes its place when the block ends well."""
     with written_whole(path) as temporary, writing(temporary) as file:
-        write_head(file, kind)
+        write_head(file, FRAME)
         yield file
 
 
 def write_head(file, kind: str) -> None:
-    """Writes what tells our files apart: their kind, version and program."""
+    """Writes what tells our files apart: their kind, one of KINDS, version and program."""
     write_attribute(file, "format", f"echopath {kind}")
     write_attribute(file, "schema_version", SCHEMA_VERSION)
     write_attribute(file, "software_version", _core.__version__)

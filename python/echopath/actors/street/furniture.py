@@ -38,7 +38,7 @@ def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04)
     It stands at the origin, its foot 5 cm below the ground z = 0. One part, "tube".
     Raises TypeError or ValueError naming the argument.
     """
-    surface = tube((0, 0, -SUNK), (0, 0, height), radius, end_radius, segments=round_segments(radius, 14))
+    surface = tube((0, 0, -SUNK), (0, 0, height), radius, end_radius, segments=round_segments(radius))
     return Actor([Part("tube", _core.Mesh(*surface), "metal", smooth=True)])
 
 
@@ -56,7 +56,7 @@ def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float
     outline[:, 1] += height - outline[:, 1].min()
     top = outline[:, 1].max() - 0.05 * size
     x = SIGN_THICKNESS + SIGN_GAP + SIGN_POLE_RADIUS
-    mast = tube((x, 0, -SUNK), (x, 0, top), SIGN_POLE_RADIUS, segments=round_segments(SIGN_POLE_RADIUS, 14))
+    mast = tube((x, 0, -SUNK), (x, 0, top), SIGN_POLE_RADIUS, segments=round_segments(SIGN_POLE_RADIUS))
     return Actor([Part("sign", _core.Mesh(*_prism(outline, SIGN_THICKNESS)), "metal"),
                   Part("pole", _core.Mesh(*mast), "metal", smooth=True)])
 

@@ -32,12 +32,10 @@ def with_progress(items: Iterable[Item], num_items: int, progress: Callable[[str
 
 
 @contextmanager
-def progress_bars(stream=None):
-    """Yields a progress callable (stage, fraction) that draws one bar per stage, or None where `stream` is no terminal.
-
-    stream: of the bars, default standard error. The bars are closed however the block ends.
-    """
-    stream = stream if stream is not None else sys.stderr
+def progress_bars():
+    """Yields a progress callable (stage, fraction) that draws one bar per stage on standard error, or None where that is no
+    terminal. The bars are closed however the block ends."""
+    stream = sys.stderr
     if not stream.isatty():
         yield None
         return

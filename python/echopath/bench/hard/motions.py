@@ -15,9 +15,9 @@ cases = Cases("Motion")
 C = ep.speed_of_light
 
 
-def moving_patch(motion, side: float = 1e-3, material=METAL):
+def moving_patch(motion, side: float = 1e-3):
     """A patch so small that it is one point, moved by `motion` from the origin of its node."""
-    return scene_of(("patch", shapes.plate(side, side), material, {"motion": motion}))
+    return scene_of(("patch", shapes.plate(side, side), METAL, {"motion": motion}))
 
 
 def cube_error(paths, **settings) -> float:

@@ -136,11 +136,11 @@ def _rows(quick: bool) -> list[dict]:
     return found
 
 
-def random_edits(num_rays: int = QUICK_RAYS) -> RandomEdits:
+def random_edits() -> RandomEdits:
     """Of the street of twenty objects."""
     scene, of_scene, _ = crowded_street()
     names = [name for name in scene if "/" not in name and name not in BACKDROPS]
-    return RandomEdits(ep.Live(scene, of_scene, num_rays=num_rays), names, list(BACKDROPS))
+    return RandomEdits(ep.Live(scene, of_scene, num_rays=QUICK_RAYS), names, list(BACKDROPS))
 
 
 def _error_of_edits(count: int) -> float:

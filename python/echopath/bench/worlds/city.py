@@ -96,13 +96,12 @@ def radar() -> ep.Radar:
     return ep.Radar(waveform, transmitters=[ep.Antenna(TRANSMITTER)], receivers=[ep.Antenna(RECEIVER)])
 
 
-def slow_paths(walls: list[Wall], max_bounces: int = 2) -> np.ndarray:
-    """Of all paths over at most `max_bounces` walls, by images over every sequence, in the order of their lengths, [P, 2]: the
+def slow_paths(walls: list[Wall]) -> np.ndarray:
+    """Of all paths over one wall or two, by images over every sequence, in the order of their lengths, [P, 2]: the
     length in m and the field over that of endless walls."""
     transmitter, receiver = np.array(TRANSMITTER), np.array(RECEIVER)
     sequences = [(wall,) for wall in walls]
-    if max_bounces > 1:
-        sequences += [(one, two) for one in walls for two in walls if one is not two]
+    sequences += [(one, two) for one in walls for two in walls if one is not two]
     paths = []
     for sequence in sequences:
         points = _points(sequence, transmitter, receiver)

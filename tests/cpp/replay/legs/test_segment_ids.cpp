@@ -38,5 +38,15 @@ TEST(SegmentIds, RunsHaveTheValuesOfAMapOfTheirContents) {
   }
 }
 
+// The number of a run's clearing has 16 bits.
+TEST(SegmentIds, AreForgottenAfterAnyNumberOfClearings) {
+  const std::vector<Hit> hits = hits_of(7);
+  SegmentIds ids;
+  ids(hits.data(), 2, 0) = 3;
+  for (int clearing = 0; clearing < 0x10000; ++clearing) ids.clear();
+  EXPECT_EQ(ids(hits.data(), 2, 0), SegmentIds::kNone);
+  EXPECT_EQ(ids(hits.data(), 1, 0), SegmentIds::kNone);
+}
+
 }  // namespace
 }  // namespace echopath::test_segment_ids

@@ -208,6 +208,32 @@ TEST(PathGrids, OfPathsOverSeveralMeshesHaveTheCutsOfAll) {
   EXPECT_EQ(found.size(), 3u);
 }
 
+// Eight chirps are 24 nodes: enough for four to six in each of a wall's four pieces, but not in each of the seven of both.
+TEST(PathGrids, OfMoreCutsTogetherThanPolynomialsHaveNodesForAreNone) {
+  const auto shakes_from = [](double first) {
+    const std::vector<double> times = {0, first, first + 1e-3, first + 2e-3, 1};
+    std::vector<Vec3> places;
+    for (size_t k = 0; k < times.size(); ++k) places.emplace_back(k % 2 ? 1e-5 : 0.0, 0, 0);
+    return std::make_shared<KeyframeMotion>(times, places, std::vector<Quaternion>(), Interpolation::kLinear);
+  };
+  Scene scene;  // a corner that opens toward the radar
+  add_rectangle(scene, "left", {8, 0, -0.5}, {-0.5, 0.5, 0}, {0, 0, 1}, share(Material::metal()), shakes_from(1e-3));
+  add_rectangle(scene, "right", {8, 0, -0.5}, {-0.5, -0.5, 0}, {0, 0, 1}, share(Material::metal()), shakes_from(1.5e-3));
+  Radar radar = long_frame();
+  radar.waveform.num_chirps = 8;
+  const Paths paths = trace(scene, radar, with_rays(500, 2));
+  Replayer replayer(paths, radar);
+  const PathGrids grids = replayer.path_grids();
+  int num_over_both = 0;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    const bool is_over_both = paths.num_bounces[path] == 2;
+    num_over_both += is_over_both;
+    EXPECT_EQ(grids.first(path) == GridIndex::none(), is_over_both) << path;
+  }
+  EXPECT_GT(num_over_both, 0);
+  EXPECT_LT(num_over_both, paths.num_paths());
+}
+
 // A wing that beats at its tip alone: paths at its root have the same grid beside those at the tip and without these, which
 // leave the tip out of what is posed of the mesh.
 TEST(PathGrids, OfDeformingMeshesDoNotHangOnWhichTrianglesAreHit) {

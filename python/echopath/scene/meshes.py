@@ -4,13 +4,13 @@ from __future__ import annotations
 import os
 
 from .. import _core
-from ..arguments.checks import checked, path as path_rule
+from ..arguments.checks import checked, file
 from ..arguments.number_rules import unit_rule
 from ..base.storage.pointers import pointers_are_told
 from ..base.text.node_names import fit_paths
 
 
-@checked(path=path_rule, unit=unit_rule)
+@checked(path=file, unit=unit_rule)
 def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     """All faces of a mesh file as one mesh.
 
@@ -22,7 +22,7 @@ def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
         return _core.load_mesh(path, unit)
 
 
-@checked(path=path_rule, unit=unit_rule)
+@checked(path=file, unit=unit_rule)
 def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[str, _core.Mesh]]:
     """The groups of a mesh file.
 

@@ -10,8 +10,9 @@ from support.odd_values import EXPECTED, ODD, is_named, make_radar, make_scene, 
 SCENE, RADAR = make_scene(), make_radar()
 FEWEST_WRONG = 7000
 # Arguments that say of others what they lack.
-OTHERS = {("add", "mesh_or_actor"): "material: must be given with a mesh", ("pedestrian", "height"): "speed: must be",
-          ("runner", "height"): "speed: must be", ("of_object", "name"): "name: must be"}
+OTHERS = {("add", "mesh_or_actor"): "material: must be given with a mesh", ("pedestrian", "height"): "edge: must be",
+          ("runner", "height"): "edge: must be", ("standing_person", "height"): "edge: must be",
+          ("of_object", "name"): "name: must be"}
 FREE = {("plot", "title"), ("plot", "ax"), ("plot_labels", "title"), ("plot_detections", "title")}  # Matplotlib's own
 COARSE = 0.05  # m, of the triangles of bodies
 BY_NAME = {"height": 1.7, "width": 1.0, "length": 2.0, "size": 1.0, "radius": 1.0, "semi_axes": 1.0}

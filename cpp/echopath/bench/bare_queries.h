@@ -25,6 +25,6 @@ struct BareQueries {
 // Traces, writes the queries down (on one thread) and measures, on as many threads as `set_num_threads` says. It needs 28
 // bytes a query. Raises what `trace` raises; raises invalid_argument for repetitions below 1.
 BareQueries measure_bare_queries(const Scene& scene, const Radar& radar, const TraceSettings& settings, int repetitions,
-                                 Job* job = nullptr);
+                                 Job* job);
 
 }  // namespace echopath

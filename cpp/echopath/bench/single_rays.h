@@ -20,10 +20,10 @@ struct RayAnswers {
 // Traces rays: origins [N] in m, world; directions [N] of any length; time in s. Raises invalid_argument unless there are as
 // many of both; raises Cancelled.
 RayAnswers first_hits(const Scene& scene, double time, const std::vector<Vec3>& origins, const std::vector<Vec3>& directions,
-                      Job* job = nullptr);
+                      Job* job);
 
 // Returns 1 where something lies on the open segment between starts and ends [N] in m, world. Raises as first_hits does.
 std::vector<uint8_t> blocked_segments(const Scene& scene, double time, const std::vector<Vec3>& starts,
-                                      const std::vector<Vec3>& ends, Job* job = nullptr);
+                                      const std::vector<Vec3>& ends, Job* job);
 
 }  // namespace echopath

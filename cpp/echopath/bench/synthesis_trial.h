@@ -21,7 +21,6 @@ struct SynthesisTrial {
 };
 
 // Raises what Synthesizer does.
-SynthesisTrial try_synthesis(const ChirpSequence& waveform, const Echoes& echoes, const SynthesisOptions& options,
-                             Job* job = nullptr);
+SynthesisTrial try_synthesis(const ChirpSequence& waveform, const Echoes& echoes, const SynthesisOptions& options, Job* job);
 
 }  // namespace echopath

@@ -14,6 +14,6 @@ enum class ScatteringPlane {
 //   planes agree.
 // Raises invalid_argument. Source: G. Mie 1908; Harrington, Time-Harmonic Electromagnetic Fields, 1961, section 6-9.
 // Time grows as ka. Relative error below 1e-9 where |sigma| is not in a deep null.
-double mie_rcs(double radius, double frequency, double bistatic_angle = 0.0, ScatteringPlane plane = ScatteringPlane::kH);
+double mie_rcs(double radius, double frequency, double bistatic_angle, ScatteringPlane plane);
 
 }  // namespace echopath

@@ -72,7 +72,6 @@ Fft::Fft(int size, FftDirection direction) {
 }
 Fft::~Fft() = default;
 Fft::Fft(Fft&&) noexcept = default;
-Fft& Fft::operator=(Fft&&) noexcept = default;
 
 int Fft::size() const { return plan_->size; }
 

@@ -33,7 +33,6 @@ class Fft {
   Fft(int size, FftDirection direction);  // raises invalid_argument unless size >= 1
   ~Fft();
   Fft(Fft&&) noexcept;
-  Fft& operator=(Fft&&) noexcept;
   int size() const;
   // Transforms in place; raises invalid_argument unless the buffer has the plan's size. Safe from several threads on
   // different buffers.

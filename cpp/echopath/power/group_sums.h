@@ -36,6 +36,6 @@ struct PowerAndLength {
 // last bit. `of_paths`, where given, gets the power and the length of each path between these antennas. A job advances by
 // paths. Raises Cancelled.
 std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings,
-                                               Job* job, PowerAndLength* of_paths = nullptr);
+                                               Job* job, PowerAndLength* of_paths);
 
 }  // namespace echopath

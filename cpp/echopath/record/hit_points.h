@@ -21,6 +21,6 @@ inline Vec3 hit_point(const PosedScene& pose, const Hit& hit) {
 }
 
 // Returns the points [H, 3] of all hits in the world at a time in s, in m. Raises Cancelled when the job is cancelled.
-std::vector<double> hit_points(const Paths& paths, double time, Job* job = nullptr);
+std::vector<double> hit_points(const Paths& paths, double time, Job* job);
 
 }  // namespace echopath

@@ -77,7 +77,7 @@ uint32_t beside_edge_flags(std::complex<double> share);
 std::complex<double> share_of_endless(uint32_t flags);
 inline constexpr double kShareRounding = 2e-3;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
-constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
+constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges) {
   return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
          static_cast<uint32_t>(num_pieces) << 16;
 }
@@ -218,7 +218,7 @@ struct Paths {
   // Returns the paths where keep [P] is not 0, in order; it shares the hits. Raises Cancelled when the job is cancelled.
   Paths select(const std::vector<uint8_t>& keep, Job* job = nullptr) const;
   // Returns the same paths with only the hits that they use, in their order; hits that paths share stay shared.
-  Paths with_own_hits(Job* job = nullptr) const;
+  Paths with_own_hits(Job* job) const;
 };
 
 // Calls visit(column) for each column that has an entry for every path, as a pointer to the member.

@@ -87,6 +87,6 @@ struct RadarCrossSection {
 // meshes and one with mirrors: they stand for planes without end, which have no cross section. Raises out_of_range for walls
 // of cavities that are no meshes of the scene.
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
-                                   const RcsSettings& settings, Job* job = nullptr);
+                                   const RcsSettings& settings, Job* job);
 
 }  // namespace echopath

@@ -144,7 +144,6 @@ MapTransform::MapTransform(const Radar& radar, const MapWindows& window, int zer
   plan_ = std::make_unique<const Plan>(std::move(plan));
 }
 MapTransform::~MapTransform() = default;
-MapTransform::MapTransform(MapTransform&&) noexcept = default;
 
 int64_t MapTransform::num_velocities() const { return plan_->doppler_fft.size(); }
 int64_t MapTransform::num_ranges() const { return plan_->num_ranges; }

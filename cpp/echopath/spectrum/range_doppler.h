@@ -45,7 +45,6 @@ class MapTransform {
   // Raises as range_doppler.
   MapTransform(const Radar& radar, const MapWindows& window, int zero_pad);
   ~MapTransform();
-  MapTransform(MapTransform&&) noexcept;
   int64_t num_velocities() const;
   int64_t num_ranges() const;
   // Transforms samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for the range profiles. Ranges

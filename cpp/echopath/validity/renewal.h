@@ -24,7 +24,6 @@ Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nu
 
 // Returns [P] 1 where `renew` keeps the path at `time`. For paths of another trace it tells those that one at `time` could
 // have had.
-std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job = nullptr,
-                                 KeptGeometry* kept = nullptr);
+std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept);
 
 }  // namespace echopath

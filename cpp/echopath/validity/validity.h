@@ -106,6 +106,6 @@ struct Validity {
 // threads. Raises invalid_argument for a bad radar and for motions that do not cover the times or the frame; raises
 // Cancelled.
 inline constexpr int64_t kPathsChecked = 1 << 14;
-Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings = {}, Job* job = nullptr);
+Validity validity(const Paths& paths, const Radar& radar, const ValiditySettings& settings, Job* job);
 
 }  // namespace echopath

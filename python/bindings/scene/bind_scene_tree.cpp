@@ -28,9 +28,9 @@ namespace {
 template <class T>
 using OrNone = Optional<Instance<std::shared_ptr<T>>>;
 
-TimeSpan span_of(const std::vector<double>& ends, const char* argument) {
+TimeSpan span_of(const std::vector<double>& ends) {
   const bool is_span = ends.size() == 2 && ends[0] < ends[1];
-  require(is_span, argument, "must be (begin, end) in s, ascending, or None", py::str(py::cast(ends)).cast<std::string>());
+  require(is_span, "lifetime", "must be (begin, end) in s, ascending, or None", py::str(py::cast(ends)).cast<std::string>());
   return {std::max(ends[0], TimeSpan{}.begin), std::min(ends[1], TimeSpan{}.end)};
 }
 
@@ -50,7 +50,7 @@ Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<in
   made.material_name = *material_name;
   made.smooth = *smooth;
   made.visible = *visible;
-  if (*lifetime) made.lifetime = span_of(**lifetime, "lifetime");
+  if (*lifetime) made.lifetime = span_of(**lifetime);
   return made;
 }
 

@@ -66,7 +66,7 @@ class Selection {
   std::vector<uint8_t> matches(const Paths& paths, Job* job = nullptr) const;
   // Clears among the paths that are 1 in `candidates` [P] those that are not selected. What several selections of the same
   // paths share is computed once.
-  void narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job = nullptr) const;
+  void narrow(PathTraits& paths, std::vector<uint8_t>& candidates, Job* job) const;
   // Raises invalid_argument when a glob takes none of these meshes (full names), as `matches` would.
   void check_globs(const std::vector<std::string>& mesh_names) const;
   // Returns the text as written; combined selections read as (T . R) & ~(T .* 'wall' .* R).

@@ -12,6 +12,6 @@ namespace echopath {
 // further than a cell away. What one cell points at alone is left out, because it lies beyond the reach of a second order:
 // the surface has turned on the way, or ends. Several paths point at one glint, some a little beside it (Glint::blur).
 // Raises Cancelled.
-std::vector<Glint> find_chain_glints(const Paths& paths, Job* job = nullptr);
+std::vector<Glint> find_chain_glints(const Paths& paths, Job* job);
 
 }  // namespace echopath

@@ -75,7 +75,7 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
 // Where settings.guide gives the shares, or rays are few, there is no pilot, and rays are shared as in `trace`. Of a
 // standing_scene (still_rays.h) a pilot tells how half of the rays go, and that of the frame how the rest does; `kept_still`
 // keeps the first for the frames to come. Raises as `trace`.
-Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
-                    KeptGeometry* kept = nullptr, KeptStillRays* kept_still = nullptr);
+Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
+                    KeptGeometry* kept, KeptStillRays* kept_still);
 
 }  // namespace echopath

@@ -30,7 +30,6 @@ struct ErrorTarget {
 // their own. A standing_scene (still_rays.h) is traced to the target by itself first, with half of max_rays at most, and has
 // the rays of that; `kept_still` keeps them for the frames to come.
 Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
-                     const ErrorTarget& target, Job* job = nullptr, KeptGeometry* kept = nullptr,
-                     KeptStillRays* kept_still = nullptr);
+                     const ErrorTarget& target, Job* job, KeptGeometry* kept, KeptStillRays* kept_still = nullptr);
 
 }  // namespace echopath

@@ -33,6 +33,6 @@ struct LegAroundEdge {
 
 // Returns a leg for each point (m, world). Raises invalid_argument when a motion is not defined at the time, Cancelled when
 // the job is cancelled.
-std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job = nullptr);
+std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job);
 
 }  // namespace echopath

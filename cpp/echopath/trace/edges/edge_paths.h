@@ -28,6 +28,6 @@ struct EdgeQuery {
 // the least power are left out. Pieces are so short that the phase across half of one departs from a linear phase by at most
 // .8 rad (edge_filter), and where a part of an edge is hidden they are at most a sixteenth of the body long, so that shadows
 // end near where they should. Raises Cancelled when the job is cancelled.
-std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job = nullptr);
+std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job);
 
 }  // namespace echopath

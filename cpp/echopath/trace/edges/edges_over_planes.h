@@ -20,6 +20,6 @@ namespace echopath {
 //    optics with its fringe wave has the current end at the edge.
 // 3. The wave comes and returns over planes. The path carries the fringe wave.
 // Paths below the least power are left out. The blocks follow each other by edges. Raises Cancelled.
-std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job = nullptr);
+std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job);
 
 }  // namespace echopath

@@ -27,7 +27,7 @@ int most_leg_mirrors(const SbrSettings& settings);
 // fewer frusta. Those whose last mirror lies behind surfaces that cast shadows are left out. Raises Cancelled when the job
 // is cancelled.
 AntennaFrusta find_antenna_frusta(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                                  const SbrSettings& settings, const ShadowCasters& casters, const Job* job = nullptr);
+                                  const SbrSettings& settings, const ShadowCasters& casters, const Job* job);
 
 // Returns those over at most `max_mirrors` mirrors.
 std::span<const MirrorFrustum> with_at_most(const MirrorFrusta& found, int max_mirrors);

@@ -17,6 +17,6 @@ void leave_out_common(Paths& before, Paths& after, const CommonParts& common, Jo
 
 // Returns the same paths with the hits that they use, in a scene with the meshes that they meet. Their echoes are the same,
 // but mesh IDs are not: posing a few meshes costs less than posing a city.
-Paths with_own_meshes(const Paths& paths, Job* job = nullptr);
+Paths with_own_meshes(const Paths& paths, Job* job);
 
 }  // namespace echopath

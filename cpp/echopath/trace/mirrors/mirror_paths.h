@@ -16,6 +16,6 @@ namespace echopath {
 // meet frusta of the receiver over the others. The blocks follow each other by number of mirrors and then by mirrors in
 // travel order. Raises Cancelled when the job is cancelled.
 std::vector<PathBlock> find_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                                         const SbrSettings& settings, const AntennaFrusta& frusta, const Job* job = nullptr);
+                                         const SbrSettings& settings, const AntennaFrusta& frusta, const Job* job);
 
 }  // namespace echopath

@@ -66,7 +66,7 @@ double widest_crack(const MirrorView& view, double wavelength);
 // disks, and to 5 % beside bends and corners, where geometrical optics is wrong by up to all of it. This is valid where no
 // line from the point meets the edge twice.
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          int64_t& num_queries, const Plane* next = nullptr);
+                                          int64_t& num_queries, const Plane* next);
 
 // Returns the field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
 std::complex<double> field_beside_edge(double within);

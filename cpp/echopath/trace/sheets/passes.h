@@ -15,6 +15,6 @@ inline constexpr int kMostPasses = 64;
 
 // Does nothing where the scene has no sheets. The result is the same for any number of threads. Raises DeviceError and
 // Cancelled.
-void add_passes(Paths& paths, Job* job = nullptr);
+void add_passes(Paths& paths, Job* job);
 
 }  // namespace echopath

@@ -20,6 +20,6 @@ struct SurfaceScattererSettings {
 // an object follows its share of the rays, whatever its distance. Points come by mesh, so that neighbours in the list are
 // near each other.
 std::vector<SurfacePoint> find_surface_scatterers(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
-                                                  const SurfaceScattererSettings& settings, Job* job = nullptr);
+                                                  const SurfaceScattererSettings& settings, Job* job);
 
 }  // namespace echopath

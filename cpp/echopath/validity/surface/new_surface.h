@@ -30,7 +30,7 @@ struct SurfaceSearchSettings {
 // its blocked paths, together with the new paths, is a whole. `then` and `now` keep geometry at the time of the record and
 // from look to look. The result has the same bits for any number of threads. Raises invalid_argument when a motion does not
 // cover the time; raises Cancelled.
-SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings,
-                                Job* job = nullptr, KeptGeometry* then = nullptr, KeptGeometry* now = nullptr);
+SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job,
+                                KeptGeometry* then, KeptGeometry* now);
 
 }  // namespace echopath

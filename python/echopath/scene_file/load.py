@@ -12,7 +12,7 @@ from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.storage.data_folder import data_folder
-from ..base.storage.files import require_readable
+from ..base.storage.files import bytes_of
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
@@ -149,11 +149,10 @@ def parse(path: Path) -> dict:
 
 def text_of(path: Path) -> str:
     """The text of a TOML file. Raises ep.FileError, ValueError naming the file."""
-    require_readable(path)
     try:
-        return path.read_bytes().decode("utf-8-sig")  # with a byte-order mark, too
-    except OSError as error:
-        raise _core.FileError(f"{path}: cannot be read ({error.strerror}){_one_that_comes_along(path)}") from None
+        return bytes_of(path).decode("utf-8-sig")  # with a byte-order mark, too
+    except _core.FileError as error:
+        raise _core.FileError(f"{error}{_one_that_comes_along(path)}") from None
     except UnicodeDecodeError as error:
         if path.suffix.lower() in FRAME_SUFFIXES:
             raise ValueError(f"{path}: a frame file, where a scene file (.toml) is asked for; `echopath info "

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import checked, flag
-from ..base.storage.files import require_readable
+from ..base.storage.files import bytes_of
 
 COLUMNS = ("azimuth_deg", "elevation_deg", "gain_db", "phase_deg")
 REQUIRED = COLUMNS[:3]
@@ -29,11 +29,8 @@ def load_antenna(path: str | os.PathLike[str], *, normalize: bool = False) -> _c
     Returns an AntennaPattern as `GainTable` makes it. Raises FileError naming the file, and the line if there is one.
     """
     path = Path(path)
-    require_readable(path)
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()  # with a byte-order mark, too
-    except OSError as error:
-        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
+        lines = bytes_of(path).decode("utf-8-sig").splitlines()  # with a byte-order mark, too
     except UnicodeDecodeError as error:
         raise _core.FileError(f"{path}: is not UTF-8 text (byte {error.start})") from None
     numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]

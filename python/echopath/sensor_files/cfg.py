@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from .. import _core
-from ..base.storage.files import require_readable
+from ..base.storage.files import bytes_of
 
 # Names of the arguments of each command that is understood, in their order; more may follow.
 ARGUMENTS = {
@@ -73,11 +73,7 @@ class Lines:
 
 def read_lines(path: Path) -> Lines:
     """Reads a configuration. Raises ep.FileError naming the line where arguments are missing or no numbers."""
-    require_readable(path)
-    try:
-        text = path.read_bytes().decode("utf-8-sig", "replace")
-    except OSError as error:
-        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
+    text = bytes_of(path).decode("utf-8-sig", "replace")
     commands, others = [], []
     for number, line in enumerate(text.splitlines(), 1):
         words = re.split(r"[%#]", line, maxsplit=1)[0].split()

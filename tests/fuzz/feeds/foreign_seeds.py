@@ -273,8 +273,9 @@ def packed_stages(suffix: str) -> list[bytes]:
         for stage in USD:
             text.write_text(stage)
             Usd.Stage.Open(str(text)).Export(str(binary))
-            UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(binary)), str(package))
-            found.append((binary if suffix == ".usdc" else package).read_bytes())
+            if suffix == package.suffix:
+                UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(binary)), str(package))
+            found.append((Path(folder) / f"stage{suffix}").read_bytes())
     return found
 
 

@@ -21,6 +21,15 @@ def require_readable(path) -> None:
         raise _core.FileError(f"{path}: is no regular file")
 
 
+def bytes_of(path: Path) -> bytes:
+    """The whole content of a file. Raises ep.FileError where it cannot be read, and as `require_readable`."""
+    require_readable(path)
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
+
+
 def _is_device_or_pipe(path) -> bool:
     return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 

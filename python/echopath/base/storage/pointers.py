@@ -16,7 +16,7 @@ LFS = b"version https://git-lfs"
 def pointers_are_told(path: str | os.PathLike[str]) -> Iterator[None]:
     """Says of a file that cannot be read that it is a pointer, where it is one: what is wrong with its content tells nothing.
 
-    Raises ep.FileError before, where there is no file (`require_readable`).
+    Raises ep.FileError before, for what is no file (`require_readable`).
     """
     require_readable(path)
     try:

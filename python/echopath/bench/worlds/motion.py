@@ -25,7 +25,7 @@ CARS = 20
 SPEED, TURN = 10.0, 0.5                     # m/s, rad/s
 KEYFRAMES = 4                               # of the record that is renewed
 LIMIT_NS, LIMIT_RATIO, LIMIT_ERROR = 3.5, 1.1, 1e-6
-PHASE_TOLERANCE = 1e-6                      # rad: amplitudes, to ten times that of their path's, are then within LIMIT_ERROR
+PHASE_TOLERANCE = 1e-6                      # rad: with it signals are within LIMIT_ERROR, as amplitudes follow it, too
 STILL_RADAR = "street moves past"
 
 

@@ -16,22 +16,28 @@ constexpr double kLiftAbsolute = 1e-6, kLiftRelative = 0x1.0p-21;  // m, and of 
 
 using Matrix2 = Eigen::Matrix2cd;
 
+// Returns the IDs of the meshes that are sheets.
+std::vector<uint32_t> sheets_of(const Scene& scene) {
+  std::vector<uint32_t> ids;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    if (scene.node_of(id).material->is_sheet()) ids.push_back(id);
+  }
+  return ids;
+}
+
 // Holds the sheets of a scene alone.
 class SheetScene {
  public:
-  // `near`: m, world, where most rays come from.
-  SheetScene(const Scene& scene, double time, const Vec3& near, Job* job) : scene_(scene) {
-    std::vector<bool> is_sheet;
-    for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-      is_sheet.push_back(scene.node_of(id).material->is_sheet());
-      if (is_sheet.back()) ids_.push_back(id);
-    }
-    if (ids_.empty()) return;
+  // `ids`: of the sheets, some. `near`: m, world, where most rays come from.
+  SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const Vec3& near, Job* job)
+      : scene_(scene), ids_(std::move(ids)) {
+    std::vector<bool> is_sheet(scene.meshes().size());
+    for (const uint32_t id : ids_) is_sheet[id] = true;
     scene_.keep_meshes(is_sheet);
     const PosedScene pose(scene_, time);
     geometry_.update(scene_, pose, EmbreeScene::origin_near(scene_, pose, near), job);
   }
-  bool is_empty() const { return ids_.empty(); }
+  const std::vector<uint32_t>& ids() const { return ids_; }
 
   // Finds the next sheet at `begin` (m) or farther along the ray, with its own mesh ID.
   bool meets(const Vec3& from, const Vec3& direction, double begin, RayHit& met) const {
@@ -62,9 +68,8 @@ class PassFinder {
   PassFinder(Paths& paths, const SheetScene& sheets)
       : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(sheets.origin()),
         polarization_(paths.mode_polarization()) {
-    for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-      const Material& material = *paths.scene->node_of(id).material;
-      if (material.is_sheet()) models_.emplace(id, SheetModel(material, paths.radar.waveform.start_frequency));
+    for (const uint32_t id : sheets.ids()) {
+      models_.emplace(id, SheetModel(*paths.scene->node_of(id).material, paths.radar.waveform.start_frequency));
     }
   }
 
@@ -176,8 +181,10 @@ void join(const std::vector<PassBlock>& blocks, Paths& paths) {
 }  // namespace
 
 void add_passes(Paths& paths, Job* job) {
-  const SheetScene sheets(*paths.scene, paths.frame.trace_time, paths.frame.transmitter, job);
-  if (sheets.is_empty() || paths.num_paths() == 0) return;
+  if (paths.num_paths() == 0) return;
+  std::vector<uint32_t> ids = sheets_of(*paths.scene);
+  if (ids.empty()) return;
+  const SheetScene sheets(*paths.scene, std::move(ids), paths.frame.trace_time, paths.frame.transmitter, job);
   const PassFinder finder(paths, sheets);
   std::vector<PassBlock> blocks(num_chunks(paths.num_paths(), kPathsTogether));
   Job own(job);

@@ -293,13 +293,13 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
                             const RayTargetSettings& settings) {
   RayTargets out;
   if (settings.fitted) settings.fitted->begin_plan();
-  const std::vector<SceneObject> scene_objects = objects_of(scene);
+  const int64_t num_objects = count_objects(scene);
   out.object_of_mesh.assign(scene.meshes().size(), -1);
-  out.any_unaimed = std::ssize(scene_objects) > settings.most_objects;
-  if (out.any_unaimed) out.num_left_out = std::ssize(scene_objects);
-  if (out.any_unaimed || scene_objects.empty()) return out;
+  out.any_unaimed = num_objects > settings.most_objects;
+  if (out.any_unaimed) out.num_left_out = num_objects;
+  if (out.any_unaimed || num_objects == 0) return out;
   TargetSearch search(scene, geometry, mirrors, settings, out);
-  for (const SceneObject& object : scene_objects) search.take(object);
+  for (const SceneObject& object : objects_of(scene)) search.take(object);
   search.finish();
   return out;
 }

@@ -13,6 +13,14 @@ std::vector<SceneObject> objects_of(const Scene& scene) {
   return found.found();
 }
 
+int64_t count_objects(const Scene& scene) {
+  std::vector<bool> is_object(scene.nodes().size());
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    if (!scene.node_of(id).material->mirror) is_object[static_cast<size_t>(scene.meshes()[id].object)] = true;
+  }
+  return std::ranges::count(is_object, true);
+}
+
 std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object) {
   MeshesByNode found;
   for (const uint32_t id : object.mesh_ids) {

@@ -20,6 +20,8 @@ using SceneObject = NodeMeshes;
 
 // Returns the objects in the order of their first mesh.
 std::vector<SceneObject> objects_of(const Scene& scene);
+// Returns how many these are, without a list of each one's meshes.
+int64_t count_objects(const Scene& scene);
 
 // Returns what an object consists of, in the order of their first mesh: the mesh of its own node, and what is below each
 // child of that node. Its parts may have parts in turn; that of a node without children is the object itself.

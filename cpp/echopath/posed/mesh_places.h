@@ -2,9 +2,11 @@
 // Says which meshes of a scene are posed, and where each stands among them.
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {
@@ -23,6 +25,12 @@ struct MeshPlaces {
     place[mesh_id] = static_cast<uint32_t>(meshes.size());
     meshes.push_back(mesh_id);
   }
+};
+
+// Says what of a scene is posed for some paths: the meshes that they touch, and of those that deform only their patches.
+struct MeshesToPose {
+  std::shared_ptr<const MeshPlaces> places;
+  std::vector<SurfacePatch> patches;  // by mesh ID
 };
 
 // Lists the nodes of a scene that place some meshes: those of the meshes and all above them.

@@ -29,15 +29,11 @@ PosedScene::PosedScene(const Scene& scene, double time) : scene_(&scene), time_(
   }
 }
 
-PosedScene::PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
-                       double time)
-    : scene_(&scene), time_(time), is_in_patches_(true), origin_(origin) {
-  require(patches.size() == scene.meshes().size(), "patches", "must be as many as the scene has meshes", patches.size());
-  const Transform world_from_radar = radar.world_from_radar(time);
-  transmitters = posed_antennas(radar.transmitters, world_from_radar, origin);
-  receivers = posed_antennas(radar.receivers, world_from_radar, origin);
-  place_meshes();
-  for (uint32_t id = 0; id < num_meshes(); ++id) deform(id, patches[id]);
+PosedScene::PosedScene(const Scene& scene, const Radar& radar, const MeshesToPose& meshes, const Vec3& origin, double time)
+    : PosedScene(scene, radar, origin, time) {
+  const bool is_whole = meshes.places && meshes.patches.size() == scene.meshes().size();
+  require(is_whole, "meshes", "must have places, and a patch for each mesh of the scene", meshes.patches.size());
+  add(meshes.places, PlacingNodes(scene, meshes.places->meshes), meshes.patches);
 }
 
 PosedScene::PosedScene(const Scene& scene, const Radar& radar, const Vec3& origin, double time)

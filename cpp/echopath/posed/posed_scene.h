@@ -19,10 +19,9 @@ class PosedScene {
   // Poses all vertices and no antennas; the origin is that of the world. Raises invalid_argument when a motion is not
   // defined at `time` (s), or takes something out of the range of coordinates (base/range_of_coordinates.h).
   PosedScene(const Scene& scene, double time);
-  // Poses also the antennas of `radar`, which must outlive it, and of each deforming mesh only its patch, patches[mesh_id].
+  // Poses also the antennas of `radar`, which must outlive it, but of the meshes only these, the others may not be asked for.
   // Relative coordinates count from `origin` (m, world). Raises as the constructor above.
-  PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
-             double time);
+  PosedScene(const Scene& scene, const Radar& radar, const MeshesToPose& meshes, const Vec3& origin, double time);
   // Poses the antennas as the constructor above, but no meshes: add() poses these.
   PosedScene(const Scene& scene, const Radar& radar, const Vec3& origin, double time);
   // Poses the meshes of `places` behind those that it has, which begin the list; only these may be asked for. `nodes` are

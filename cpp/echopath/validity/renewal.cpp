@@ -37,11 +37,11 @@ struct BlockOutcome {
 class Renewer {
  public:
   Renewer(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept)
-      : paths_(paths), radar_(one_channel(probe_radar(paths, radar))), preparer_(paths, whole_patches(*paths.scene)),
+      : paths_(paths), radar_(one_channel(probe_radar(paths, radar))), preparer_(paths, whole_meshes(*paths.scene)),
         walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber),
         pose_(*paths.scene, time),
         loan_(kept, *paths.scene, pose_, paths.frame.transmitter, EmbreeScene::Upkeep::kTimes, job), geometry_(*loan_),
-        origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}
+        origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.meshes(), origin_, time) {}
 
   // Shares are found of what stays, and only where they are asked for.
   BlockOutcome renew_block(std::span<const int64_t> indices, bool with_shares) const {

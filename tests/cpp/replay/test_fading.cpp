@@ -88,7 +88,7 @@ TEST(Fading, AmplitudesAreThoseOfTheChirps) {
 
 // Cosine between the normal of a hit's triangle and the first transmitter, at one time: below 0 it shows its back.
 double facing(const Paths& paths, const PathPreparer& preparer, const Radar& radar, int64_t path, double time) {
-  const PosedScene scene(*paths.scene, radar, preparer.patches(), paths.frame.transmitter, time);
+  const PosedScene scene(*paths.scene, radar, preparer.meshes(), paths.frame.transmitter, time);
   PosedHit posed;
   pose_hit(preparer.hit(*paths.hits_of(path)), scene, false, posed);
   return posed.normal.dot((scene.transmitters.front().position - posed.point).normalized());
@@ -97,7 +97,7 @@ double facing(const Paths& paths, const PathPreparer& preparer, const Radar& rad
 TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   RotorReplay rotor;
   auto& [radar, paths, replayer, path_grids, polynomial] = rotor;
-  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   replayer.pose_polynomial(polynomial, all_of(paths));
   std::vector<int64_t> indices = all_of(paths);
   std::vector<UnfollowedPath> failed;

@@ -5,7 +5,7 @@
 
 #include "cpp/replay/small_arrays.h"
 #include "cpp/support/scenes.h"
-#include "echopath/replay/posed/hit_patches.h"
+#include "echopath/replay/posed/touched_meshes.h"
 
 namespace echopath::test_joined_echoes {
 namespace {
@@ -33,7 +33,7 @@ Paths record(bool wall_is_mirror = false) {
 std::vector<uint8_t> joined(const Paths& paths, const std::vector<int64_t>& indices,
                             const std::vector<uint32_t>* label = nullptr,
                             SpecularPoints specular = SpecularPoints::kMaterial) {
-  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   std::vector<const std::vector<uint32_t>*> labels;
   if (label) labels.push_back(label);
   return JoinRule(paths, preparer, specular, labels)(indices);

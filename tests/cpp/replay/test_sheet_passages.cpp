@@ -3,7 +3,7 @@
 
 #include "cpp/support/scenes.h"
 #include "echopath/replay/factors/path_passages.h"
-#include "echopath/replay/posed/hit_patches.h"
+#include "echopath/replay/posed/touched_meshes.h"
 
 namespace echopath::test_sheet_passages {
 namespace {
@@ -81,7 +81,7 @@ TEST(SheetPassages, UprightWavesPassTwiceInTheModeAcrossThePlaneOfIncidence) {
 TEST(PathPassages, FieldsPassBothModesByTheirOwnCoefficients) {
   const double angle = 0.9;
   const Paths paths = traced(scene_behind(glass(), angle));
-  const PathPreparer preparer(paths, std::vector<SurfacePatch>(paths.scene->meshes().size()));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
   int64_t path = 0;
   while (paths.hits_of(path)->mesh_id != 0) ++path;
@@ -107,7 +107,7 @@ TEST(PathPassages, OnTheWayToAMirrorDirectionsAreThoseToTheImage) {
   add_rectangle(scene, "floor", {-2, -5, -2}, {14, 0, 0}, {0, 10, 0}, share(metal));
   add_rectangle(scene, "pane", {2, -3, -3}, {0, 6, 0}, {0, 0, 6}, glass());
   const Paths paths = trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), with_rays(4000, 2));
-  const PathPreparer preparer(paths, std::vector<SurfacePatch>(paths.scene->meshes().size()));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
   int64_t path = 0;
   while (paths.num_bounces[path] != 2 || paths.hits_of(path)[0].mesh_id != 1) ++path;
@@ -123,7 +123,7 @@ TEST(PathPassages, SmoothSheetsHaveTheNormalOfThePlaceWhereALineCrossesThem) {
   Scene scene = scene_behind(nullptr, 0.0);
   scene.add(node_with("dome", ellipsoid(Vec3::Zero(), Vec3::Constant(4.0), 3), glass(), true));
   const Paths paths = traced(scene);
-  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
   int64_t path = 0;
   while (paths.hits_of(path)->mesh_id != 0) ++path;

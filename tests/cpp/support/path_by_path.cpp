@@ -6,7 +6,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/record/near_antenna.h"
 #include "echopath/replay/factors/launch_cell.h"
-#include "echopath/replay/posed/hit_patches.h"
+#include "echopath/replay/posed/touched_meshes.h"
 #include "echopath/scene/smooth/smooth.h"
 
 namespace echopath::testing {
@@ -65,8 +65,8 @@ struct PathByPath::Cell {
 };
 
 PathByPath::PathByPath(const Paths& paths, const Radar& radar, double time, SpecularPoints specular)
-    : paths_(paths), preparer_(paths, hit_patches(paths)), radio_(radio_constants(paths, radar)), specular_(specular),
-      scene_(*paths.scene, radar, preparer_.patches(), paths.frame.transmitter, time) {}
+    : paths_(paths), preparer_(paths, touched_meshes(paths)), radio_(radio_constants(paths, radar)), specular_(specular),
+      scene_(*paths.scene, radar, preparer_.meshes(), paths.frame.transmitter, time) {}
 
 // The tube of the ray, on the plane of the surface at the time of the trace.
 PathByPath::Cell PathByPath::cell_of(const LocalPath& path, size_t index) const {

@@ -45,14 +45,14 @@ double mean_depth(const Mesh& mesh, const std::vector<Vec3>& vertex_normals) {
 }  // namespace
 
 FacetPhases::FacetPhases(const Scene& scene, double wavenumber, double time)
-    : scene_(scene), wavenumber_(wavenumber), world_from_nodes_(world_from_nodes(scene, time)),
-      found_(scene.meshes().size()) {}
+    : scene_(scene), wavenumber_(wavenumber), time_(time), found_(scene.meshes().size()) {}
 
 double FacetPhases::of(uint32_t mesh_id) {
   std::optional<double>& found = found_[mesh_id];
   if (found) return *found;
   const Node& node = scene_.node_of(mesh_id);
   if (!node.smooth || node.mesh->is_flat()) return found.emplace(0.0);
+  if (world_from_nodes_.empty()) world_from_nodes_ = world_from_nodes(scene_, time_);
   const Transform& world_from_mesh = world_from_nodes_[scene_.meshes()[mesh_id].node];
   const double scale = std::cbrt(std::abs(world_from_mesh.linear().determinant()));
   return found.emplace(2.0 * wavenumber_ * scale * mean_depth(*node.mesh, *kept_vertex_normals(node.mesh)));

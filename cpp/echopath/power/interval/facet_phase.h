@@ -20,7 +20,8 @@ class FacetPhases {
  private:
   const Scene& scene_;
   const double wavenumber_;
-  const std::vector<Transform> world_from_nodes_;
+  const double time_;                         // s
+  std::vector<Transform> world_from_nodes_;   // from the first smooth mesh on that is asked for
   std::vector<std::optional<double>> found_;  // by mesh ID
 };
 

@@ -12,15 +12,12 @@
 namespace echopath {
 namespace {
 
-// Returns nothing where all lobes are Lambert's.
-std::vector<DiffuseLobe> lobes_of(const Scene& scene) {
+// Returns the lobes by mesh ID, or nothing where those of all these meshes are Lambert's.
+std::vector<DiffuseLobe> lobes_of(const Scene& scene, std::span<const uint32_t> mesh_ids) {
   std::vector<DiffuseLobe> lobes;
-  bool has_any = false;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    lobes.emplace_back(*scene.node_of(id).material);
-    has_any = has_any || !lobes.back().is_lambert();
-  }
-  if (!has_any) lobes.clear();
+  const auto lobe = [&](uint32_t id) { return DiffuseLobe(*scene.node_of(id).material); };
+  if (std::ranges::all_of(mesh_ids, [&](uint32_t id) { return lobe(id).is_lambert(); })) return lobes;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) lobes.push_back(lobe(id));
   return lobes;
 }
 
@@ -35,20 +32,25 @@ uint64_t sliding_hits(const LocalPath& path) {
 
 }  // namespace
 
-PathPreparer::PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches)
-    : paths_(paths), patches_(std::move(patches)),
-      at_trace_(*paths.scene, paths.radar, patches_, paths.frame.transmitter, paths.frame.trace_time) {
+PathPreparer::PathPreparer(const Paths& paths, MeshesToPose meshes)
+    : paths_(paths), meshes_(std::move(meshes)),
+      at_trace_(*paths.scene, paths.radar, meshes_, paths.frame.transmitter, paths.frame.trace_time),
+      smooth_normals_(paths.scene->meshes().size()), lobes_(lobes_of(*paths.scene, meshes_.places->meshes)) {
   if (paths.frame.edges) edges_.emplace(*paths.scene);
-  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-    shapes_.push_back(shape_at_trace(id));
-    mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
-    mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
-    mesh_is_plane_.push_back(!paths.scene->node_of(id).smooth && !paths.scene->node_of(id).deformation);
-    mesh_from_trace_.push_back(at_trace_.linear(id).inverse());
-    smooth_normals_.push_back(normals_at_trace(id));
-    facet_area_.push_back(facet_area_at_trace(id));
+  for (const uint32_t id : meshes_.places->meshes) {
+    of_meshes_.push_back(mesh_at_trace(id));
+    smooth_normals_[id] = normals_at_trace(id);
   }
-  lobes_ = lobes_of(*paths.scene);
+}
+
+PathPreparer::MeshAtTrace PathPreparer::mesh_at_trace(uint32_t mesh_id) const {
+  const Node& node = paths_.scene->node_of(mesh_id);
+  return {shape_at_trace(mesh_id),
+          node.material->mirror,
+          paths_.scene->may_stretch(mesh_id),
+          !node.smooth && !node.deformation,
+          at_trace_.linear(mesh_id).inverse(),
+          facet_area_at_trace(mesh_id)};
 }
 
 bool PathPreparer::meets_lobe(int64_t path) const {
@@ -71,7 +73,7 @@ NormalsOfMeshes::value_type PathPreparer::normals_at_trace(uint32_t mesh_id) con
   if (!node.smooth) return nullptr;
   if (!node.deformation) return kept_vertex_normals(node.mesh);
   std::vector<Vec3> normals;
-  for (const uint32_t place : patches_[mesh_id].place) {
+  for (const uint32_t place : meshes_.patches[mesh_id].place) {
     const bool is_posed = place != SurfacePatch::kAbsent;
     normals.push_back(is_posed ? at_trace_.deformed_normals(mesh_id)[place] : Vec3(Vec3::Zero()));
   }
@@ -87,13 +89,14 @@ PathPreparer::Shape PathPreparer::shape_at_trace(uint32_t mesh_id) const {
 }
 
 LocalHit PathPreparer::hit(const Hit& hit) const {
-  const Shape& shape = shapes_[hit.mesh_id];
+  const MeshAtTrace& mesh = at(hit.mesh_id);
+  const Shape& shape = mesh.shape;
   const Triangle& triangle = shape.triangles[hit.triangle_id];
   LocalHit local;
   local.mesh_id = hit.mesh_id;
   local.triangle_id = hit.triangle_id;
   local.deformed = shape.deforms;
-  local.triangle = local.deformed ? patches_[hit.mesh_id].corners(triangle) : triangle;
+  local.triangle = local.deformed ? meshes_.patches[hit.mesh_id].corners(triangle) : triangle;
   local.u = hit.u;
   local.v = hit.v;
   local.corner = shape.vertices[local.triangle[0]];
@@ -101,7 +104,7 @@ LocalHit PathPreparer::hit(const Hit& hit) const {
   local.edge_v = shape.vertices[local.triangle[2]] - local.corner;
   local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
   local.normal = local.edge_u.cross(local.edge_v).normalized();
-  if (mesh_may_stretch_[hit.mesh_id]) {
+  if (mesh.may_stretch) {
     PosedHit posed;
     pose_facet(local, at_trace_, posed);
     local.trace_area = posed.edge_u.cross(posed.edge_v).norm();
@@ -126,7 +129,7 @@ LocalHit PathPreparer::edge_hit(const Hit& hit, int num_pieces) const {
 bool PathPreparer::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
   if (!smooth_normals_[hit.mesh_id]) return false;
   const std::vector<Vec3>& of_vertices = *smooth_normals_[hit.mesh_id];
-  const Triangle& triangle = shapes_[hit.mesh_id].triangles[hit.triangle_id];
+  const Triangle& triangle = at(hit.mesh_id).shape.triangles[hit.triangle_id];
   out = {of_vertices[triangle[0]], of_vertices[triangle[1]], of_vertices[triangle[2]]};
   return is_smooth_facet(hit.normal, out);
 }

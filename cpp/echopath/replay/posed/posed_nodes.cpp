@@ -45,11 +45,15 @@ void store_polarizations(const PosedScenes& scenes, bool of_receivers, PosedNode
 
 }  // namespace
 
-std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches,
-                                     const Vec3& origin, std::span<const double> times) {
+std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, const MeshesToPose& meshes, const Vec3& origin,
+                                     std::span<const double> times) {
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(times.size());
-  for (const double time : times) scenes->emplace_back(scene, radar, patches, origin, time);
+  const PlacingNodes nodes(scene, meshes.places->meshes);
+  for (const double time : times) {
+    scenes->emplace_back(scene, radar, origin, time);
+    scenes->back().add(meshes.places, nodes, meshes.patches);
+  }
   return scenes;
 }
 

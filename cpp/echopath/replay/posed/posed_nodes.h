@@ -13,9 +13,9 @@ namespace echopath {
 
 using PosedScenes = std::vector<PosedScene>;  // by node
 
-// Poses scene and radar at each of the times (s), as PosedScene does.
-std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches,
-                                     const Vec3& origin, std::span<const double> times);
+// Poses the radar and these meshes of the scene at each of the times (s), as PosedScene does.
+std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, const MeshesToPose& meshes, const Vec3& origin,
+                                     std::span<const double> times);
 
 struct PosedNodes {
   PosedNodes() = default;

@@ -45,7 +45,7 @@ PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& 
     : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer) {}
 
 std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(std::span<const double> times) const {
-  return pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
+  return pose_at(*paths_.scene, radar_, preparer_.meshes(), paths_.frame.transmitter, times);
 }
 
 PartlyPosedGrid PosedGrids::pose_partly(const TimeGrid& grid) const {
@@ -60,7 +60,7 @@ PartlyPosedGrid PosedGrids::pose_partly(FrameNodes nodes, int transmitter) const
     keep_one_transmitter(scenes->back(), transmitter);
   }
   PosedNodes posed(scenes);
-  return {{std::move(nodes), std::move(posed), transmitter}, std::move(scenes), *paths_.scene, preparer_.patches()};
+  return {{std::move(nodes), std::move(posed), transmitter}, std::move(scenes), *paths_.scene, preparer_.meshes().patches};
 }
 
 PosedNodes PosedGrids::pose(std::span<const double> times) const { return PosedNodes(scenes_at(times)); }
@@ -69,7 +69,7 @@ PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(times.size());
   for (size_t i = 0; i < times.size(); ++i) {
-    scenes->emplace_back(*paths_.scene, radars[i], preparer_.patches(), paths_.frame.transmitter, times[i]);
+    scenes->emplace_back(*paths_.scene, radars[i], preparer_.meshes(), paths_.frame.transmitter, times[i]);
   }
   return PosedNodes(std::move(scenes));
 }

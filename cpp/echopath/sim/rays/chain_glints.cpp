@@ -45,7 +45,7 @@ CellPhase along_axes(const FootprintPhaseOf<double>& phase) {
 class ChainGlintSearch {
  public:
   explicit ChainGlintSearch(const Paths& paths)
-      : paths_(paths), preparer_(paths, hit_patches(paths)),
+      : paths_(paths), preparer_(paths, touched_meshes(paths)),
         wavenumber_(kTwoPi * paths.radar.waveform.start_frequency / kSpeedOfLight) {}
 
   // Returns the glint that the cell of a path points at. `amplitude` is that of the path without a filter.

@@ -11,10 +11,10 @@ namespace echopath {
 class SurfaceTable {
  public:
   SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency);
-  const SurfaceModel& model(uint32_t mesh_id) const { return models_[mesh_id]; }
+  const SurfaceModel& model(uint32_t mesh_id) const { return models_[model_of_[mesh_id]]; }
   // Returns the model for a wave that meets the surface from the side of `normal`.
   const SurfaceModel& model(const Hit& hit, const Vec3& normal) const {
-    return backs_.empty() || !is_met_from_behind(hit, normal) ? models_[hit.mesh_id] : backs_.at(hit.mesh_id);
+    return backs_.empty() || !is_met_from_behind(hit, normal) ? model(hit.mesh_id) : backs_.at(model_of_[hit.mesh_id]);
   }
   bool is_mirror(uint32_t mesh_id) const { return mirror_of_.is_mirror(mesh_id); }
   // Returns the index of the flagged mirror on which a hit lies; -1 on other meshes.
@@ -30,11 +30,13 @@ class SurfaceTable {
   bool has_lobes() const { return has_lobes_; }
 
  private:
+  void add_model(const Material& material, double frequency);
   bool is_met_from_behind(const Hit& hit, const Vec3& normal) const;
 
   const EmbreeScene& geometry_;
-  std::vector<SurfaceModel> models_;
-  std::map<uint32_t, SurfaceModel> backs_;  // of sheets of several layers, by mesh ID
+  std::vector<SurfaceModel> models_;        // one for all meshes of a material
+  std::vector<uint32_t> model_of_;          // [mesh ID]
+  std::map<uint32_t, SurfaceModel> backs_;  // of sheets of several layers, by their model
   MirrorIndex mirror_of_;
   std::vector<double> smooth_width_;
   bool has_smooth_ = false, has_lobes_ = false, may_scatter_ = false;

@@ -53,7 +53,7 @@ struct FrameCheck::View {
 
   View(const FrameCheck& check, std::shared_ptr<const EmbreeScene> geometry_there, PosedScene whole)
       : geometry(std::move(geometry_there)), pose(std::move(whole)),
-        rim(*check.paths_.scene, check.probe_radar_, check.preparer_.patches(), check.origin_, pose.time()),
+        rim(*check.paths_.scene, check.probe_radar_, check.preparer_.meshes(), check.origin_, pose.time()),
         probe(check.preparer_, pose, rim, *geometry, check.walk_, check.radio_.wavenumber) {}
 };
 
@@ -66,7 +66,7 @@ struct FrameCheck::Sweep {
 
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(one_channel(radar)),
-      preparer_(paths, whole_patches(*paths.scene)), walk_(*paths.scene, preparer_.smooth_normals()),
+      preparer_(paths, whole_meshes(*paths.scene)), walk_(*paths.scene, preparer_.smooth_normals()),
       radio_(radio_constants(paths, radar)), sheets_(preparer_, radio_.wavelength), specular_(specular),
       mesh_moves_(moving_meshes(*paths.scene)) {
   sheets_move_ = std::ranges::any_of(paths.passes, [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
@@ -138,7 +138,7 @@ std::shared_ptr<const EmbreeScene> FrameCheck::posed_geometry(size_t index, cons
 }
 
 PosedNodes FrameCheck::posed_nodes(std::span<const double> times) const {
-  return PosedNodes(pose_at(*paths_.scene, first_radar_, preparer_.patches(), paths_.frame.transmitter, times));
+  return PosedNodes(pose_at(*paths_.scene, first_radar_, preparer_.meshes(), paths_.frame.transmitter, times));
 }
 
 void FrameCheck::pose(size_t first, size_t count, Job* job) {

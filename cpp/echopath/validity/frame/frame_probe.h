@@ -47,7 +47,7 @@ struct ProbeScratch {
 
 class FrameProbe {
  public:
-  // preparer: of whole meshes (hit_patches.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to the
+  // preparer: of whole meshes (touched_meshes.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to the
   // origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
   FrameProbe(const PathPreparer& preparer, const PosedScene& pose, const PosedScene& rim, const EmbreeScene& geometry,
              const SurfaceWalk& walk, double wavenumber)

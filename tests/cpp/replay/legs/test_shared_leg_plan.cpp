@@ -4,7 +4,7 @@
 #include "cpp/replay/legs/all_kinds_of_paths.h"
 #include "cpp/replay/small_arrays.h"
 #include "echopath/replay/evaluate/shared_leg_plan.h"
-#include "echopath/replay/posed/hit_patches.h"
+#include "echopath/replay/posed/touched_meshes.h"
 
 namespace echopath::test_shared_leg_plan {
 namespace {
@@ -17,7 +17,7 @@ struct SingleBounceCounts {
 };
 
 SingleBounceCounts single_bounce_counts(const Paths& paths) {
-  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   SharedLegPlanner planner;
   planner.begin(paths, preparer, SpecularPoints::kMaterial, true);
   const SharedLegPlan& plan = planner(all_of(paths));
@@ -60,7 +60,7 @@ TEST(SharedLegPlan, RaysShareLegsAndPoints) {
   const Radar radar = array();
   const Paths paths = record(radar);
   const std::vector<int64_t> indices = all_of(paths);
-  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   SharedLegPlanner planner;
   planner.begin(paths, preparer, SpecularPoints::kMaterial, false);
   const SharedLegPlan& plan = planner(indices);

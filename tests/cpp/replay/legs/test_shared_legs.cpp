@@ -6,7 +6,7 @@
 #include "cpp/support/path_by_path.h"
 #include "echopath/base/constants.h"
 #include "echopath/replay/evaluate/path_evaluator.h"
-#include "echopath/replay/posed/hit_patches.h"
+#include "echopath/replay/posed/touched_meshes.h"
 
 namespace echopath::test_shared_legs {
 namespace {
@@ -199,13 +199,13 @@ TEST(SharedLegs, PathsThatAreAskedForTwiceAreEvaluatedTwice) {
 TEST(SharedLegs, UnfilteredAmplitudesAreThoseOfCellsWithoutSize) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero(), 0.25);
   const Paths paths = record(radar, false);
-  const PathPreparer preparer(paths, hit_patches(paths));
+  const PathPreparer preparer(paths, touched_meshes(paths));
   RadioConstants radio = radio_constants(paths, radar);
   radio.cells.side = 0.0;
   const SheetPassages sheets(preparer, radio.wavelength);
   const std::vector<int64_t> indices = all_of(paths);
   const PosedNodes nodes(
-      pose_at(*paths.scene, radar, preparer.patches(), paths.frame.transmitter, {&paths.frame.trace_time, 1}));
+      pose_at(*paths.scene, radar, preparer.meshes(), paths.frame.transmitter, {&paths.frame.trace_time, 1}));
   std::vector<double> lengths(indices.size()), unfiltered(indices.size());
   std::vector<std::complex<double>> amplitudes(indices.size());
   ChannelNodes to{lengths.data(), amplitudes.data(), indices.size(), 0, 1.0};

@@ -19,7 +19,7 @@ class PosedScene {
   // Poses all vertices and no antennas; the origin is that of the world. Raises invalid_argument when a motion is not
   // defined at `time` (s), or takes something out of the range of coordinates (base/range_of_coordinates.h).
   PosedScene(const Scene& scene, double time);
-  // Poses also the antennas of `radar`, which must outlive it, but of the meshes only these, the others may not be asked for.
+  // Poses also the antennas of `radar`, which must outlive it, but of the meshes these alone; no others may be asked for.
   // Relative coordinates count from `origin` (m, world). Raises as the constructor above.
   PosedScene(const Scene& scene, const Radar& radar, const MeshesToPose& meshes, const Vec3& origin, double time);
   // Poses the antennas as the constructor above, but no meshes: add() poses these.

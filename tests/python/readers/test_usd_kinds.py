@@ -120,6 +120,16 @@ def test_of_a_subdivision_surface_the_cage_is_taken_and_that_is_told(tmp_path, s
     assert any("control cage" in note for note in model.notes) is cage
 
 
+def test_scopes_and_prims_without_a_type_name_what_is_below_them(tmp_path):
+    """Both walls had been children of the stage, as "wall" and "wall_2"."""
+    wall = f'def Mesh "wall"\n{{\n{TRIANGLE}}}\n'
+    districts = f'def Scope "north"\n{{\n{wall}}}\ndef "south"\n{{\n{wall}}}\n'
+    paints = 'def Scope "Looks"\n{\ndef Material "paint"\n{\n}\n}\n'
+    _, scene = loaded(tmp_path, f'def Xform "town"\n{{\n{districts}{paints}}}\n')
+    assert [node.name for node in scene.nodes if node.mesh] == ["m/town/north/wall", "m/town/south/wall"]
+    assert len(scene.nodes) == 6
+
+
 def test_what_turns_by_half_a_turn_from_sample_to_sample_goes_on(tmp_path):
     """Quaternions of such turns have a product of 0, to which neither sign is nearer."""
     _, scene = loaded(tmp_path, 'def Xform "door"\n{\n    matrix4d xformOp:transform.timeSamples = {\n'

@@ -27,10 +27,10 @@ def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None)
 
     Usual objects are those that `families` has by itself, children of the scene's root. One that is larger than a road vehicle
     (19 m long, and 4.5 m across, or slender, as a pole) and whose parts stand apart, as those of a parked row do, gives way to
-    its parts. A child that surrounds the radar, as a town, a room or a tunnel does, is no object: here the things in it are, the
-    nodes below the first one that has several, or below a larger one whose parts stand apart, as far as they are no larger
-    than a vehicle. What carries the radar is no larger itself, and has no things. No thing or part is what is a mirror or such
-    as `mark_mirrors` would flag.
+    its parts; of groups in it that reach through each other, what is in them counts. A child that surrounds the radar, as a
+    town, a room or a tunnel does, is no object: here the things in it are, the nodes below the first one that has several, or
+    below a larger one whose parts stand apart, as far as they are no larger than a vehicle. What carries the radar is no larger
+    itself, and has no things. No thing or part is what is a mirror or such as `mark_mirrors` would flag.
 
     scene: of `Scene` or `load_scene`; radar: with its antennas in the scene
     time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0.
@@ -70,8 +70,7 @@ def _names_of(scene: Scene, radar: _core.Radar, usual: Things, time: float) -> l
 def _things_of_usual(own: _Part, child: _Part) -> list[_Part]:
     """Of a usual object, some or all of a child of the root: a child of which the rest are mirrors, as a room, is as little an
     object as one around the radar, where its parts stand apart."""
-    below = own.parts()
-    if len(own.meshes) < len(child.meshes) and (len(below) == 1 or _stand_apart([one.box for one in below])):
+    if len(own.meshes) < len(child.meshes) and _stand_apart(below := _expanded(own.parts())):
         return _things_among(below)
     return _things_among([own], keeps_larger=True)
 
@@ -121,14 +120,18 @@ def _things_among(parts: list[_Part], keeps_larger: bool = False) -> list[_Part]
 
     keeps_larger: whether larger ones whose parts do not are among them
     """
-    found = []
+    return [part for part in _expanded(parts) if part.is_thing or keeps_larger]
+
+
+def _expanded(parts: list[_Part]) -> list[_Part]:
+    """Some parts, in the place of each larger one what is below it, expanded likewise, where all that stands apart: the groups
+    of a town by kind, such as its bins and its trams, reach through each other, while what is in them does not."""
+    expanded = []
     for part in parts:
         below = [] if part.is_thing else part.parts()
-        if len(below) > 1 and _stand_apart([one.box for one in below]):
-            found += _things_among(below, keeps_larger)
-        elif part.is_thing or keeps_larger:
-            found.append(part)
-    return found
+        finer = _expanded(below) if len(below) > 1 else []
+        expanded += finer if finer and _stand_apart(finer) else [part]
+    return expanded
 
 
 def _depth_of_several(names: list[list[str]]) -> int:
@@ -137,12 +140,12 @@ def _depth_of_several(names: list[list[str]]) -> int:
     return next((depth for depth in range(1, deepest) if len({tuple(name[:depth]) for name in names}) > 1), deepest)
 
 
-def _stand_apart(boxes: list[Box]) -> bool:
-    """Whether more than half of the boxes are farther than GAP from all others."""
-    lows, highs = map(np.array, zip(*boxes))
+def _stand_apart(parts: list[_Part]) -> bool:
+    """Whether the boxes of more than half of the parts are farther than GAP from all others."""
+    lows, highs = map(np.array, zip(*(part.box for part in parts)))
     num_apart = 0
-    for first in range(0, len(boxes), CHUNK):
+    for first in range(0, len(parts), CHUNK):
         some = slice(first, first + CHUNK)
         gaps = np.maximum(lows[None] - highs[some, None], lows[some, None] - highs[None]).max(axis=2)
         num_apart += np.count_nonzero(np.count_nonzero(gaps <= GAP, axis=1) == 1)  # itself alone
-    return 2 * num_apart > len(boxes)
+    return 2 * num_apart > len(parts)

@@ -70,6 +70,19 @@ def test_a_group_of_the_scene_whose_parts_stand_apart_gives_way_to_them():
     assert ep.find_objects(scene, make_radar()) == {f"car_{n}": f"row/car_{n}" for n in range(4)} | {"tree": "tree"}
 
 
+def test_things_in_groups_that_reach_through_each_other_are_found():
+    """Bins along both sides of a street and trams between them, each kind below a node of its own, as in files of towns."""
+    scene = ep.Scene()
+    town = scene.add(None, name="town")
+    bins, trams = (scene.add(None, name=name, parent=town) for name in ("bins", "trams"))
+    for number in range(10):
+        _add(scene, bins, f"bin_{number}", (0.6, 0.6, 1.1), (8.0 + 3.0 * number, 4.0 if number % 2 else -4.0, 0.5))
+    for number in range(2):
+        _add(scene, trams, f"tram_{number}", (10.0, 2.0, 3.0), (14.0 + 14.0 * number, 0.0, 1.5))
+    found = {name: f"town/{name[:-2]}s/{name}" for name in (*(f"bin_{n}" for n in range(10)), "tram_0", "tram_1")}
+    assert ep.find_objects(scene, make_radar()) == found
+
+
 def test_the_vehicle_that_carries_the_radar_has_no_things():
     scene = ep.Scene()
     own = scene.add(None, name="own")

@@ -45,11 +45,11 @@ def read(path: Path, options: ReadOptions) -> Model:
         tree.note("no normals say that its meshes stand for curved surfaces: their facets are flat, unless smooth=True")
     if any(part.mesh.num_removed_triangles for part in parts):
         tree.note("triangles without area in the first frame are left out of all frames")
-    groups = Groups(tree)
+    groups = Groups(tree, parts)
     for part in parts:
         deformation = _sequence(path, times, part.vertices, clock, tree) if animation else None
-        tree.add(part.name or (path.name if path.is_dir() else path.stem), groups.of_object(part.object), mesh=part.mesh,
-                 deformation=deformation, foreign_material=part.material, smooth=part.smooth)
+        parent, name = groups.place_of(part, part.name or (path.name if path.is_dir() else path.stem))
+        tree.add(name, parent, mesh=part.mesh, deformation=deformation, foreign_material=part.material, smooth=part.smooth)
     return tree.model(format="OBJ frames" if path.is_dir() else "NPZ frames", unit=axes.unit, up=axes.up, animations=names,
                       animation=animation, duration=float(times[-1] - times[0]) if animation else 0.0)
 

@@ -1,6 +1,7 @@
 """What mesh files (OBJ, PLY, STL, OFF) hold, as meshes in the axes and units of a scene."""
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,17 +90,22 @@ def parts_of_frames(files: Sequence[Path], axes: Axes) -> list[MovedPart]:
 
 
 class Groups:
-    """Nodes of objects and of groups of several materials, each made once."""
+    """Nodes of the objects and groups that parts lie in, each made once."""
 
-    def __init__(self, tree: Tree):
+    def __init__(self, tree: Tree, parts: Sequence[MeshPart] | Sequence[MovedPart]):
         self._tree = tree
+        self._num_materials = Counter((part.object, part.name) for part in parts)
         self._made: dict[tuple[str, ...], int] = {}
 
-    def of_object(self, name: str) -> int:
-        return self._once((name,), name, -1) if name else -1
+    def place_of(self, part: MeshPart | MovedPart, name: str) -> tuple[int, str]:
+        """(the node that a part lies in, its name there): of groups of several materials the name of its own.
 
-    def of_group(self, object_name: str, name: str) -> int:
-        return self._once((object_name, name), name, self.of_object(object_name))
+        name: of its group
+        """
+        parent = self._once((part.object,), part.object, -1) if part.object else -1
+        if self._num_materials[part.object, part.name] == 1:
+            return parent, name
+        return self._once((part.object, name), name, parent), part.material or "no_material"
 
     def _once(self, key: tuple[str, ...], name: str, parent: int) -> int:
         if key not in self._made:

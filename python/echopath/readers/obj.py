@@ -1,7 +1,6 @@
 """Mesh files (OBJ, PLY, STL, OFF) as models: a node for each group, taken apart by material."""
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
 
 from .axes import Axes
@@ -18,13 +17,9 @@ def read(path: Path, options: ReadOptions) -> Model:
     axes = Axes(options)
     parts, libraries = parts_of_file(path, axes)
     tree = Tree(options)
-    nodes = Groups(tree)
-    num_materials = Counter((part.object, part.name) for part in parts)
+    groups = Groups(tree, parts)
     for part in parts:
-        group = part.object, part.name
-        parent, name = nodes.of_object(part.object), part.name
-        if num_materials[group] > 1:
-            parent, name = nodes.of_group(*group), part.material or "no_material"
+        parent, name = groups.place_of(part, part.name)
         tree.add(name, parent, mesh=part.mesh, foreign_material=part.material, smooth=part.smooth)
     for sentence in _notes_of_libraries(path, libraries, {part.material for part in parts} - {""}):
         tree.note(sentence)

@@ -1,6 +1,7 @@
 """Foreign files as models: the same mesh through every format gives the same hits; motions and materials of USD and frames."""
 from __future__ import annotations
 
+import shutil
 import sys
 
 import numpy as np
@@ -310,6 +311,11 @@ def test_groups_of_one_name_are_kept_apart_by_their_objects(tmp_path):
     scene.add(ep.load_model(tmp_path / "cars.obj"), name="m")
     assert [mesh.name for mesh in scene.meshes] == ["m/car1/wheel/rubber", "m/car1/wheel/steel", "m/car2/wheel", "m/car2/rest"]
     assert [name for name, _ in ep.load_meshes(tmp_path / "cars.obj")] == ["car1/wheel", "car2/wheel", "car2/rest"]
+    (tmp_path / "frames").mkdir()
+    for number in (0, 1):
+        shutil.copy(tmp_path / "cars.obj", tmp_path / "frames" / f"{number}.obj")
+    scene.add(ep.load_model(tmp_path / "frames"), name="f")
+    assert [mesh.name[1:] for mesh in scene.meshes[4:]] == [mesh.name[1:] for mesh in scene.meshes[:4]]
 
 
 def test_frames_that_do_not_fit_together_are_refused_by_name(tmp_path):

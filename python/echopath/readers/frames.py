@@ -47,7 +47,7 @@ def read(path: Path, options: ReadOptions) -> Model:
         tree.note("triangles without area in the first frame are left out of all frames")
     groups = Groups(tree, parts)
     for part in parts:
-        deformation = _sequence(path, times, part.vertices, clock, tree) if animation else None
+        deformation = _sequence(path, times, part.vertices, clock) if animation else None
         parent, name = groups.place_of(part, part.name or (path.name if path.is_dir() else path.stem))
         tree.add(name, parent, mesh=part.mesh, deformation=deformation, foreign_material=part.material, smooth=part.smooth)
     return tree.model(format="OBJ frames" if path.is_dir() else "NPZ frames", unit=axes.unit, up=axes.up, animations=names,
@@ -61,14 +61,11 @@ def _mesh(path: Path, vertices, triangles) -> _core.Mesh:
         raise _core.FileError(f"{path}: {error}") from None
 
 
-def _sequence(path: Path, times, vertices, clock: Clock, tree: Tree) -> _core.VertexSequence:
+def _sequence(path: Path, times, vertices, clock: Clock) -> _core.VertexSequence:
     try:
-        sequence, jump = repeated(times, vertices, clock)
+        return repeated(times, vertices, clock)
     except (ValueError, TypeError) as error:
         raise _core.FileError(f"{path}: {error}") from None
-    if jump:
-        tree.note(f"the last frame is not the first: vertices jump by up to {jump:.2g} m wherever the loop begins anew")
-    return sequence
 
 
 # --- folders ---

@@ -16,6 +16,7 @@ from ..arguments.number_rules import unit_rule
 from ..base.process.callers import warn_user
 from ..base.storage.files import require_readable
 from ..base.storage.pointers import pointers_are_told
+from .loops import note_of_jump
 from .material_names import Meaning, checked_materials, note_of_unused
 from .model import Model
 from .options import ReadOptions
@@ -77,7 +78,8 @@ def read_model(file: Path, options: ReadOptions) -> Model:
     except RecursionError:
         raise _core.FileError(f"{file}: is nested too deeply") from None
     _require_surfaces(file, model)
-    notes = note_of_unused(options.materials, [node.foreign_material for node in model.nodes])
+    with np.errstate(all="ignore"):
+        notes = [*note_of_unused(options.materials, [node.foreign_material for node in model.nodes]), *note_of_jump(model)]
     return dataclasses.replace(model, notes=(*model.notes, *notes)) if notes else model
 
 

@@ -116,19 +116,17 @@ def deformed(times, vertices, clock: Clock) -> _core.VertexSequence:
     return _core.VertexSequence(np.concatenate([ends[:1], keys, ends[1:]]), held, "linear", **_loop_of(clock))
 
 
-def repeated(times, vertices, clock: Clock) -> tuple[_core.VertexSequence, float]:
-    """(VertexSequence, jump at its seam in m) of frames [T, V, 3] in m at `times` [T] s, cubic between them.
+def repeated(times, vertices, clock: Clock) -> _core.VertexSequence:
+    """A VertexSequence of frames [T, V, 3] in m at `times` [T] s, cubic between them.
 
     A loop whose last frame is the first goes on through its seam as smoothly as elsewhere.
     """
-    keys, jump = clock.times(times), 0.0
+    keys = clock.times(times)
     if clock.period is None:
         keys = keys - clock.offset
-    else:
-        jump = float(np.abs(vertices[-1] - vertices[0]).max())
-        if jump <= RIGID * float(np.ptp(vertices[0], axis=0).max()):
-            keys, vertices, jump = *_with_seam(keys, vertices, clock.period), 0.0
-    return _core.VertexSequence(keys, vertices, **_loop_of(clock)), jump
+    elif np.abs(vertices[-1] - vertices[0]).max() <= RIGID * np.ptp(vertices[0], axis=0).max():
+        keys, vertices = _with_seam(keys, vertices, clock.period)
+    return _core.VertexSequence(keys, vertices, **_loop_of(clock))
 
 
 def _with_seam(keys, vertices, period: float) -> tuple[np.ndarray, np.ndarray]:

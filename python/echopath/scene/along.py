@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
+from ..readers.loops import JUMPS, LAST, all_moving, poses_of_loop
 from ..readers.model import Model
 from ..readers.played import PlayedCurve
 
@@ -30,8 +31,9 @@ def model_along(model: Model, trajectory, way: float | None) -> Model:
     player = _Player(trajectory, period, way)
     nodes = [dataclasses.replace(node, motion=player.motion(node.motion), deformation=player.deformation(node.deformation))
              for node in model.nodes]
-    note = f"its animation of {period:g} s is played once in {way:.3g} m of the trajectory"
-    played = dataclasses.replace(model, nodes=tuple(nodes), motion=trajectory, notes=(*model.notes, note))
+    notes = [note for note in model.notes if not note.startswith(JUMPS)]  # on its way it does not
+    notes.append(f"its animation of {period:g} s is played once in {way:.3g} m of the trajectory")
+    played = dataclasses.replace(model, nodes=tuple(nodes), motion=trajectory, notes=tuple(notes))
     return played.placed(yaw=-direction) if abs(direction) > TURNED else played
 
 
@@ -42,21 +44,11 @@ def _period_of(model: Model) -> float:
             if not isinstance(moving, (type(None), _core.CurveMotion, _core.Skin, _core.MorphTargets)):
                 rule = "animated by curves (glTF, USD) to go along a trajectory"
                 raise refused(ValueError, "model", rule, type(moving).__name__)
-    periods = {moving.period for moving in _all_moving(model)}
+    periods = {moving.period for moving in all_moving(model)}
     if len(periods) != 1 or None in periods:
         raise ValueError("model: must have a looped animation (load_model(..., loop=True)) to go along a trajectory, "
                          f"got {model.animation!r}")
     return float(periods.pop())
-
-
-def _all_moving(model: Model):
-    """What follows the animation's clock: the motions of nodes and joints, and the shares of morph targets."""
-    for node in model.nodes:
-        skin = node.deformation if isinstance(node.deformation, _core.Skin) else None
-        joints = [] if skin is None else [*(joint.motion for joint in skin.joints), skin.shape]
-        for moving in (node.motion, *joints, None if skin else node.deformation):
-            if moving is not None:
-                yield moving
 
 
 class _Player:
@@ -95,7 +87,7 @@ class _Player:
 
 def _way_of(model: Model, period: float) -> tuple[float | None, float]:
     """(m that a loop goes, None where nothing tells; the direction in rad in which it goes, in the model's axes)."""
-    poses = _poses(model, period)
+    poses = poses_of_loop(model, period, np.linspace(0.0, LAST, SAMPLES + 1))
     moved = (poses[-1] - poses[0])[:, :2]
     drift, height = moved.mean(axis=0), float(np.ptp(poses[..., 2]))
     gone, apart = float(np.linalg.norm(drift)), float(np.sqrt(np.mean(np.sum((moved - drift) ** 2, axis=1))))
@@ -108,14 +100,3 @@ def _way_of(model: Model, period: float) -> tuple[float | None, float]:
     ahead = -np.median(steps, axis=0) * SAMPLES if steps else np.zeros(2)
     way = float(np.linalg.norm(ahead))
     return (way, math.atan2(ahead[1], ahead[0])) if way >= LEAST_WAY * height else (None, 0.0)
-
-
-def _poses(model: Model, period: float):
-    """Vertices [SAMPLES + 1, V, 3] in m of all meshes over a loop."""
-    from .scene import Scene
-
-    scene = Scene()
-    scene.add(dataclasses.replace(model, motion=None), name="model")
-    begin = -min(moving.offset for moving in _all_moving(model))
-    times = begin + period * np.linspace(0.0, 1.0 - 1e-9, SAMPLES + 1)
-    return np.array([np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes]) for time in times])

@@ -54,6 +54,7 @@ def test_transforms_and_points_of_usd_go_on_for_ever(tmp_path, offset):
     (tmp_path / "stage.usda").write_text(STAGE)
     model = ep.load_model(tmp_path / "stage.usda", loop=True, offset=offset)
     assert (model.duration, model.animation) == (1.0, "timeline")
+    assert any(f"vertices jump by up to {np.hypot(4, 2):.2g} m wherever the loop" in note for note in model.notes)
     scene = scene_of(model)
     for time in (0.0, 0.25, 0.85, 7.3, LATE, -3.25):
         x, z = 4.0 * at(time + offset, 1.0, 0.0, 1.0), 1.0 + 2.0 * at(time + offset, 1.0, 0.2, 0.4)

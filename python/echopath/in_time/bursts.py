@@ -49,6 +49,11 @@ class Burst(NamedTuple):
         """s, when the next chirp would begin."""
         return self.start_time + chirps_duration(self.radar)
 
+    @property
+    def last_sample(self) -> float:
+        """s, when it has been taken: a frame of a sequence may begin then, before the next chirp would."""
+        return self.start_time + self.radar.frame_duration
+
     def goes_on_from(self, before: Burst) -> bool:
         """Whether the scatterers of a burst before are known to go on in this one."""
         if self.speckle is None or before.speckle is None:
@@ -186,9 +191,10 @@ def _followed(before: Burst | None, burst: Burst) -> Burst:
     if len(before.radar.transmitters) != len(burst.radar.transmitters) or \
             len(before.radar.receivers) != len(burst.radar.receivers):
         raise ValueError("frames: must all have the antennas of the first, got another number of them")
-    if burst.start_time < before.end_time - 0.5 * chirp_period(burst.radar):
+    if burst.start_time < min(before.last_sample - 0.5 / burst.radar.waveform.sampling_rate,
+                              before.end_time - 0.5 * chirp_period(burst.radar)):
         raise ValueError(f"frames: must come one after the other, got one that starts at {burst.start_time:g} s behind one that "
-                         f"ends at {before.end_time:g} s")
+                         f"ends at {before.last_sample:g} s")
     return burst
 
 

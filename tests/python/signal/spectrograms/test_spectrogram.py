@@ -139,6 +139,17 @@ def test_windows_go_on_over_frames_without_speckle(pendulum):
         ep.spectrogram(pendulum, span_frames="always")
 
 
+def test_frames_may_follow_as_closely_as_those_of_a_sequence():
+    """The next one begins with the last sample, before the chirp interval is over: its chirps do not go on evenly."""
+    radar = build_radar(num_chirps=32)
+    cubes = [random_cube(radar, seed) for seed in range(2)]
+    found = ep.spectrogram(cubes, radar, start_times=[0.0, radar.frame_duration], window_length=32)
+    alone = [ep.spectrogram(cube, radar, window_length=32).power for cube in cubes]
+    assert len(found.trains) == 2 and np.array_equal(found.power, np.concatenate(alone))
+    assert len(ep.range_time(cubes, radar, start_times=[0.0, radar.frame_duration]).times) == 2
+    found.plot()
+
+
 def test_what_cannot_follow_is_refused():
     radar, cubes = build_radar(num_chirps=32), []
     cubes = [random_cube(radar, seed) for seed in range(2)]

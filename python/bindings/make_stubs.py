@@ -25,11 +25,22 @@ TARGET = Path(__file__).resolve().parents[1] / "echopath" / "_core.pyi"
 HEAD = ('"""The C++ core of echopath; use it through the package.\n\n'
         'Written by python/bindings/make_stubs.py: do not edit.\n"""\n')
 IMPORTS = "from collections.abc import Sequence\nfrom numpy.typing import ArrayLike\nimport types\n" + TYPE_IMPORTS
+# pybind11-stubgen imports them from the package, which has them from here: type checkers would find neither.
+ERRORS = '''class DeviceError(RuntimeError):
+    """
+    A device failed; a RuntimeError.
+    """
+class FileError(OSError):
+    """
+    A file cannot be read or written; an OSError.
+    """
+'''
 # What pybind11-stubgen writes -> what a reader and a type checker make more of.
 PLAIN = [
     (r"\A\"\"\".*?\"\"\"\n", HEAD),                                       # of the module
     (r"from \. import bench\n", ""),
-    (r"(?m)^(__all__: )", r"bench: types.ModuleType\n\1"),                # only echopath.bench uses it
+    (r"from echopath import (?:DeviceError|FileError)\n", ""),
+    (r"(?m)^(__all__: .*\n)", rf"bench: types.ModuleType\n\1{ERRORS}"),   # only echopath.bench uses the first
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
     (r"typing\.SupportsIndex", "int"),

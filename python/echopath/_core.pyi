@@ -12,14 +12,20 @@ from echopath.frame_file.frame import LeftOut
 from echopath.receiver import Receiver
 from typing import Literal
 import collections.abc
-from echopath import DeviceError
-from echopath import FileError
 import numpy
 import numpy.typing
 import os
 import typing
 bench: types.ModuleType
 __all__: list[str] = ['AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'HIGHEST_FREQUENCY', 'Isotropic', 'Joint', 'KeptGeometry', 'KeptStillRays', 'KeyframeMotion', 'LOWEST_FREQUENCY', 'Layer', 'LinearMotion', 'LiveTrace', 'MESH_SUFFIXES', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'RECORD_SETTINGS', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'amplitude_tolerance', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'main_lobe_half_width', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_cut_from_mirrors', 'meshes_of_large_planes', 'meshes_of_objects', 'meshes_of_usual_objects', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'slot_phasors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+class DeviceError(RuntimeError):
+    """
+    A device failed; a RuntimeError.
+    """
+class FileError(OSError):
+    """
+    A file cannot be read or written; an OSError.
+    """
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.

@@ -44,6 +44,7 @@ WRONG = {
     "keyword.py": "import echopath as ep\nep.ChirpSequence(num_sample=5)\nep.ChirpSequence(num_samples='5')\n",
     "replaced.py": "import echopath as ep\nep.ChirpSequence().replace(num_chirp=4)\n"
                    "chirps: ep.ChirpSequence = ep.ChirpSequence().replace(num_chirps=4)\nchirps.num_chirps = 5\n",
+    "errors.py": "import echopath as ep\nep.FileError('x').reason\nep.DeviceError('x').reason\n",
     "foreign.py": """import echopath as ep
 def look(map: ep.RangeDoppler, film: ep.Spectrogram, labels: ep.Labels, truth: ep.Truth, stored: ep.StoredSequence) -> None:
     for axes in (map.plot(vmin=-120.0), film.plot(ax=map.plot()), labels.plot("objects")):
@@ -131,6 +132,11 @@ def test_type_checker_knows_axes_and_arrays_of_other_libraries(complaints):
 def test_type_checker_knows_which_names_there_are(complaints):
     told = complaints["name.py"]
     assert len(told) == 2 and 'has no attribute "simulat"' in told[0] and 'has no attribute "opem"' in told[1], told
+
+
+def test_type_checker_knows_the_errors(complaints):
+    told = complaints["errors.py"]
+    assert len(told) == 2 and '"FileError" has no attribute' in told[0] and '"DeviceError" has no attribute' in told[1], told
 
 
 def test_replace_has_the_arguments_of_the_constructor(complaints):

@@ -1,5 +1,4 @@
 """The folder of a dataset: one folder for each scene, with a record of what is done (layout: data/README.md)."""
-from __future__ import annotations
 
 import hashlib
 import json

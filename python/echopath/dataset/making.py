@@ -1,5 +1,4 @@
 """Makes a dataset of a template, or goes on where that was ended."""
-from __future__ import annotations
 
 import os
 import shutil

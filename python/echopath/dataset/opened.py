@@ -1,5 +1,4 @@
 """Datasets that are there, read when a frame is asked for."""
-from __future__ import annotations
 
 import json
 import operator
@@ -66,7 +65,7 @@ class Dataset:
         return self._source.keep
 
     @checked(self=anything, folder=optional(folder_rule))
-    def remade(self, folder: str | os.PathLike[str] | None = None) -> Dataset:
+    def remade(self, folder: str | os.PathLike[str] | None = None) -> "Dataset":
         """The same frames, each simulated again from the template when it is asked for, with all that keep = "all" keeps.
 
         The bits are those of a dataset of this template with keep = "all". So a dataset that keeps maps or labels has exports
@@ -77,7 +76,7 @@ class Dataset:
         template = self.template if folder is None else Template(self.template.path, Path(folder))
         return self._with(self.numbers, Remade(template))
 
-    def _with(self, numbers: list[int], source: Source | None = None) -> Dataset:
+    def _with(self, numbers: list[int], source: Source | None = None) -> "Dataset":
         return Dataset(self.folder, self.template, numbers, source or self._source)
 
     def __len__(self) -> int:
@@ -86,9 +85,9 @@ class Dataset:
     @overload
     def __getitem__(self, place: int) -> DatasetFrame: ...
     @overload
-    def __getitem__(self, place: slice | Sequence[int] | NDArray[np.integer[Any]]) -> Dataset: ...
+    def __getitem__(self, place: slice | Sequence[int] | NDArray[np.integer[Any]]) -> "Dataset": ...
 
-    def __getitem__(self, place: int | slice | Sequence[int] | NDArray[np.integer[Any]]) -> DatasetFrame | Dataset:
+    def __getitem__(self, place: int | slice | Sequence[int] | NDArray[np.integer[Any]]) -> "DatasetFrame | Dataset":
         """The DatasetFrame at a place, or a Dataset of a slice or of places [N].
 
         Raises IndexError, TypeError naming `place` for what is neither, ep.FileError for a damaged file.
@@ -110,7 +109,7 @@ class Dataset:
     def __iter__(self) -> Iterator[DatasetFrame]:
         return (self[place] for place in range(len(self)))
 
-    def split(self, name: str) -> Dataset:
+    def split(self, name: str) -> "Dataset":
         """The frames of a split. Raises ValueError naming `name` for one that the template has not."""
         if name not in self.template.settings.split:
             names = " or ".join(f"'{one}'" for one in self.template.settings.split)
@@ -118,7 +117,7 @@ class Dataset:
         per_scene = self.template.settings.frames
         return self._with([number for number in self.numbers if self.template.split_of(number // per_scene) == name])
 
-    def of_scene(self, scene: int) -> Dataset:
+    def of_scene(self, scene: int) -> "Dataset":
         """The frames here of the scene with that number; none where there are none. Raises nothing."""
         per_scene = self.template.settings.frames
         return self._with([number for number in self.numbers if number // per_scene == scene])
@@ -165,7 +164,7 @@ class Dataset:
         if not 0 <= _whole("scene", "a whole number", scene) < self.template.settings.scenes:
             raise IndexError(f"scene: must be from 0 to {self.template.settings.scenes - 1}, got {scene}")
 
-    def to_xarray(self) -> XarrayDataset:
+    def to_xarray(self) -> "XarrayDataset":
         """The maps of all frames as an xarray.Dataset that reads a frame when a value of it is asked for.
 
         power: f32 [frame, velocity, range] W, mean over channels, with noise; not with keep="labels"

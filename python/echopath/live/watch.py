@@ -54,6 +54,10 @@ class Watch:
     def __exit__(self, kind, error, trace) -> None:
         self.stop()
 
+    def __repr__(self) -> str:
+        ended = f"ended by {self._error!r}" if self._error is not None else "stopped" if self._stopping else "running"
+        return f"Watch({ended}, {f'change {self._shown}' if self._shown >= 0 else 'nothing'} shown in full)"
+
     @checked(self=anything, timeout=optional(positive("s")))
     def wait(self, timeout: float | None = None) -> bool:
         """Waits until the full view of the latest change was shown. timeout: s, None: for ever. Returns whether it was.

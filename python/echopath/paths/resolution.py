@@ -1,5 +1,4 @@
 """Which powers the rays of a trace know, of each object and ghost family, and what would make them know the others."""
-from __future__ import annotations
 
 import dataclasses
 import math
@@ -26,7 +25,10 @@ SURROUNDINGS = "the surroundings"  # what belongs to no object
 
 
 class Interval(NamedTuple):
-    """A mean received power in W and the ends of its 95 % interval, of bias and chance together."""
+    """A mean received power and its 95 % interval, of bias and chance together.
+
+    power: W; low, high: W, the ends of the interval
+    """
 
     power: float
     low: float

@@ -1,5 +1,4 @@
 """Frames in time in one picture, and as a film."""
-from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -28,7 +28,10 @@ ActorOfKinds = Mapping[str, ActorOf | Model | str | None]
 
 @made_by("ep.add_traffic")
 class Traffic(Mapping[str, Trajectory]):
-    """The objects that `add_traffic` has put into a scene: {full name in the scene: Trajectory}. Raises KeyError for others."""
+    """The objects that `add_traffic` has put into a scene: {full name: Trajectory}. Raises KeyError for others.
+
+    scene: that holds them; trajectories: {full name in the scene: Trajectory}
+    """
 
     def __init__(self, scene, trajectories: dict[str, Trajectory]):
         self._scene, self._trajectories = scene, trajectories

@@ -1,5 +1,4 @@
 """Frames of a sequence into a folder or a file, so that a run that was ended goes on where it was."""
-from __future__ import annotations
 
 import time
 from collections import deque

@@ -26,10 +26,11 @@ class Shown(list):
 def test_a_watch_shows_the_latest_change_last(live):
     shown = Shown()
     with live.watch(shown) as watch:
-        assert watch.wait(LONG)
+        assert watch.wait(LONG) and repr(watch) == "Watch(running, change 0 shown in full)"
         for _ in range(20):
             live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (0.02, 0.0, 0.0)))
         assert watch.wait(LONG)
+    assert repr(watch) == "Watch(stopped, change 20 shown in full)"
     assert [view.number for view in shown] == sorted(view.number for view in shown)
     assert shown[-1].number == 20 and not shown[-1].is_preview
     assert difference(shown[-1], fresh_view(live)) < ROUNDING
@@ -44,6 +45,7 @@ def test_a_watch_that_its_view_leaves_is_told(live):
         watch.wait(LONG)
     with pytest.raises(SystemExit, match="closed"):
         watch.stop()
+    assert repr(watch) == "Watch(ended by SystemExit('closed'), nothing shown in full)"
 
 
 def test_a_watch_shows_what_is_edited_directly(live):

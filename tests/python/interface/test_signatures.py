@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath import dataset
 
 CLASSES = [name for name in ep.__all__ if inspect.isclass(getattr(ep, name)) and not issubclass(getattr(ep, name), Exception)]
 
@@ -64,6 +65,13 @@ def test_help_stays_readable():
     assert "position=(0.0, 0.0, 0.0)" in told and "One element of a radar." in told
     assert "\n--\n" not in told and ")--" not in told
     assert ep.Paths.select.__doc__.count("\n") > 3 and "The paths that a selection takes" in ep.Paths.select.__doc__
+
+
+@pytest.mark.parametrize("module", [ep, dataset, ep.plots])
+def test_signatures_name_types_as_they_are_written(module):
+    """Python writes those of a NamedTuple as ForwardRef('float') where a module postpones its annotations."""
+    classes = [value for value in map(vars(module).get, module.__all__) if inspect.isclass(value) and issubclass(value, tuple)]
+    assert classes and not [one for one in classes if "ForwardRef" in str(inspect.signature(one))]
 
 
 @pytest.mark.parametrize("name, maker", [("Paths", "ep.trace"), ("RangeDoppler", "ep.range_doppler"),

@@ -1,5 +1,4 @@
 """Templates of scenes: a scene file in which any value may be a distribution."""
-from __future__ import annotations
 
 import copy
 import math
@@ -41,7 +40,7 @@ def _shares(split: dict[str, float]) -> dict[str, float]:
 
 
 class DatasetTable(Table):
-    """The table [dataset] of a template."""
+    """The table [dataset] of a template (keys: data/README.md), as `Template.settings` has it."""
 
     scenes: int = Field(ge=1, le=MOST_SCENES, description="number of scenes, each drawn anew")
     frames: int = Field(1, ge=1, description="of each scene, one after the other")

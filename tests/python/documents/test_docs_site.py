@@ -43,7 +43,7 @@ def documented_names(text: str) -> list[str]:
 
 def titles_and_labels(figure) -> list[str]:
     """What a person reads about a figure and its axes, but for numbers."""
-    texts = [figure.get_suptitle()]
+    texts = [text.get_text() for text in figure.texts]
     for axes in figure.get_axes():
         legend = axes.get_legend()
         texts += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]

@@ -26,7 +26,7 @@ from .arguments import (
 )
 from .knots import curve_through
 from .limits import Limits, over_distance
-from .path import Path
+from .path import DISTANCE_TOLERANCE, Path
 from .profile import over_time, through
 from .track import Track
 
@@ -215,7 +215,7 @@ class Trajectory(_core.CurveMotion):
         Raises TypeError or ValueError naming `distance`."""
         def found(distances):
             reached = self._track.profile.at(np.array([self.begin, self.end]))[0]
-            if np.any(distances < reached[0]) or np.any(distances > reached[1] + 1e-9):
+            if np.any(distances < reached[0]) or np.any(distances > reached[1] + DISTANCE_TOLERANCE):
                 raise refused(ValueError, "distance", f"from {reached[0]:g} to {reached[1]:g} m", distance)
             return self._track.time_at(np.minimum(distances, reached[1]))
         return _each(distance, found, "distance")
@@ -298,7 +298,7 @@ def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_
     """The Profile of a path, by the arguments of Trajectory."""
     table, stops = checked_speed(speed, speed_over), checked_stops("stops", stops)
     places = np.minimum(stops[:, 0], path.length)
-    if np.any(places < stops[:, 0]) and np.any(np.isfinite(stops[places < stops[:, 0], 0])):
+    if np.any(np.isfinite(stops[:, 0]) & (stops[:, 0] > path.length + DISTANCE_TOLERANCE)):
         raise refused(ValueError, "stops", f"at distances from 0 to {path.length:g} m, or math.inf", stops.tolist())
     stops = np.stack([places, stops[:, 1]], axis=-1)
     if np.any(np.diff(places) <= 0.0):

@@ -110,7 +110,7 @@ def test_as_many_rays_as_asked_for_are_shot_at_more_objects_than_a_pilot_aims_at
     scene = ep.Scene()
     for k in range(700):
         angle = 2 * np.pi * k / 700
-        scene.add(ep.actors.plate(0.05, 0.05), name=f"sign_{k}", material="metal", yaw=angle + np.pi,
+        scene.add(ep.actors.plate(0.05, 0.05), name=f"sign_{k}", material="metal", yaw=angle - np.pi,
                   position=(10 * np.cos(angle), 10 * np.sin(angle), 1))
     paths = ep.trace(scene, radar(), num_rays=16_384, max_bounces=1, scatterers="surface")
     assert abs(paths.frame.statistics.num_rays - 16_384) <= 0.5 * len(paths.frame.strata)

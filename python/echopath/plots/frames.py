@@ -38,8 +38,8 @@ def draw_frame(frame: Frame, *, ax: Axes | None = None, vmin: float | None = Non
                title: str | None = None) -> Axes:
     """The range-Doppler map of a frame with its noise, and all of its detections, where it has some, as points at their cells.
 
-    ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm, None: `limits_of_frame`
-    title: None: what it shows
+    frame: with its signals; ax: axes to draw in, None: new ones; title: above them, None: what the map shows
+    vmin, vmax: ends of the colour scale in dBm, None: `colour_limits` of the map and of the leakage in it
     Returns the axes, as `draw_range_doppler`. Raises TypeError naming `frame`, ValueError for a record of paths alone.
     """
     require_drawable("frame", "a Frame", frame, "spectrum", "detections")

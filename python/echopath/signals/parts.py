@@ -190,7 +190,7 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
 
     paths: of `trace`; radar: another waveform, array or motion than that of the trace, or None
     parts: {name: selection}, where the first that takes a path has it; or the Families of the paths (`families`); or {view:
-        either of them} for several views at once
+        either of them} for several views at once; None: all paths are "other"
     tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, settings, probe, progress:
         as in `synthesize`
     Cubes are those of each transmitter alone, [tx, rx, chirp, sample], for transmitters that send at once, too: what

@@ -127,7 +127,8 @@ def plot_rays(scene: _core.Scene | None, paths: _core.Paths, *, selection: str |
     tx, rx: indices of the channel's antennas; hidden: globs of meshes that are not drawn
     view: "fit", "radar", "top" or "side"; show_hits: with a dot at each hit; show_legend: with the names of the colours
     plotter: a pyvista.Plotter to draw into, which is then not shown; window_size: (width, height) in pixels
-    off_screen: True: without a screen; screenshot: PNG file to be written; return_plotter: instead of None
+    off_screen: True: without a screen, None: as pyvista.OFF_SCREEN says; screenshot: PNG file to be written
+    return_plotter: instead of None
     Returns the pyvista.Plotter where one was given or asked for, else None. Raises TypeError or ValueError naming the
     argument, ModuleNotFoundError where the viewer is not installed. Where nothing draws without a screen (wheels bring
     what does, elsewhere OpenGL with EGL does, Debian's libgl1 and libegl1), Matplotlib draws the screenshot, in views

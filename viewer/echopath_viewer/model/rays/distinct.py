@@ -28,7 +28,7 @@ def _words(points, cell: float):
     """[V, 3] unsigned, the same where points count as one."""
     if cell == 0.0:
         return (points + np.float32(0.0)).view(np.uint32)  # -0 becomes 0
-    cells = np.rint(points / np.float64(cell))
+    cells = np.rint(points.astype(np.float64) / cell)  # NumPy before 2 would divide in f32
     return np.fmax(np.fmin(cells, FAR), -FAR).astype(np.int64).view(np.uint64)
 
 

@@ -59,7 +59,7 @@ def _draw_apertures(axes, rows: list) -> None:
     axes.set_yscale("log")
     axes.set_xticks(sorted({row["aperture_m"] for row in rows}))
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.minorticks_off()
+    axes.set_xticks([], minor=True)
     axes.set_xlabel("width of the array in m")
     axes.set_ylabel("phase error of the echo over a wall 1 m aside, in rad")
     axes.set_title("One record for all antennas of an array")

@@ -47,8 +47,8 @@ struct ProbeScratch {
 
 class FrameProbe {
  public:
-  // preparer: of whole meshes (touched_meshes.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to the
-  // origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
+  // preparer: of whole meshes (touched_meshes.h). pose, rim: at the time; rim with the antennas of probe_radar, relative to
+  // the origin of `geometry`. All must outlive the probe. wavenumber: rad/m.
   FrameProbe(const PathPreparer& preparer, const PosedScene& pose, const PosedScene& rim, const EmbreeScene& geometry,
              const SurfaceWalk& walk, double wavenumber)
       : preparer_(preparer), pose_(pose), rim_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}

@@ -27,7 +27,7 @@ struct MeshPlaces {
   }
 };
 
-// Says what of a scene is posed for some paths: the meshes that they touch, and of those that deform only their patches.
+// Says what of a scene is posed: some of its meshes, and of those that deform only patches.
 struct MeshesToPose {
   std::shared_ptr<const MeshPlaces> places;
   std::vector<SurfacePatch> patches;  // by mesh ID

@@ -1,6 +1,6 @@
 #pragma once
-// Gives the positions of all meshes of a scene and of the antennas of a radar at one time. All code that needs these
-// positions takes them from here.
+// Gives the positions of the meshes of a scene, all or some, and of the antennas of a radar at one time. All code that needs
+// these positions takes them from here.
 #include <array>
 #include <vector>
 

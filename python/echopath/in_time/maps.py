@@ -87,7 +87,8 @@ class Spectrogram(TimeMap):
     power: [T, V] W, mean over the channels, summed over the ranges of the gate so that a point in it gives its received power
     noise_power: W, mean of the receiver's noise in a cell, whether the map has noise or not
     train: i32 [T], the train of chirps that each window lies in; trains: [N, 2] s, first and last end of each train: chirps
-        that follow each other evenly, also from frame to frame. No window spans the gap between two trains
+        that follow each other evenly, also from frame to frame; an end is where the next chirp would begin. No window spans
+        the gap between two trains
     window_length, hop: chirps of one transmitter; window, zero_pad: as in `range_doppler`, padding of the velocities
     range_gate: (nearest, farthest) range that is summed, m
     part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all

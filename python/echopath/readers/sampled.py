@@ -10,7 +10,8 @@ from .options import ReadOptions
 
 HOLD = 1e5            # s for which vertices of the ends are held, from them and from time 0 of the scene
 SHORTEST_LOOP = 1e-6  # s, as of ep.CurveMotion
-RIGID = 1e-6          # by which a turn may differ from one, and the ends of a closed loop, as a share of its size
+RIGID = 1e-6          # by which a turn may differ from one
+CLOSED = 1e-6         # by which the ends of a closed loop may differ, as a share of its size
 ROUNDING = 1e-13
 SEAM_FRAMES = 16      # of its other end that a closed loop has beyond each end: splines forget them by 0.27 a frame
 
@@ -124,7 +125,7 @@ def repeated(times, vertices, clock: Clock) -> _core.VertexSequence:
     keys = clock.times(times)
     if clock.period is None:
         keys = keys - clock.offset
-    elif np.abs(vertices[-1] - vertices[0]).max() <= RIGID * np.ptp(vertices[0], axis=0).max():
+    elif np.abs(vertices[-1] - vertices[0]).max() <= CLOSED * np.ptp(vertices[0], axis=0).max():
         keys, vertices = _with_seam(keys, vertices, clock.period)
     return _core.VertexSequence(keys, vertices, **_loop_of(clock))
 

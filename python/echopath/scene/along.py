@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
-from ..readers.loops import JUMPS, LAST, all_moving, poses_of_loop
+from ..readers.loops import JUMPS, all_moving, poses_of_loop
 from ..readers.model import Model
 from ..readers.played import PlayedCurve
 
@@ -31,7 +31,8 @@ def model_along(model: Model, trajectory, way: float | None) -> Model:
     player = _Player(trajectory, period, way)
     nodes = [dataclasses.replace(node, motion=player.motion(node.motion), deformation=player.deformation(node.deformation))
              for node in model.nodes]
-    notes = [note for note in model.notes if not note.startswith(JUMPS)]  # on its way it does not
+    goes_on = not any(curve.interpolation == "step" for curve in _curves_of(model))  # a gap is spread over the loop
+    notes = [note for note in model.notes if not (goes_on and note.startswith(JUMPS))]
     notes.append(f"its animation of {period:g} s is played once in {way:.3g} m of the trajectory")
     played = dataclasses.replace(model, nodes=tuple(nodes), motion=trajectory, notes=tuple(notes))
     return played.placed(yaw=-direction) if abs(direction) > TURNED else played
@@ -49,6 +50,14 @@ def _period_of(model: Model) -> float:
         raise ValueError("model: must have a looped animation (load_model(..., loop=True)) to go along a trajectory, "
                          f"got {model.animation!r}")
     return float(periods.pop())
+
+
+def _curves_of(model: Model):
+    """The curves by which what moves in it follows the clock."""
+    for moving in all_moving(model):
+        for name in ("translation", "rotation", "scale", "weights"):
+            if (curve := getattr(moving, name, None)) is not None:
+                yield curve
 
 
 class _Player:
@@ -87,7 +96,7 @@ class _Player:
 
 def _way_of(model: Model, period: float) -> tuple[float | None, float]:
     """(m that a loop goes, None where nothing tells; the direction in rad in which it goes, in the model's axes)."""
-    poses = poses_of_loop(model, period, np.linspace(0.0, LAST, SAMPLES + 1))
+    poses = poses_of_loop(model, period, SAMPLES)
     moved = (poses[-1] - poses[0])[:, :2]
     drift, height = moved.mean(axis=0), float(np.ptp(poses[..., 2]))
     gone, apart = float(np.linalg.norm(drift)), float(np.sqrt(np.mean(np.sum((moved - drift) ** 2, axis=1))))

@@ -15,7 +15,6 @@ from .scene import Scene
 
 THICKEST = 4.5  # m, of the second longest side: what stands yawed takes more than the 4 m of a lorry
 GAP = 0.1    # m, along the axis that separates two boxes most: parts of one body touch
-CHUNK = 256  # boxes that are compared with all others at a time
 
 Box = tuple[np.ndarray, np.ndarray]  # least and greatest coordinates [3], m
 Things = dict[str, list[int]]        # {name of a node: IDs of the meshes below it}
@@ -70,7 +69,8 @@ def _names_of(scene: Scene, radar: _core.Radar, usual: Things, time: float) -> l
 def _things_of_usual(own: _Part, child: _Part) -> list[_Part]:
     """Of a usual object, some or all of a child of the root: a child of which the rest are mirrors, as a room, is as little an
     object as one around the radar, where its parts stand apart."""
-    if len(own.meshes) < len(child.meshes) and _stand_apart(below := _expanded(own.parts())):
+    below = own.parts() if len(own.meshes) < len(child.meshes) else []
+    if len(below) == 1 or _stand_apart(below) or _stand_apart(_expanded(below)):
         return _things_among(below)
     return _things_among([own], keeps_larger=True)
 
@@ -124,13 +124,13 @@ def _things_among(parts: list[_Part], keeps_larger: bool = False) -> list[_Part]
 
 
 def _expanded(parts: list[_Part]) -> list[_Part]:
-    """Some parts, in the place of each larger one what is below it, expanded likewise, where all that stands apart: the groups
-    of a town by kind, such as its bins and its trams, reach through each other, while what is in them does not."""
+    """Some parts, in the place of each larger one what is below it, expanded likewise, where that stands apart, before or after:
+    the groups of a town by kind, such as its bins and its trams, reach through each other, while what is in them does not."""
     expanded = []
     for part in parts:
         below = [] if part.is_thing else part.parts()
         finer = _expanded(below) if len(below) > 1 else []
-        expanded += finer if finer and _stand_apart(finer) else [part]
+        expanded += finer if _stand_apart(below) or _stand_apart(finer) else [part]
     return expanded
 
 
@@ -141,11 +141,17 @@ def _depth_of_several(names: list[list[str]]) -> int:
 
 
 def _stand_apart(parts: list[_Part]) -> bool:
-    """Whether the boxes of more than half of the parts are farther than GAP from all others."""
+    """Whether they are several, and the boxes of more than half of them are farther than GAP from all others."""
+    if len(parts) < 2:
+        return False
     lows, highs = map(np.array, zip(*(part.box for part in parts)))
-    num_apart = 0
-    for first in range(0, len(parts), CHUNK):
-        some = slice(first, first + CHUNK)
-        gaps = np.maximum(lows[None] - highs[some, None], lows[some, None] - highs[None]).max(axis=2)
-        num_apart += np.count_nonzero(np.count_nonzero(gaps <= GAP, axis=1) == 1)  # itself alone
-    return 2 * num_apart > len(parts)
+    order = np.argsort(lows[:, 0])
+    lows, highs = lows[order], highs[order]
+    ends = np.searchsorted(lows[:, 0], highs[:, 0] + GAP, side="right")  # of those that begin along x before each one ends
+    is_near = np.zeros(len(parts), bool)
+    for one, end in enumerate(ends):
+        others = slice(one + 1, end)
+        near = (np.maximum(lows[others] - highs[one], lows[one] - highs[others]) <= GAP).all(axis=1)
+        is_near[others] |= near
+        is_near[one] |= near.any()
+    return 2 * np.count_nonzero(is_near) < len(parts)

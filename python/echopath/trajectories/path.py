@@ -10,7 +10,7 @@ import numpy as np
 
 PIECES = 4, 128        # of each interval between knots, for the integral of the length: at first and at most
 FINE_PARTS = 256       # of each interval between knots, of even u: |p'| is small where a spline bends within little way
-DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance
+DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance, and by which distances may lie beyond the end
 TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
 NEWTON_STEPS = 5       # after which a distance is met to rounding, where the most pieces do not meet the tolerance
 SLOWEST = 1e-30        # |p'|, which vanishes where a path turns back on itself

@@ -33,8 +33,36 @@ TEST(TouchedMeshes, AreThoseOfHitsAndPassages) {
   EXPECT_EQ(found.patches.size(), 4u);
 }
 
-// To look at each of very many hits would take longer than what is saved.
-TEST(TouchedMeshes, AreAllWherePathsAreMany) { EXPECT_EQ(touched_meshes(record(5000)).places->meshes.size(), 4u); }
+// To look at each of very many hits would take longer than what is saved; but what moves may be refused at some times.
+TEST(TouchedMeshes, AreAllWherePathsAreManyAndNothingMoves) {
+  Paths paths = record(5000);
+  EXPECT_EQ(touched_meshes(paths).places->meshes.size(), 4u);
+  auto scene = std::make_shared<Scene>(*paths.scene);
+  Node moving = node_with("moving", ellipsoid(Vec3::Zero(), Vec3::Ones(), 0), lambert(1.0));
+  moving.motion = std::make_shared<const LinearMotion>(Vec3::UnitX());
+  scene->add(moving);
+  paths.scene = scene;
+  EXPECT_EQ(touched_meshes(paths).places->meshes, (std::vector<uint32_t>{2}));
+}
+
+// Of what deforms, a patch is made of what is hit alone.
+TEST(TouchedMeshes, HavePatchesOfWhatIsHitAlone) {
+  Paths paths = record(1);
+  auto scene = std::make_shared<Scene>(*paths.scene);
+  const Surface ball = ellipsoid(Vec3::Zero(), Vec3::Ones(), 1);
+  for (const char* name : {"hit", "not hit"}) {
+    Node node = node_with(name, ball, lambert(1.0));
+    node.deformation = std::make_shared<const VertexSequence>(
+        std::vector<double>{0.0, 1.0}, std::vector<std::vector<Vec3>>{node.mesh->vertices(), node.mesh->vertices()});
+    scene->add(node);
+  }
+  paths.scene = scene;
+  paths.hits = std::make_shared<const std::vector<Hit>>(std::vector<Hit>{{0, 0, 0.2f, 0.2f}, {4, 3, 0.2f, 0.2f}});
+  const MeshesToPose found = touched_meshes(paths);
+  EXPECT_EQ(found.places->meshes, (std::vector<uint32_t>{4}));
+  EXPECT_EQ(found.patches[4].original_vertex.size(), 3u);
+  EXPECT_TRUE(found.patches[5].original_vertex.empty());
+}
 
 }  // namespace
 }  // namespace echopath::test_touched_meshes

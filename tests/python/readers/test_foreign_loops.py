@@ -62,6 +62,19 @@ def test_transforms_and_points_of_usd_go_on_for_ever(tmp_path, offset):
         assert np.abs(scene.world_vertices(0, time) - wanted).max() < ROUNDING, time
 
 
+def test_notes_of_loops_tell_jumps_at_any_offset_and_of_no_closed_way(tmp_path):
+    """A small body that goes round a closed square of 200 m, and one that goes ahead, late in a recording."""
+    corners = [(0, 0), (200, 0), (200, 200), (0, 200), (0, 0)]
+    samples = ", ".join(f"{5.0 + 2.5 * k}: ({x}, {y}, 0)" for k, (x, y) in enumerate(corners))
+    small = STAGE.replace("(1, 0, 0), (0, 0, 1)", "(.1, 0, 0), (0, 0, .1)")
+    small = small.replace("(1, 0, 0), (0, 0, 3)", "(.1, 0, 0), (0, 0, .1)")
+    for text, offset, jumps in ((small.replace("5: (0, 0, 0), 15: (4, 0, 0)", samples), 0.0, False), (small, 0.9e9, True)):
+        (tmp_path / "stage.usda").write_text(text)
+        model = ep.load_model(tmp_path / "stage.usda", loop=True, offset=offset)
+        assert any("vertices jump by up to 4 m" in note for note in model.notes) == jumps
+        assert any("jump" in note for note in model.notes) == jumps
+
+
 @pytest.mark.parametrize("offset", [0.0, 0.35])
 def test_loops_of_usd_are_the_range_of_the_stage(tmp_path, offset):
     """Samples before its first frame and after its last one, as of a lead-in, are played once at most."""

@@ -120,7 +120,7 @@ def test_of_a_subdivision_surface_the_cage_is_taken_and_that_is_told(tmp_path, s
     assert any("control cage" in note for note in model.notes) is cage
 
 
-def test_scopes_and_prims_without_a_type_name_what_is_below_them(tmp_path):
+def test_scopes_and_other_prims_without_a_place_name_what_is_below_them(tmp_path):
     """Both walls had been children of the stage, as "wall" and "wall_2"."""
     wall = f'def Mesh "wall"\n{{\n{TRIANGLE}}}\n'
     districts = f'def Scope "north"\n{{\n{wall}}}\ndef "south"\n{{\n{wall}}}\n'
@@ -128,6 +128,8 @@ def test_scopes_and_prims_without_a_type_name_what_is_below_them(tmp_path):
     _, scene = loaded(tmp_path, f'def Xform "town"\n{{\n{districts}{paints}}}\n')
     assert [node.name for node in scene.nodes if node.mesh] == ["m/town/north/wall", "m/town/south/wall"]
     assert len(scene.nodes) == 6
+    _, scene = loaded(tmp_path, f'def District "east"\n{{\n{wall}}}\ndef PhysicsScene "west"\n{{\n{wall}}}\n')
+    assert [node.name for node in scene.nodes if node.mesh] == ["m/east/wall", "m/west/wall"]
 
 
 def test_what_turns_by_half_a_turn_from_sample_to_sample_goes_on(tmp_path):

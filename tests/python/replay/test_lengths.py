@@ -96,3 +96,15 @@ def test_values_at_a_time_have_the_same_bits_whatever_other_times_stand_beside_i
         together, alone = values(times, 1, 2), [values([time], 1, 2)[0] for time in times]
         assert together.shape == (21, paths.num_paths) and np.array_equal(together, alone)
     assert paths.lengths([]).shape == (0, paths.num_paths)
+
+
+def test_times_outside_of_a_motion_are_refused_whatever_paths_touch():
+    """Behind the radar something moves by keyframes that end at .5 s: no path meets it, so that none poses it."""
+    scene = ep.Scene()
+    scene.add(wall(), name="wall", material=ROUGH)
+    scene.add(ep.actors.box((1.0, 0.8, 0.6)), name="behind", material=ROUGH, position=(-30, 0, 0),
+              motion=linear_keys([0.2, 1, 3]))
+    paths = ep.trace(scene, make_radar(), num_rays=300, max_bounces=1).select("T 'wall' R")
+    assert paths.lengths([0.4], 0, 0).size > 0
+    with pytest.raises(ValueError, match="time: must lie in the motion's"):
+        paths.lengths([0.6], 0, 0)

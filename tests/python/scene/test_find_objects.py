@@ -83,6 +83,20 @@ def test_things_in_groups_that_reach_through_each_other_are_found():
     assert ep.find_objects(scene, make_radar()) == found
 
 
+def test_what_lies_about_many_things_hides_no_others():
+    """Trees on a lawn are more than the cars beside them: each stands apart, in a group that does."""
+    scene = ep.Scene()
+    town = scene.add(None, name="town")
+    for number in range(3):
+        _add(scene, town, f"car_{number}", (4.5, 1.8, 1.5), (10.0, 12.0 * number - 15.0, 0.75))
+    trees = scene.add(None, name="trees", parent=town)
+    for number in range(12):
+        _add(scene, trees, f"tree_{number}", (1.0, 1.0, 6.0), (25.0 + 5.0 * (number % 4), 5.0 * (number // 4) - 10.0, 3.0))
+    _add(scene, town, "lawn", (30.0, 40.0, 0.05), (35.0, 0.0, 0.025))
+    found = {f"car_{n}": f"town/car_{n}" for n in range(3)} | {f"tree_{n}": f"town/trees/tree_{n}" for n in range(12)}
+    assert ep.find_objects(scene, make_radar()) == found | {"lawn": "town/lawn"}
+
+
 def test_the_vehicle_that_carries_the_radar_has_no_things():
     scene = ep.Scene()
     own = scene.add(None, name="own")

@@ -29,8 +29,8 @@ struct LocalPaths {
 // Its functions are thread-safe.
 class PathPreparer {
  public:
-  // The record must outlive it. `meshes` are those that its paths touch (touched_meshes.h), the same with which the scenes
-  // are posed that pose its paths; no others may be asked for.
+  // The record must outlive it. `meshes` hold at least those that its paths touch (touched_meshes.h), the same with which
+  // the scenes are posed that pose its paths; no others may be asked for.
   PathPreparer(const Paths& paths, MeshesToPose meshes);
   PathPreparer(const PathPreparer&) = delete;
   PathPreparer& operator=(const PathPreparer&) = delete;

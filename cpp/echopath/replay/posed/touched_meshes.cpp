@@ -8,8 +8,8 @@ namespace {
 // To pose a mesh takes as long as to look at the hits of so many paths.
 constexpr int64_t kPathsOfPose = 500;
 
-bool may_deform(const Scene& scene) {
-  return std::ranges::any_of(scene.nodes(), [](const Node& node) { return node.deformation != nullptr; });
+bool stands_still(const Scene& scene) {
+  return std::ranges::none_of(scene.nodes(), [](const Node& node) { return node.motion || node.deformation; });
 }
 
 // Collects meshes, and of those that deform the triangles that are hit.
@@ -29,7 +29,7 @@ class TouchedMeshes {
     std::vector<SurfacePatch> patches(is_hit_.size());
     for (uint32_t id = 0; id < is_hit_.size(); ++id) {
       const Node& node = scene_.node_of(id);
-      if (node.deformation) patches[id] = make_patch(*node.mesh, is_hit_[id], node.smooth);
+      if (kind_[id] == kDeforms) patches[id] = make_patch(*node.mesh, is_hit_[id], node.smooth);
     }
     return {std::move(places_), std::move(patches)};
   }
@@ -54,7 +54,7 @@ class TouchedMeshes {
 
 MeshesToPose touched_meshes(const Paths& paths) {
   const auto num_meshes = static_cast<int64_t>(paths.scene->meshes().size());
-  if (paths.num_paths() > kPathsOfPose * num_meshes && !may_deform(*paths.scene)) return whole_meshes(*paths.scene);
+  if (paths.num_paths() > kPathsOfPose * num_meshes && stands_still(*paths.scene)) return whole_meshes(*paths.scene);
   TouchedMeshes touched(*paths.scene);
   for (int64_t path = 0; path < paths.num_paths(); ++path) {
     const Hit* hits = paths.hits_of(path);

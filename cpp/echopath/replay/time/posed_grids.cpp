@@ -63,13 +63,33 @@ PartlyPosedGrid PosedGrids::pose_partly(FrameNodes nodes, int transmitter) const
   return {{std::move(nodes), std::move(posed), transmitter}, std::move(scenes), *paths_.scene, preparer_.meshes().patches};
 }
 
-PosedNodes PosedGrids::pose(std::span<const double> times) const { return PosedNodes(scenes_at(times)); }
+// Refuses times outside of any motion, also of meshes that no path touches: that must not depend on what was hit.
+void PosedGrids::require_times(std::span<const double> times) const {
+  const Scene& scene = *paths_.scene;
+  std::vector<Vec3> none;
+  for (size_t index = 0; index < scene.nodes().size(); ++index) {
+    const Node& node = scene.nodes()[index];
+    for (const double time : times) {
+      if (node.motion) scene.local_transform(static_cast<int>(index), time);
+      if (node.deformation) node.deformation->at(time, {}, none);
+    }
+  }
+}
+
+PosedNodes PosedGrids::pose(std::span<const double> times) const {
+  require_times(times);
+  return PosedNodes(scenes_at(times));
+}
 
 PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar> radars) const {
+  require_times(times);
+  const MeshesToPose& meshes = preparer_.meshes();
+  const PlacingNodes nodes(*paths_.scene, meshes.places->meshes);
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(times.size());
   for (size_t i = 0; i < times.size(); ++i) {
-    scenes->emplace_back(*paths_.scene, radars[i], preparer_.meshes(), paths_.frame.transmitter, times[i]);
+    scenes->emplace_back(*paths_.scene, radars[i], paths_.frame.transmitter, times[i]);
+    scenes->back().add(meshes.places, nodes, meshes.patches);
   }
   return PosedNodes(std::move(scenes));
 }

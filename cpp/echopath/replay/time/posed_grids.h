@@ -69,6 +69,7 @@ class PosedGrids {
     PartlyPosedGrid grid;
     bool is_tried = false;  // it has the meshes of its cuts
   };
+  void require_times(std::span<const double> times) const;
   std::shared_ptr<const PosedScenes> scenes_at(std::span<const double> times) const;
   PartlyPosedGrid pose_partly(FrameNodes nodes, int transmitter) const;
   Polynomial& kept(GridIndex polynomial);

@@ -28,7 +28,7 @@ std::vector<uint32_t> sheets_of(const Scene& scene) {
 // Holds the sheets of a scene alone.
 class SheetScene {
  public:
-  // `ids`: of the sheets, some. `near`: m, world, where most rays come from.
+  // `ids` names the sheets, of which there is at least one. `near`: m, world, where most rays come from.
   SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const Vec3& near, Job* job)
       : scene_(scene), ids_(std::move(ids)) {
     std::vector<bool> is_sheet(scene.meshes().size());

@@ -14,7 +14,7 @@ from .stage import Timeline, changes_visibility, is_left_out
 from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, numbers, surface_of
 from .transforms import sampled_transforms
 
-FOLDERS = ("", "Scope")  # types of prims without a place of their own, which name what is below them
+NO_NODES = ("Material", "Shader", "NodeGraph")  # types of prims without surfaces below them: others name what is there
 MAX_DEPTH = 200         # of instances within instances
 MAX_VALUES = 500_000_000  # coordinates of one mesh over all its samples
 
@@ -74,7 +74,7 @@ class Content:
             placement, motion = placed
             parent = self._add_prim(prim, parent, placement, motion)
             self._index_of[prim.GetPath()] = parent
-        elif prim.GetTypeName() in FOLDERS:
+        elif prim.GetTypeName() not in NO_NODES:
             parent = self._tree.add(prim.GetName(), parent)
         if prim.IsA(self._pxr.UsdGeom.PointInstancer):
             self._add_instances(prim, parent, depth)

@@ -13,6 +13,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from stub_types import IMPORTS as TYPE_IMPORTS, with_known_types
 
+from echopath import DeviceError, FileError
+
 # The signatures that Python shows of the extension have no types: those of its docstrings have.
 RUN = """
 import inspect
@@ -26,15 +28,8 @@ HEAD = ('"""The C++ core of echopath; use it through the package.\n\n'
         'Written by python/bindings/make_stubs.py: do not edit.\n"""\n')
 IMPORTS = "from collections.abc import Sequence\nfrom numpy.typing import ArrayLike\nimport types\n" + TYPE_IMPORTS
 # pybind11-stubgen imports them from the package, which has them from here: type checkers would find neither.
-ERRORS = '''class DeviceError(RuntimeError):
-    """
-    A device failed; a RuntimeError.
-    """
-class FileError(OSError):
-    """
-    A file cannot be read or written; an OSError.
-    """
-'''
+ERRORS = "".join(f'class {error.__name__}({error.__base__.__name__}):\n    """\n    {error.__doc__}\n    """\n'
+                 for error in (DeviceError, FileError))
 # What pybind11-stubgen writes -> what a reader and a type checker make more of.
 PLAIN = [
     (r"\A\"\"\".*?\"\"\"\n", HEAD),                                       # of the module

@@ -70,8 +70,9 @@ def _things_of_usual(own: _Part, child: _Part) -> list[_Part]:
     """Of a usual object, some or all of a child of the root: a child of which the rest are mirrors, as a room, is as little an
     object as one around the radar, where its parts stand apart."""
     below = own.parts() if len(own.meshes) < len(child.meshes) else []
-    if len(below) == 1 or _stand_apart(below) or _stand_apart(_expanded(below)):
-        return _things_among(below)
+    finer = _expanded(below)
+    if len(below) == 1 or _stand_apart(below) or _stand_apart(finer):
+        return [part for part in finer if part.is_thing]
     return _things_among([own], keeps_larger=True)
 
 

@@ -25,6 +25,14 @@ def test_the_licence_is_that_of_source_and_wheels():
         ROOT / LICENCES["GPL-3.0-or-later"]).read_text(encoding="utf-8")
 
 
+def test_texts_name_the_licences_of_the_package():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n## Licence\n")[2].partition("\n## ")[0]
+    note = (ROOT / "LICENSE").read_text(encoding="utf-8").partition("Note on binaries.")[2]
+    readme, note = " ".join(readme.split()), " ".join(note.split())
+    assert "under the MIT licence" in readme and "under the GPL, version 3 or later" in readme
+    assert "version 3 of the GPL, or a later one" in note
+
+
 def unmatched(manifest: str, files: list[str]) -> list[str]:
     """Patterns of inclusion that match none of `files`, which stand relative to the root."""
     missing = []
@@ -51,3 +59,12 @@ def test_each_rule_of_the_source_archive_matches_a_file():
     for folder in set(folders):
         files += [path.relative_to(ROOT).as_posix() for path in (ROOT / folder).rglob("*") if path.is_file()]
     assert folders and not unmatched(MANIFEST.read_text(encoding="utf-8"), files)
+
+
+@pytest.mark.skipif(not MANIFEST.exists(), reason="the sources are not there")
+def test_the_source_archive_has_all_that_tests_read():
+    rules = re.findall(r"^recursive-include (tests\S*) (.+)$", MANIFEST.read_text(encoding="utf-8"), re.M)
+    taken = {path for folder, words in rules for word in words.split() for path in (ROOT / folder).rglob(word)}
+    left = [path.relative_to(ROOT).as_posix() for path in (ROOT / "tests").rglob("*")
+            if path.is_file() and path not in taken and path.suffix != ".pyc"]
+    assert taken and not left

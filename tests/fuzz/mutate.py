@@ -18,6 +18,9 @@ def damaged(content: bytes, random: Random) -> bytes:
 
 
 def _damage(content: bytearray, random: Random) -> None:
+    if not content:
+        content += random.randbytes(8)
+        return
     size = len(content)
     at, length = random.randrange(size), random.choice((1, 2, 4, 8, 64, 512, 4096))
     kind = random.randrange(8)

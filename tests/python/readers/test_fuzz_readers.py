@@ -2,6 +2,7 @@
 import os
 import time
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import echopath as ep
 from echopath.readers.usd import trial
 from fuzz import targets, usd_trials, worker
 from fuzz.feeds.foreign_seeds import seeds_of
+from fuzz.mutate import damaged
 from fuzz.seeds import frames
 
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
@@ -20,6 +22,10 @@ CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, 
 
 def test_each_target_has_a_short_run():
     assert CASES.keys() == targets.TARGETS.keys()
+
+
+def test_an_empty_seed_is_damaged_by_bytes_that_come():
+    assert all(damaged(b"", Random(number)) for number in range(20))
 
 
 @pytest.mark.hard

@@ -35,10 +35,6 @@ class Response:
         self._table = np.stack([self._transform(samples / samples.sum(), place - centre, part)
                                 for centre, part in zip(self.centres, parts)])
 
-    @property
-    def table_bytes(self) -> int:
-        return self._table.nbytes
-
     def __call__(self, y, sweep=0.0):
         """y: bins [N], folded into the axis, or [rows, N] for one segment; sweep: bins [N] or one.
 

@@ -52,16 +52,11 @@ def reflectivities(frequency: float, rain: float, temperature: float) -> NDArray
 
     frequency: Hz; rain: mm/h; temperature: K
     """
-    return _per_volume(frequency, rain, temperature)[0]
+    return per_volume(frequency, rain, temperature)[0]
 
 
-def extinction_db_per_km(frequency: float, rain: float, temperature: float) -> float:
-    """dB/km, of the same drops, beside what Recommendation ITU-R P.838 says of measured rain."""
-    return 1e4 / math.log(10.0) * float(_per_volume(frequency, rain, temperature)[1].sum())
-
-
-def _per_volume(frequency, rain, temperature):
-    """[2, N] in 1/m: backscatter, extinction."""
+def per_volume(frequency: float, rain: float, temperature: float) -> NDArray[np.float64]:
+    """Cross sections per volume in 1/m [2, N] of the drops about each of DIAMETERS: backscatter, extinction."""
     if rain == 0.0:
         return np.zeros((2, len(DIAMETERS)))
     index = np.sqrt(water_permittivity(frequency, temperature))

@@ -208,7 +208,7 @@ def test_responses_of_any_sweep_come_from_a_small_table(segments):
     place = (np.arange(n) - 0.5 * (n - 1)) / n
     terms = np.exp(-2j * np.pi * np.outer(y, place) + 1j * np.pi * sweep[:, None] * place ** 2) / n
     response = Response("rect", n, largest_sweep=32.0, segments=segments)
-    assert response.table_bytes < 20 * 2 ** 20
+    assert response._table.nbytes < 20 * 2 ** 20
     error = np.abs(response(y, sweep).sum(axis=0) - terms.sum(axis=1))
     assert error.max() < NEAREST_SWEEP + TABLE
 

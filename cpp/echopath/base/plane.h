@@ -108,10 +108,10 @@ void find_images(const Planes& planes, Vec3 point, Vec3* images) {
   for (const Plane& plane : planes) *images++ = point = plane.image(point);
 }
 
-// Sets the points in which a wave between two points meets the mirrors of a chain, the last one first. Returns the place in
-// the chain of a mirror that does not lie between its neighbours, so that there is no such wave; none where all do. A point
-// as near as `touching` (m) to the mirror before it, as at the edge where two mirrors meet, is mirrored where it is; with a
-// negative one none is.
+// Sets points[k] to where a wave between two points meets mirror k of a chain, from the last mirror back to the first.
+// Returns the place in the chain of a mirror that does not lie between its neighbours, so that there is no such wave; none
+// where all do. A point as near as `touching` (m) to the mirror before it, as at the edge where two mirrors meet, is
+// mirrored where it is; with a negative one none is.
 template <class Planes>
 std::optional<size_t> find_reflections(const Planes& planes, const Vec3& from, const Vec3& to, Vec3* points,
                                        double touching = -1.0) {

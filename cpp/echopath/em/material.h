@@ -28,8 +28,8 @@ struct Material {
   std::optional<double> scattering;  // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)
   double cross_polarization = 0.0;   // in [0, 0.5], share of diffuse power in the cross polarisation
   // These describe the lobe of the scattered power (em/surface/diffuse_lobe.h): the exponent of a directive lobe, 0 for
-  // Lambert's; the share of the lobe that goes back to where the wave comes from; and the exponent of that part, 0 for the
-  // exponent of the other.
+  // Lambert's; the share in [0, 1] of a directive lobe that goes back to where the wave comes from; and the exponent of that
+  // part, 0 for the exponent of the other. Exponents are at most kMostLobeExponent.
   int lobe_exponent = 0;
   double backscatter_share = 0.0;
   int backscatter_exponent = 0;

@@ -9,7 +9,7 @@
 namespace echopath {
 
 // A grouping sorts paths into parts. Parts of the same name in several records are one part. The last part is the rest, the
-// same in all records.
+// same in all records; by_all has none.
 using Grouping = std::function<Partition(const Paths&, Job*)>;
 
 // Groups paths by the first selection that takes them (make_partition).

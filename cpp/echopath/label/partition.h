@@ -15,7 +15,7 @@ struct NamedSelection {
 
 // Assigns every path to exactly one part.
 struct Partition {
-  std::vector<std::string> names;  // of the parts; the last is "other"
+  std::vector<std::string> names;  // of the parts; the last one of make_partition is "other"
   std::vector<uint32_t> group;     // [P] index into names
 };
 

@@ -18,8 +18,8 @@ enum class Interpolation { kCubic, kLinear };
 class Motion {
  public:
   virtual ~Motion() = default;
-  // Returns the transform at `time` (s), in the axes of the node's parent about the node's origin:
-  // parent_from_node(t) = Translation(placement) * at(t) * Rotation(placement).
+  // Returns the transform at `time` (s), in the axes of the node's parent about the node's origin; `moved` applies it to a
+  // placement.
   // Raises invalid_argument when `time` lies outside span().
   virtual Transform at(double time) const = 0;
   // Returns the times (s) where the motion is not smooth, ascending, without the ends of the span: all those within

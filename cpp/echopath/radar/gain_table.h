@@ -24,7 +24,7 @@ inline constexpr double kLargestEfficiency = 1.02;
 // Hermite, slopes of parabolas through three samples), so that neither gain nor phase has kinks for moving targets
 // and nulls stay nulls. Phases of neighbours should differ by less than 1 rad, or their power is lost between them. A
 // cell whose four corners have no gain (below 1e-12 of the peak) has none, and there is none outside the table.
-// Azimuths that cover the whole turn, up to a gap of one step, are closed to a ring.
+// Four azimuths or more that cover the whole turn, up to a gap of one step, are closed to a ring.
 class GainTable {
  public:
   // azimuth [A] rad, ascending, over at most a turn; elevation [E] rad, ascending, in [-pi/2, pi/2]; A, E >= 2

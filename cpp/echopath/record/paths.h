@@ -212,7 +212,9 @@ struct Paths {
     return {passes.data() + first, end - first};
   }
 
-  // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
+  // Raises invalid_argument when array sizes differ, an index leads nowhere (hit, mesh, triangle, stratum, batch, edge), a
+  // number is not finite, a hit lies off its triangle, or bits and flags are those of no path; validate_path looks at the
+  // columns of one path alone.
   void validate() const;
   void validate_path(size_t path) const;
   // Returns the paths where keep [P] is not 0, in order; it shares the hits. Raises Cancelled when the job is cancelled.

@@ -30,8 +30,8 @@ struct MeshOfLargePlanes {
 // first Fresnel zone of a wave that is reflected at normal incidence at the vertex farthest from the antennas and then goes
 // to infinity: 2 sqrt(wavelength distance). Its edges then matter almost nowhere. The width is four times the area over the
 // length of the rim, the side of a square and twice that of a long strip; holes count to the rim, so a front full of windows
-// is as wide as what is between them. Flagged mirrors, smooth meshes, sheets, and what moves or deforms are left out. A
-// plane that several meshes share is measured in each mesh by itself.
+// is as wide as what is between them. Flagged mirrors, smooth meshes, sheets, what has a motion, also one at rest, and what
+// deforms are left out. A plane that several meshes share is measured in each mesh by itself.
 std::vector<MeshOfLargePlanes> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
 
 // Returns whether a mesh was cut from the flagged mirror above it, as the windows of a front are: both are parts of one

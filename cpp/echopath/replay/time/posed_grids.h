@@ -41,7 +41,7 @@ class PartlyPosedGrid {
 };
 
 // Keeps the grid of the time of the trace and those of polynomials, which are posed before they are used; grids of chirps,
-// which are large, belong to the caller. Its const functions are thread-safe. All others raise what PosedScene does.
+// which are large, belong to the caller. Its const functions are thread-safe. Those that pose raise what PosedScene does.
 class PosedGrids {
  public:
   // All arguments must outlive it.

@@ -115,7 +115,7 @@ void add_tile_to(const CarrierModel& model, const Spreading& spreading, const Ti
 }
 
 void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
-  // These phasor errors are far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
+  // These phasor errors are far below the error of the kernel, which is 9e-4 and 1e-7 at these widths.
   if (spreading.width <= 4) add_tile_to<PhasorError::k7em6>(model, spreading, tile, room);
   else if (spreading.width <= 8) add_tile_to<PhasorError::k1em12>(model, spreading, tile, room);
   else add_tile_to<PhasorError::kRounding>(model, spreading, tile, room);

@@ -19,11 +19,12 @@ struct KnownEcho {
 double rounded_rays(double rays, double up = 0.5);
 
 // Sets foci about the glints of each stratum that its rays would be too far apart for, and takes their rays from its share
-// in `guide.shares`, which counts in rays. Foci get at most half of it, by the part of the stratum's field that they hold,
-// so that echoes without a point of reflection, such as those of edges, keep what they need. Among foci, rays go by the
-// number of Fresnel zones and by the root of the glint's power; they are rounded_rays. `frame` is that of the trace in
-// which the glints were found; `echoes` are by index of its strata, of those that are no foci; `glints` come strongest
-// first.
+// in `guide.shares`, which counts in rays. Foci about glints of one bounce get at most half of it, by the part of the
+// stratum's field that they hold, so that echoes without a point of reflection, such as those of edges, keep what they need.
+// Among these foci, rays go by the number of Fresnel zones and by the root of the glint's power. Those about glints of paths
+// over several surfaces get as many rays as resolve them, beside the others at most a quarter of the share. All are
+// rounded_rays. `frame` is that of the trace in which the glints were found; `echoes` are by index of its strata, of those
+// that are no foci; `glints` come strongest first.
 void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints,
               LaunchGuide& guide);
 

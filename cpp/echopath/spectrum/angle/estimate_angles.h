@@ -12,10 +12,10 @@ namespace echopath {
 
 struct EstimateOptions {
   BeamformOptions beams;
-  int max_peaks = 1;            // per cell, at least 1
-  double peak_range_db = 10.0;  // dB below the strongest peak of a cell, within which others are kept
+  int max_peaks = 1;            // per cell, 1 to 64
+  double peak_range_db = 10.0;  // 0 to 200 dB below the strongest peak of a cell, within which others are kept
   // The velocity may be v + 2 k v_max for |k| <= folds; the k with the strongest peak is taken, since TDM slots tell them
-  // apart. At most half the number of transmitters less one.
+  // apart. It is less than half the number of transmitters, and 0 where these do not take turns.
   int folds = 0;
   // These are the velocities v, m/s, of the echoes in the cells [N], which may lie between those of the map; empty: those of
   // the cells. Compensation goes by them.

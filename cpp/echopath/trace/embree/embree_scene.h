@@ -23,6 +23,8 @@ struct RayHit {
   double distance = 0.0;  // m, along the ray
   double reported = 0.0;  // m, likewise, as Embree has it in single precision: farther off, the more the ray grazes
   bool is_smooth = false;
+  // This is the area of the curved surface for which a ray stands, over the area that its tube covers at the angle of
+  // `normal`; 1 where the facet is meant.
   double stretch = 1.0;
   Mat3 curvature;  // 1/m on the side of `normal`: positive where convex (scene/smooth/smooth.h); only where smooth
 };
@@ -32,7 +34,7 @@ struct RayLanes;
 struct ValidLanes;
 
 struct Segment {
-  Vec3 from, to;
+  Vec3 from, to;  // m, relative to the origin
 };
 
 // Answers queries of rays in a posed scene. Coordinates are relative to `origin` (world), so that single precision resolves

@@ -16,9 +16,9 @@ struct SmallMesh {
 };
 
 // Returns clusters of neighbours, each a list of mesh IDs, ascending: the meshes in a cell of an octree over the world,
-// which is divided down to 2000 triangles a cell. Meshes that would be among a few only, or as large as their cluster,
-// belong to none; neither does any where there are fewer than 256. The clusters follow from the boxes alone, and what
-// moves changes those about it and no others. Cost: 100 ns a mesh.
+// which is divided down to 2000 triangles a cell. Meshes that would be among fewer than eight, or longer than a quarter of
+// their cluster, belong to none; neither does any where there are fewer than 256. The clusters follow from the boxes alone,
+// and what moves changes those about it and no others. Cost: 100 ns a mesh.
 std::vector<std::vector<uint32_t>> clusters_of(const std::vector<SmallMesh>& meshes);
 
 }  // namespace echopath

@@ -1,4 +1,6 @@
 """Lengths from replay against an independent evaluation in NumPy, for everything that moves."""
+import warnings
+
 import numpy as np
 import pytest
 
@@ -108,3 +110,23 @@ def test_times_outside_of_a_motion_are_refused_whatever_paths_touch():
     assert paths.lengths([0.4], 0, 0).size > 0
     with pytest.raises(ValueError, match="time: must lie in the motion's"):
         paths.lengths([0.6], 0, 0)
+
+
+@pytest.mark.parametrize("way", ["hidden", "absent"])
+def test_what_takes_no_part_is_not_asked_at_other_times(way):
+    """A mesh that deforms from 10 s on leaves no trace in a frame before it: the signal is that of a scene without it."""
+    scene, without, radar = ep.Scene(), ep.Scene(), make_radar()
+    for one in (scene, without):
+        one.add(wall(), name="wall", material=ROUGH, motion=ep.LinearMotion(velocity=(1, 0, 0)))
+    sheet = np.array([[0, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    scene.add(ep.Mesh(sheet, [[0, 1, 2]]), name="flag", material=ROUGH, position=(8, 3, 0),
+              motion=ep.VertexSequence(times=[10, 11], vertices=[sheet, 1.1 * sheet]))
+    if way == "hidden":
+        scene["flag"].visible = False
+    else:
+        scene["flag"].lifetime = (10, 11)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "'flag' is absent", RuntimeWarning)
+        paths = ep.trace(scene, radar, num_rays=300)
+    expected = ep.synthesize(ep.trace(without, radar, num_rays=300), radar)
+    assert np.any(expected) and np.array_equal(ep.synthesize(paths, radar), expected)

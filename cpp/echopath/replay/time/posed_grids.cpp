@@ -63,11 +63,13 @@ PartlyPosedGrid PosedGrids::pose_partly(FrameNodes nodes, int transmitter) const
   return {{std::move(nodes), std::move(posed), transmitter}, std::move(scenes), *paths_.scene, preparer_.meshes().patches};
 }
 
-// Refuses times outside of any motion, also of meshes that no path touches: that must not depend on what was hit.
+// Refuses times outside of any motion that takes part, also of meshes that no path touches: that must not depend on what
+// was hit.
 void PosedGrids::require_times(std::span<const double> times) const {
   const Scene& scene = *paths_.scene;
   std::vector<Vec3> none;
   for (size_t index = 0; index < scene.nodes().size(); ++index) {
+    if (!scene.takes_part(static_cast<int>(index))) continue;
     const Node& node = scene.nodes()[index];
     for (const double time : times) {
       if (node.motion) scene.local_transform(static_cast<int>(index), time);

@@ -1,9 +1,11 @@
 // The part of the replayer that interpolates paths by polynomials, and tells which paths and meshes need that.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/replay/echo_memory.h"
 #include "echopath/replay/meshes_of_path.h"
 #include "echopath/replay/replay.h"
@@ -14,6 +16,8 @@ namespace {
 
 // The strongest path is looked for among so many, evenly spaced: a weaker one in its place leaves out fewer paths.
 constexpr int64_t kStrongestAmong = 1 << 14;
+
+constexpr int64_t kPathsOfTask = 1 << 14;  // whose meshes one task looks up
 
 // Chebyshev coefficients fall about geometrically from these values. A tail and its order give the rate, and the rate gives
 // the next order to try.
@@ -34,7 +38,13 @@ double order_for(double tolerance, double tail, double first, int order) {
 
 std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const {
   std::vector<uint8_t> is_touched(paths_.scene->meshes().size());
-  for (const int64_t path : paths) visit_meshes(paths_, path, [&](uint32_t mesh) { is_touched[mesh] = 1; });
+  const auto touch = [&](uint32_t mesh) {
+    const std::atomic_ref<uint8_t> flag(is_touched[mesh]);  // read first: threads share what none writes
+    if (!flag.load(std::memory_order_relaxed)) flag.store(1, std::memory_order_relaxed);
+  };
+  parallel_for_chunks(std::ssize(paths), kPathsOfTask, [&](int64_t begin, int64_t end) {
+    for (const int64_t path : paths.subspan(begin, end - begin)) visit_meshes(paths_, path, touch);
+  });
   std::vector<uint32_t> meshes;
   for (uint32_t mesh = 0; mesh < is_touched.size(); ++mesh) {
     if (is_touched[mesh]) meshes.push_back(mesh);

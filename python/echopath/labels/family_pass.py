@@ -19,6 +19,7 @@ from .powers import ViewPowers, mean_square, parts_by_rival
 
 SIGNALS_IN_MEMORY = 128 << 20  # bytes that the signals of families may take at a time, unless one needs more
 STEP = 0.1                     # ratio of powers: how far each round goes below the last
+MOST_SUMS = 1 << 22            # of amplitudes, by rival and pair of cells of range
 SHOWN = 1e-3                   # of the noise floor: ranges where a family can show less are left out of its map at first
 APART = 0.5                    # of the floor of the mask, as far as it is known: power with which cells are divided early
 
@@ -99,15 +100,19 @@ class FamilyPass:
 
     def _likely_powers(self, families, mean) -> tuple:
         """Power [rivals] in W where the paths of a rival in two neighbouring cells of range add up in phase, at the time of the
-        trace and for the first antennas, and the power of the strongest path in W."""
+        trace and for the first antennas, and the power of the strongest path in W. Pairs of cells too many to count are counted
+        with nearer ones, which makes powers larger."""
         amplitude, waveform = np.sqrt(mean.of_paths), self._radar.waveform
         cell = mean.lengths / (2.0 * waveform.range_resolution)
-        rival_of = self._owners.rival_of_family
-        powers = np.zeros(len(self._owners.rivals))
+        num_rivals = len(self._owners.rivals)
+        most_pairs = max(1, MOST_SUMS // max(1, num_rivals))
+        num_pairs = int(min(0.5 * cell.max(initial=0.0) + 1.5, most_pairs))
+        first = (num_pairs * self._owners.rival_of_family)[families.family_of_path]
+        powers = np.zeros(num_rivals)
         for shift in (0.0, 0.5):
-            pair = np.floor(np.clip(0.5 * cell + shift, 0.0, 2.0 ** 30)).astype(np.int64)
-            places, index = np.unique(rival_of[families.family_of_path] << 32 | pair, return_inverse=True)
-            np.maximum.at(powers, places >> 32, np.bincount(index, amplitude) ** 2 if len(index) else np.zeros(0))
+            pair = (0.5 * cell + shift).astype(np.int64) % num_pairs
+            sums = np.bincount(first + pair, amplitude, num_rivals * num_pairs)
+            powers = np.maximum(powers, sums.reshape(num_rivals, num_pairs).max(axis=1) ** 2)
         return powers, float(amplitude.max(initial=0.0)) ** 2
 
     def _open_rivals(self, mask) -> list:

@@ -1,7 +1,6 @@
 #include "echopath/sim/stream/paths_by_grid.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include "echopath/base/memory/large_array.h"
@@ -15,9 +14,10 @@ constexpr int64_t kPathsPerGrid = 8;       // of a task, at least, so that the c
 
 class SortByGrid {
  public:
-  SortByGrid(const PathGrids& grids, int64_t num_paths, Job* job)
-      : lists_(no_paths_by_grid(grids.grids())), paths_of_task_(std::max(kPathsOfTask, kPathsPerGrid * std::ssize(lists_))),
-        grid_(static_cast<size_t>(num_paths)) {
+  // `some` are that many indices of paths; null: these paths are all.
+  SortByGrid(const PathGrids& grids, const int64_t* some, int64_t num_paths, Job* job)
+      : some_(some), lists_(no_paths_by_grid(grids.grids())),
+        paths_of_task_(std::max(kPathsOfTask, kPathsPerGrid * std::ssize(lists_))), grid_(static_cast<size_t>(num_paths)) {
     const int64_t num_tasks = num_chunks(num_paths, paths_of_task_);
     place_.assign(num_tasks, std::vector<size_t>(lists_.size()));
     parallel_for(num_tasks, [&](int64_t task) {
@@ -38,7 +38,8 @@ class SortByGrid {
   void find_grids(const PathGrids& grids, int64_t task) {
     const auto [begin, end] = range_of(task);
     const std::span<GridIndex> here(grid_.data() + begin, static_cast<size_t>(end - begin));
-    grids.first(begin, here);
+    if (some_) grids.first({some_ + begin, here.size()}, here);
+    else grids.first(begin, here);
     for (const GridIndex grid : here) ++place_[task][grid.place()];
   }
 
@@ -54,22 +55,27 @@ class SortByGrid {
   void fill(int64_t task) {
     const auto [begin, end] = range_of(task);
     auto& places = place_[task];
-    for (int64_t path = begin; path < end; ++path) {
-      const size_t grid = grid_[path].place();
-      lists_[grid][places[grid]++] = path;
+    for (int64_t i = begin; i < end; ++i) {
+      const size_t grid = grid_[i].place();
+      lists_[grid][places[grid]++] = some_ ? some_[i] : i;
     }
   }
 
+  const int64_t* some_;
   PathsByGrid lists_;
   int64_t paths_of_task_;
-  std::vector<GridIndex> grid_;             // by path
+  std::vector<GridIndex> grid_;             // of one path after the other
   std::vector<std::vector<size_t>> place_;  // [task][grid]
 };
 
 }  // namespace
 
 PathsByGrid paths_by_grid(const PathGrids& grids, int64_t num_paths, Job* job) {
-  return SortByGrid(grids, num_paths, job).take();
+  return SortByGrid(grids, nullptr, num_paths, job).take();
+}
+
+PathsByGrid paths_by_grid(const PathGrids& grids, std::span<const int64_t> paths, Job* job) {
+  return SortByGrid(grids, paths.data(), std::ssize(paths), job).take();
 }
 
 }  // namespace echopath

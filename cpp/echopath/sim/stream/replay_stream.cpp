@@ -106,9 +106,7 @@ void ReplayStream::run(const Sink& sink) {
 void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
   if (!kept_grids_) kept_grids_.emplace(replayer_.path_grids());
   keeps_poses_ = true;
-  PathsByGrid by_grid = no_paths_by_grid(replayer_.grids());
-  for (const int64_t path : paths) by_grid[kept_grids_->first(path).place()].push_back(path);
-  run(*kept_grids_, std::move(by_grid), sink);
+  run(*kept_grids_, paths_by_grid(*kept_grids_, paths, job_), sink);
 }
 
 void ReplayStream::run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink) {

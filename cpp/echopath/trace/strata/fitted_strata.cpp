@@ -11,7 +11,9 @@ void FittedStrata::begin_plan() {
 
 FittedStrata::Fitted FittedStrata::find(uint64_t input, const std::function<Fitted()>& fit) {
   const auto known = before_.find(input);
-  return now_.insert_or_assign(input, known != before_.end() ? known->second : fit()).first->second;
+  Fitted fitted = known != before_.end() ? known->second : fit();
+  const std::lock_guard lock(now_mutex_);
+  return now_.insert_or_assign(input, std::move(fitted)).first->second;
 }
 
 }  // namespace echopath

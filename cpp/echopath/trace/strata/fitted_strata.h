@@ -2,6 +2,7 @@
 // Remembers the strata that were fitted to surfaces, from one plan of rays to the next.
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <unordered_map>
 
@@ -9,7 +10,7 @@
 
 namespace echopath {
 
-// Keeps the strata that one plan of rays asked for until the next plan has asked. It is not thread-safe.
+// Keeps the strata that one plan of rays asked for until the next plan has asked. Threads may ask side by side.
 class FittedStrata {
  public:
   using Fitted = std::optional<Stratum>;
@@ -21,6 +22,7 @@ class FittedStrata {
 
  private:
   std::unordered_map<uint64_t, Fitted> before_, now_;  // by input
+  std::mutex now_mutex_;
 };
 
 }  // namespace echopath

@@ -49,6 +49,12 @@ const std::vector<Vec3>& TargetMeshes::outer_vertices() {
   return outer_vertices_;
 }
 
+void TargetMeshes::forget_vertices() {
+  vertices_ = {};
+  outer_vertices_ = {};
+  num_together_ = 0;
+}
+
 std::optional<RayTarget> RayTargetFinder::at_object(TargetMeshes& target) const {
   return target_at(target, input_of(target, {}), target.name, 0,
                    [&]() -> const std::vector<Vec3>& { return target.vertices(); });

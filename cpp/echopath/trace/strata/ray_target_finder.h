@@ -21,6 +21,8 @@ class TargetMeshes {
   const std::vector<Vec3>& vertices();
   // Returns those that its outline may depend on, from wherever it is seen. They are found when they are first asked for.
   const std::vector<Vec3>& outer_vertices();
+  // Gives their memory back; they are put together again when they are asked for.
+  void forget_vertices();
 
   int object, node;
   std::string name;

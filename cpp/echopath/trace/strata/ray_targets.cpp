@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "echopath/base/threads/parallel.h"
 #include "echopath/trace/strata/ray_target_finder.h"
 
 namespace echopath {
@@ -45,9 +46,10 @@ class TargetSearch {
   }
 
   void finish() {
-    limit();
+    std::vector<RayTarget> images = all_images();
+    limit(images);
     out_.targets = std::move(objects_);
-    append(std::move(images_), out_.targets);
+    append(std::move(images), out_.targets);
   }
 
  private:
@@ -55,6 +57,11 @@ class TargetSearch {
     TargetMeshes target;
     RayTarget direct;
     double echo;  // 1/m^2: grows with the echo, as the square of its size over the square of its distance
+  };
+  // Holds an object that is one target, and the place of its images among those of others.
+  struct Whole {
+    TargetMeshes target;
+    size_t place;
   };
 
   static void append(std::vector<RayTarget> more, std::vector<RayTarget>& to) {
@@ -71,9 +78,9 @@ class TargetSearch {
     if (direct && (things.empty() || solid_angle_of(things) > kMostlyFilled * direct->stratum.solid_angle())) {
       own(object, target.object);
       objects_.push_back(std::move(*direct));
-      std::vector<RayTarget> images;
-      for (int n = 1; n <= finder_.most_mirrors(); ++n) finder_.add_images(target, n, images);
-      append(std::move(images), images_);
+      target.forget_vertices();
+      wholes_.push_back({std::move(target), images_.size()});
+      images_.emplace_back();
     } else {
       if (!direct) leave_to_field_of_view(target);
       take_still_and_moving(things);
@@ -223,16 +230,29 @@ class TargetSearch {
     aim_at(things);
   }
 
+  // Returns the images of all targets, of one after the other. Those of whole objects, which are most of the work, are looked
+  // for here, side by side.
+  std::vector<RayTarget> all_images() {
+    parallel_for(std::ssize(wholes_), [&](int64_t i) {
+      auto& [target, place] = wholes_[i];
+      for (int n = 1; n <= finder_.most_mirrors(); ++n) finder_.add_images(target, n, images_[place]);
+      target.forget_vertices();
+    });
+    std::vector<RayTarget> images;
+    for (std::vector<RayTarget>& of_target : images_) append(std::move(of_target), images);
+    return images;
+  }
+
   // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
-  void limit() {
-    const size_t all = objects_.size() + images_.size();
-    std::ranges::stable_sort(images_, has_fewer_mirrors);
+  void limit(std::vector<RayTarget>& images) {
+    const size_t all = objects_.size() + images.size();
+    std::ranges::stable_sort(images, has_fewer_mirrors);
     if (objects_.size() > kMaxAims) {
       std::ranges::stable_sort(objects_, std::greater(), [](const RayTarget& one) { return one.stratum.solid_angle(); });
       objects_.resize(kMaxAims);
     }
-    images_.resize(std::min(images_.size(), kMaxAims - objects_.size()));
-    leave_out(all - objects_.size() - images_.size());
+    images.resize(std::min(images.size(), kMaxAims - objects_.size()));
+    leave_out(all - objects_.size() - images.size());
   }
 
   void leave_out(size_t count) {
@@ -272,7 +292,7 @@ class TargetSearch {
     leave_out(images.size() - num_kept);
     images.resize(num_kept);
     for (RayTarget& image : images) image.weight *= std::min(share, 1.0 / static_cast<double>(images.size()));
-    append(std::move(images), images_);
+    images_.push_back(std::move(images));
   }
 
   const Scene& scene_;
@@ -282,7 +302,9 @@ class TargetSearch {
   const std::vector<bool> is_still_;     // [mesh ID]
   const std::vector<bool> holds_still_;  // [node]
   RayTargets& out_;
-  std::vector<RayTarget> objects_, images_;
+  std::vector<RayTarget> objects_;
+  std::vector<std::vector<RayTarget>> images_;  // of one target after the other
+  std::vector<Whole> wholes_;
 };
 
 }  // namespace

@@ -92,6 +92,21 @@ def test_live_scenes_follow_a_pane():
     assert np.max(np.abs(view.cube - traced)) < 1e-4 * np.max(np.abs(traced))
 
 
+def test_what_a_curved_sheet_lets_through_stays_as_it_is_where_another_sheet_moves():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5, edge=0.1), name="radome", material=GLASS, position=(4.0, 0.0, 0.0), smooth=True)
+    scene.add(ep.actors.plate(2.0, 2.0), name="pane", material=GLASS, position=(2.0, 5.0, 0.0), yaw=-0.4)
+    for name, y in (("box", 0.2), ("far", 9.0)):
+        scene.add(ep.actors.box((1.0, 0.8, 1.2)), name=name, material=ep.Material.metal(), position=(8.0, y, 0.0), yaw=0.5)
+    live = ep.Live(scene, make_radar(), num_rays=2000, polarization="jones")
+    live.update()
+    live.scene["pane"].position = (2.3, 5.0, 0.0)
+    view = live.update()
+    fresh = ep.Live(live.scene, make_radar(), num_rays=2000, polarization="jones").update().cube
+    assert view.num_rays_shot < view.num_rays / 2
+    assert np.max(np.abs(view.cube - fresh)) < 1e-12 * np.max(np.abs(fresh))
+
+
 def test_who_stands_behind_a_pane_is_visible_and_a_wall_hides_it():
     def share(material):
         return {seen.name: seen for seen in ep.visibility(make_scene(material), make_radar())}["ball"].visible_share

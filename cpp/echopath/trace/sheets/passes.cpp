@@ -28,14 +28,13 @@ std::vector<uint32_t> sheets_of(const Scene& scene) {
 // Holds the sheets of a scene alone.
 class SheetScene {
  public:
-  // `ids` names the sheets, of which there is at least one. `near`: m, world, where most rays come from.
-  SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const Vec3& near, Job* job)
-      : scene_(scene), ids_(std::move(ids)) {
+  // `ids` names the sheets, of which there is at least one.
+  SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const Rounding& rounding, Job* job)
+      : scene_(scene), ids_(std::move(ids)), reach_(rounding.reach) {
     std::vector<bool> is_sheet(scene.meshes().size());
     for (const uint32_t id : ids_) is_sheet[id] = true;
     scene_.keep_meshes(is_sheet);
-    const PosedScene pose(scene_, time);
-    geometry_.update(scene_, pose, EmbreeScene::origin_near(scene_, pose, near), job);
+    geometry_.update(scene_, PosedScene(scene_, time), rounding.origin, job);
   }
   const std::vector<uint32_t>& ids() const { return ids_; }
 
@@ -48,11 +47,12 @@ class SheetScene {
   }
   double behind(const RayHit& met) const { return geometry_.behind(met.distance, met.reported); }
   const Vec3& origin() const { return geometry_.origin(); }  // m, world, to which its points are relative
-  double reach() const { return geometry_.reach(); }         // m, beyond which rays are rounded no more
+  double reach() const { return reach_; }                    // m, beyond which rays are rounded no more
 
  private:
   Scene scene_;
   std::vector<uint32_t> ids_;
+  double reach_;
   EmbreeScene geometry_;
 };
 
@@ -180,11 +180,11 @@ void join(const std::vector<PassBlock>& blocks, Paths& paths) {
 
 }  // namespace
 
-void add_passes(Paths& paths, Job* job) {
+void add_passes(Paths& paths, const Rounding& rounding, Job* job) {
   if (paths.num_paths() == 0) return;
   std::vector<uint32_t> ids = sheets_of(*paths.scene);
   if (ids.empty()) return;
-  const SheetScene sheets(*paths.scene, std::move(ids), paths.frame.trace_time, paths.frame.transmitter, job);
+  const SheetScene sheets(*paths.scene, std::move(ids), paths.frame.trace_time, rounding, job);
   const PassFinder finder(paths, sheets);
   std::vector<PassBlock> blocks(num_chunks(paths.num_paths(), kPathsTogether));
   Job own(job);

@@ -13,8 +13,15 @@ namespace echopath {
 // Passes of one leg from which on it is taken to end at the next sheet: its path has no weight then, and is counted.
 inline constexpr int kMostPasses = 64;
 
+// Says where the geometry is rounded that the rays of the record have met. It is that of the whole scene, so that what one
+// path has of the sheets on its way does not depend on the place of any other sheet.
+struct Rounding {
+  Vec3 origin;   // m, world: EmbreeScene::origin
+  double reach;  // m: EmbreeScene::reach
+};
+
 // Does nothing where the scene has no sheets. The result is the same for any number of threads. Raises DeviceError and
 // Cancelled.
-void add_passes(Paths& paths, Job* job);
+void add_passes(Paths& paths, const Rounding& rounding, Job* job);
 
 }  // namespace echopath

@@ -96,10 +96,12 @@ TEST(Enclosures, AMeshOfABodyOfManyHoldsWhatIsInside) {
     std::vector<Vec3> corners = box()->vertices();
     for (Vec3& corner : corners) corner *= 10;
     add(scene, "walls", std::make_shared<const Mesh>(corners, box()->triangles()), Vec3::Zero(), room);
-    add(scene, "person", box(), Vec3(5, 0, 0));
-    const auto found = enclosures_at(scene, kInside, 0.0);
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].node, cupboard);
+    for (const bool has_person : {false, true}) {
+      if (has_person) add(scene, "person", box(), Vec3(5, 0, 0));
+      const auto found = enclosures_at(scene, kInside, 0.0);
+      ASSERT_EQ(found.size(), 1u) << (has_person ? "person and table" : "the table of the room alone") << " beside it";
+      EXPECT_EQ(found[0].node, cupboard);
+    }
     EXPECT_TRUE(enclosures_at(scene, radar_at({3, 0, 0}, {3, 1, 0}), 0.0).empty()) << "between the walls alone";
   }
 }
@@ -110,6 +112,8 @@ TEST(Enclosures, AMeshThroughTheWallOfItsRoomIsNotOutside) {
   add(scene, "walls", box(), Vec3::Zero(), room);
   add(scene, "frame", box(), Vec3(1.5, 0, 0), room);
   EXPECT_TRUE(enclosures_at(scene, radar_at({-0.5, 0, 0}, {-0.5, 0, 0.1}), 0.0).empty());
+  add(scene, "pole", box(), Vec3(1.5, 0, 0));
+  EXPECT_TRUE(enclosures_at(scene, radar_at({-0.5, 0, 0}, {-0.5, 0, 0.1}), 0.0).empty()) << "nor is another body";
 }
 
 // Two open halves that close each other, below one parent; a pane in place of one of them lets waves out.

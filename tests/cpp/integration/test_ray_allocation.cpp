@@ -66,6 +66,13 @@ TEST(ShareOut, SharesAgainByWeightWhatANeedLeaves) {
   EXPECT_EQ(shares, (RayShares{{"served", 30.0}, {"met", 46.0}, {"lacks", 16.0}, {"any", 8.0}}));
 }
 
+// A need without bounds asks for as many as a pilot may foretell, and may need any number more.
+TEST(ShareOut, GivesTheShareOfItsWeightToWhatMayNeedAnyNumberHoweverLittleItAsks) {
+  RayNeeds needs{{need("weak", 100, false, false), need("strong", 2000, false, false)}};
+  needs.strata[0].weight = 3.0;
+  EXPECT_EQ(share_out(needs, 1000.0), (RayShares{{"weak", 750.0}, {"strong", 250.0}}));
+}
+
 // Over random needs and weights, too many for their rays.
 TEST(ShareOut, NoBoundedNeedGetsMoreThanItAsksWhileAnotherLacks) {
   std::mt19937 random(1);

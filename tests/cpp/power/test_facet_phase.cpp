@@ -45,6 +45,8 @@ TEST(FacetPhases, GrowWithTheScaleOfABody) {
   const double at_rest = phase_of(ball);
   ball.placement.linear() *= 2.5;
   EXPECT_NEAR(phase_of(ball) / at_rest, 2.5, 1e-12);
+  ball.placement.linear() *= -1.0;  // a reflection
+  EXPECT_NEAR(phase_of(ball) / at_rest, 2.5, 1e-12);
 }
 
 TEST(FacetPhases, AreNothingForFacetsThatStandForThemselves) {

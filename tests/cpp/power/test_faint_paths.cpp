@@ -154,6 +154,57 @@ TEST(FaintPaths, AreFaintBetweenAllAntennas) {
   EXPECT_EQ(thinned(asked).num_paths(), asked.num_paths());
 }
 
+Antenna looking(const AntennaPattern& pattern, double yaw) {
+  Antenna antenna = antenna_at(Vec3::Zero());
+  antenna.pattern = pattern;
+  antenna.orientation = turned(yaw, 0.0);
+  return antenna;
+}
+
+// A gain of 1 from one azimuth to another, and none elsewhere.
+AntennaPattern sector(double from, double to) {
+  return AntennaPattern::of_table(GainTable({from, to}, {-kPi / 2, kPi / 2}, std::vector<double>(4, 1.0)));
+}
+
+// A blind receiver and one that sees, which differ in one property alone: what the second one sees is not faint.
+TEST(FaintPaths, AreFaintBetweenAntennasThatDifferInOneProperty) {
+  AntennaPattern isotropic = AntennaPattern::cosine_power(2.0);
+  isotropic.kind = AntennaPattern::Kind::kIsotropic;
+  const double aside = 0.45 * kPi;
+  const std::pair<Antenna, Antenna> pairs[] = {
+      {looking(AntennaPattern::cosine_power(2.0), kPi), looking(isotropic, kPi)},
+      {looking(AntennaPattern::isotropic(1e-16), 0.0), looking(AntennaPattern::isotropic(), 0.0)},
+      {looking(AntennaPattern::cosine_power(300.0, 1.0), aside), looking(AntennaPattern::cosine_power(1.0, 1.0), aside)},
+      {looking(sector(2.0, 4.0), 0.0), looking(sector(-1.0, 1.0), 0.0)},
+      {looking(AntennaPattern::cosine_power(2.0), kPi), looking(AntennaPattern::cosine_power(2.0), 0.0)}};
+  for (size_t i = 0; i < std::size(pairs); ++i) {
+    Radar radar = plain_radar({0, 0, 0}, {0, 0, 0});
+    radar.receivers = {pairs[i].first, pairs[i].second};
+    Paths asked = traced(1, radar);
+    asked.frame.faint_power = 1e-12 * largest_power(traced());
+    EXPECT_LT(largest_power(asked), 1e-3 * asked.frame.faint_power) << i;
+    EXPECT_EQ(thinned(asked).num_paths(), asked.num_paths()) << i;
+  }
+}
+
+TEST(FaintPaths, AreCountedBesideThoseThatWereLeftOutBefore) {
+  Paths asked = traced();
+  asked.frame.faint_power = largest_power(asked);
+  asked.frame.statistics.num_faint_paths = 7;
+  const Paths some = thinned(asked);
+  EXPECT_LT(some.num_paths(), asked.num_paths());
+  EXPECT_EQ(some.frame.statistics.num_faint_paths, 7 + asked.num_paths() - some.num_paths());
+}
+
+// Where nothing is asked for, paths without any power stay, too.
+TEST(FaintPaths, AreNoneOfNoPowerWhereNothingIsAskedFor) {
+  Radar radar = plain_radar({0, 0, 0}, {0, 0, 0});
+  radar.receivers = {looking(AntennaPattern::cosine_power(2.0), kPi)};
+  const Paths dark = traced(1, radar);
+  EXPECT_EQ(largest_power(dark), 0.0);
+  EXPECT_EQ(thinned(dark).num_paths(), dark.num_paths());
+}
+
 TEST(FaintPaths, AreNoCoherentOnesAndNoneWhereNothingIsAskedFor) {
   Scene scene;
   add_smooth_ball(scene, "ball", {10, 0, 0}, 0.1, 3);

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <tuple>
 
 #include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
@@ -244,6 +247,121 @@ TEST(ReceivedPower, IntervalHoldsWhatTheFilterTakesAway) {
   EXPECT_LT(coarse.low, truth);
   EXPECT_GT(coarse.high, truth);
   EXPECT_FALSE(coarse.resolved());
+}
+
+// Directions at random err by the root of the sum of squares, and so do all hits behind a diffuse one: the fields of all
+// paths over the same hits, in either order, are one hit.
+TEST(ReceivedPower, ErrorOfWhatChanceFindsIsTheRootOfTheSumOfSquares) {
+  Scene scene = lambert_plate();
+  add_rectangle(scene, "floor", {5, -3, -1}, {30, 0, 0}, {0, 6, 0}, lambert(0.8));
+  for (const Sampler sampler : {Sampler::kRandom, Sampler::kLattice}) {
+    TraceSettings settings = with_rays(4000, 2);
+    settings.sampler = sampler;
+    const Paths all = trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), settings);
+    const int least = sampler == Sampler::kRandom ? 1 : 2;
+    std::vector<uint8_t> keep;
+    for (const uint64_t diffuse : all.diffuse) keep.push_back(std::popcount(diffuse) >= least);
+    const Paths paths = all.select(keep);
+    std::map<std::vector<std::tuple<uint32_t, uint32_t, float, float>>, std::complex<double>> fields;  // by hits, in order
+    const Replayed replay = replayed(paths);
+    const double wavenumber = kTwoPi * paths.radar.waveform.start_frequency / kSpeedOfLight;
+    for (size_t i = 0; i < replay.lengths.size(); ++i) {
+      std::vector<std::tuple<uint32_t, uint32_t, float, float>> hits;
+      for (int k = 0; k < paths.num_bounces[i]; ++k) {
+        const Hit& hit = paths.hits_of(static_cast<int64_t>(i))[k];
+        hits.emplace_back(hit.mesh_id, hit.triangle_id, hit.u, hit.v);
+      }
+      std::ranges::sort(hits);
+      fields[hits] += replay.amplitudes[i] * std::polar(1.0, -std::fmod(wavenumber * replay.lengths[i], kTwoPi));
+    }
+    double sum = 0.0, squares = 0.0;
+    for (const auto& [hits, field] : fields) {
+      sum += std::norm(field);
+      squares += std::norm(field) * std::norm(field);
+    }
+    const ReceivedPower power = received_power(paths);
+    EXPECT_GT(fields.size(), 100u);
+    EXPECT_NEAR(power.power / sum, 1.0, kCancelled);
+    EXPECT_NEAR(power.chance / std::sqrt(squares), 1.0, kCancelled) << least;
+  }
+}
+
+// By the image method: lambda / (4 pi L) over the way of 20 m, times the gain of half of both antennas and the root of 9 W.
+TEST(GroupSums, KnowWhatAnEndlessMirrorWouldSendBack) {
+  Scene scene;
+  add_rectangle(scene, "plate", {10, -0.2, -0.2}, {0, 0.4, 0}, {0, 0, 0.4}, share(Material::metal()));
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero(), 0.5, 9.0);
+  const Paths paths = shot(scene, radar, 4096, 1, 1);
+  const std::vector<uint32_t> together(static_cast<size_t>(paths.num_paths()));
+  const Sorting sorting{together, 1};
+  const GroupSums sums = sum_groups(paths, radar, {&sorting, 1}, nullptr, nullptr).front().front();
+  ASSERT_EQ(sums.kinds.size(), 1u);
+  const double image = 3.0 * 0.5 * kSpeedOfLight / 77e9 / (4.0 * kPi * 20.0);
+  constexpr double kBesideTheFoot = 1e-4;  // relative, of the way over the path next to the foot
+  EXPECT_NEAR(sums.kinds[0].image_field / image, 1.0, kBesideTheFoot);
+}
+
+// Without a filter nothing bounds the phases between the rays: all may be in phase, or cancel.
+TEST(ReceivedPower, WithoutAFilterLiesBetweenNothingAndAllInPhase) {
+  const Paths paths = shot(metal_sphere(), plain_radar(Vec3::Zero(), Vec3::Zero()), 2048, 1, 1, Footprint::kNone, 1);
+  double sum = 0.0;
+  for (const std::complex<double>& amplitude : replayed(paths).amplitudes) sum += std::abs(amplitude);
+  const ReceivedPower power = received_power(paths);
+  EXPECT_NEAR((power.bias + power.power) / (sum * sum), 1.0, kRounding);
+  EXPECT_GE(power.high, sum * sum);
+  EXPECT_EQ(power.low, 0.0);
+}
+
+// Of half the power 3.01 dB, of twice it as much; of 5 / 4 of it 0.969 dB.
+TEST(ReceivedPower, TellsItsIntervalAndErrorInDecibels) {
+  ReceivedPower power;
+  power.power = 2.0, power.low = 1.0, power.high = 2.5;
+  EXPECT_NEAR(power.interval_db(), 10.0 * std::log10(2.0), kRounding);
+  EXPECT_FALSE(power.is_within(3.0));
+  EXPECT_TRUE(power.is_within(3.02));
+  power.low = 1.9;
+  EXPECT_NEAR(power.interval_db(), 10.0 * std::log10(1.25), kRounding);
+  EXPECT_FALSE(power.is_within(0.96));
+  EXPECT_TRUE(power.is_within(0.98));
+  power.low = 0.0;
+  EXPECT_EQ(power.interval_db(), INFINITY);
+  power.standard_error = 0.5;
+  EXPECT_NEAR(power.error_db(), 10.0 * std::log10(1.25), kRounding);
+  power.standard_error = 1.01;  // more than half of the power
+  EXPECT_EQ(power.error_db(), INFINITY);
+  power.standard_error = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(power.error_db(), INFINITY);
+}
+
+// A metal ball beside a rough plate, of which each hit makes one path.
+TEST(ReceivedPower, KnowsEachPathAndTheStrongestHit) {
+  Scene scene = metal_sphere();
+  add_rectangle(scene, "rough", {8, 0.5, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
+  const Paths paths = shot(scene, plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0)), 4000, 1, 1, Footprint::kSecondOrder, 1);
+  const std::vector<uint32_t> together(static_cast<size_t>(paths.num_paths()));
+  const Sorting sorting{together, 1};
+  PowerAndLength of_paths;
+  const ReceivedPower power = received_powers(paths, {&sorting, 1}, nullptr, {}, &of_paths).front().front();
+  const Replayed replay = replayed(paths);
+  double strongest = 0.0, sum = 0.0;
+  for (size_t i = 0; i < replay.lengths.size(); ++i) {
+    const double of_path = std::norm(replay.amplitudes[i]);
+    EXPECT_NEAR(of_paths.power[i], of_path, kRounding * of_path) << i;
+    EXPECT_NEAR(of_paths.length[i], replay.lengths[i], kRounding) << i;
+    if (paths.diffuse[i] == 0) continue;
+    strongest = std::max(strongest, of_path);
+    sum += of_path;
+  }
+  EXPECT_GT(power.coherent, 1e-3 * power.diffuse);  // so that it is told apart
+  EXPECT_NEAR(power.strongest_share / (strongest / sum), 1.0, kRounding);
+}
+
+TEST(ReceivedPower, IsThatOfAnAntennaThatIsThere) {
+  const Paths paths = shot(lambert_plate(), plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1);
+  for (const Channel channel : {Channel{-1, 0}, Channel{1, 0}, Channel{0, -1}, Channel{0, 1}})
+    EXPECT_THROW(received_power(paths, nullptr, channel), std::out_of_range);
+  const std::vector<uint32_t> beyond(static_cast<size_t>(paths.num_paths()), 1);
+  EXPECT_THROW(received_powers(paths, Sorting{beyond, 1}), std::invalid_argument);
 }
 
 TEST(ReceivedPower, OfNothingIsZero) {

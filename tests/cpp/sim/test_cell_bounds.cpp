@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <random>
+#include <string>
 
 #include "cpp/sim/slow_map.h"
 #include "cpp/support/scenes.h"
@@ -102,6 +104,67 @@ TEST(CellBounds, HoldForTheSlowSumsOfGroups) {
         }
       }
     }
+  }
+}
+
+// One echo with a way and an amplitude in each chirp.
+Crowd one_echo(const ChirpSequence& waveform, const std::function<double(int)>& cell, double rate,
+               const std::function<double(int)>& amplitude) {
+  Crowd crowd(waveform, 1, 0.0);
+  for (int c = 0; c < waveform.num_chirps; ++c) {
+    const auto at = static_cast<size_t>(c);
+    ChirpEcho& echo = crowd.by_chirp[at].front();
+    echo = {delay_of_cell(waveform, cell(c)), rate, amplitude(c)};
+    crowd.block.delay[at] = echo.delay;
+    crowd.block.amplitude[at] = echo.amplitude;
+  }
+  return crowd;
+}
+
+// The bounds of one echo are close to its power, so that each thing that they allow for counts.
+void expect_bounded(const Radar& radar, const Crowd& crowd, const Window& window, const std::string& what) {
+  const std::vector<double> bounds = bounds_of(radar, crowd, {0}, 1, window, 1);
+  std::vector<std::complex<double>> samples = crowd.samples(radar.waveform, {0}, 0);
+  for (std::complex<double>& sample : samples) sample = radar.waveform.real ? 2.0 * sample.real() : sample;
+  const std::vector<double> power = slow_power(samples, radar.waveform, window, 1);
+  const auto columns = static_cast<size_t>(radar.waveform.num_samples);
+  for (size_t cell = 0; cell < power.size(); ++cell) {
+    if (cell % columns >= bounds.size()) continue;
+    ASSERT_LE(power[cell], (1.0 + kRounding) * bounds[cell % columns]) << what << ", cell " << cell;
+  }
+}
+
+TEST(CellBounds, HoldForOneEchoWhateverItDoes) {
+  const Window hann = Window::named("hann"), rect = Window::named("rect");
+  const auto one = [](int) { return 1.0; };
+  const Radar radar = radar_of();
+  const ChirpSequence& waveform = radar.waveform;
+  const int last = waveform.num_chirps - 1;
+  // The delay that grows within each chirp as fast as this shifts the beat by two cells.
+  const double rate = 2.0 * waveform.sampling_rate / waveform.num_samples / waveform.start_frequency;
+  const Crowd fast = one_echo(
+      waveform, [&](int c) { return 10.0 + c * waveform.chirp_interval * rate / delay_of_cell(waveform, 1.0); }, rate, one);
+  expect_bounded(radar, fast, hann, "Doppler shift");
+  expect_bounded(radar, one_echo(waveform, [](int) { return 12.0; }, 0.0, [&](int c) { return c == last ? 1.0 : 0.0; }),
+                 hann, "the last chirp alone");
+  expect_bounded(
+      radar, one_echo(waveform, [](int) { return 12.0; }, 0.0, [&](int c) { return c % 2 == 1 && c != last ? 1.04 : 1.0; }),
+      rect, "more between the chirps that are looked at");
+  const Radar real = radar_of(true);
+  expect_bounded(real, one_echo(real.waveform, [](int) { return 1.3; }, 0.0, one), rect, "negative frequencies");
+}
+
+TEST(CellBounds, WithTheDelayOfEverySampleAreThoseOfTheAmplitudeAlone) {
+  const Radar radar = radar_of();
+  const Crowd crowd(radar.waveform, 1, 0.0);
+  CellBounds bounds(1, radar, true);
+  const std::vector<int64_t> first{0};
+  bounds.see({&crowd.block, 1}, first);
+  double largest = 0.0;
+  for (const std::complex<double>& amplitude : crowd.block.amplitude) largest = std::max(largest, std::norm(amplitude));
+  for (const double bound : bounds.bounds(std::vector<uint32_t>{0}, 1, Window{}, 1)) {
+    EXPECT_GE(bound, 0.99 * largest);  // of which about every second chirp is looked at
+    EXPECT_LE(bound, kLoose * largest);
   }
 }
 

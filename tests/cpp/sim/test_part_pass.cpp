@@ -62,13 +62,20 @@ std::vector<std::complex<double>> slow_samples(const Paths& paths, const Radar& 
   return samples;
 }
 
-TEST(PartPass, PowersOfSetsAreThoseOfTheSlowSums) {
-  const Radar radar = radar_of();
-  const Paths paths = paths_of(radar);
-  const std::vector<uint32_t> group = every_third(paths);
-  ASSERT_GT(paths.num_paths(), 100);
+// The first group stands still.
+std::vector<uint32_t> by_motion(const Paths& paths) {
+  std::vector<uint32_t> group;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    const Hit* hits = paths.hits_of(path);
+    const auto count = paths.num_bounces[static_cast<size_t>(path)];
+    group.push_back(std::all_of(hits, hits + count, [](const Hit& hit) { return hit.mesh_id == 0; }) ? 0 : 1);
+  }
+  return group;
+}
+
+void expect_slow_powers(const Paths& paths, const Radar& radar, const std::vector<uint32_t>& group,
+                        const PartPass::Sets& sets) {
   PartPass pass(paths, radar, group, 3, {});
-  const PartPass::Sets sets = {{2}, {0, 1}};
   const std::vector<SetPower> powers = pass.powers(sets, Window{}, 1, 0.0, nullptr);
   ASSERT_EQ(powers.size(), sets.size());
   for (size_t set = 0; set < sets.size(); ++set) {
@@ -88,6 +95,19 @@ TEST(PartPass, PowersOfSetsAreThoseOfTheSlowSums) {
     if (sets[set].size() == 1) EXPECT_NEAR(powers[set].mean_square, mean_square, kSignal * mean_square);
     else EXPECT_EQ(powers[set].mean_square, 0.0);
   }
+}
+
+TEST(PartPass, PowersOfSetsAreThoseOfTheSlowSums) {
+  const Radar radar = radar_of();
+  const Paths paths = paths_of(radar);
+  ASSERT_GT(paths.num_paths(), 100);
+  expect_slow_powers(paths, radar, every_third(paths), {{2}, {0, 1}});
+}
+
+TEST(PartPass, PowersOfWhatStandsStillAreThoseOfTheSlowSums) {
+  const Radar radar = radar_of();
+  const Paths paths = paths_of(radar);
+  expect_slow_powers(paths, radar, by_motion(paths), {{0}, {1}});
 }
 
 TEST(PartPass, RangesThatAreAskedForHaveTheSamePowers) {

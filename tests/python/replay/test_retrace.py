@@ -170,6 +170,15 @@ def test_always_traces_each_stretch_anew():
         assert np.array_equal(whole[:, :, 4 * i:4 * i + 4], ep.synthesize(again, half))
 
 
+def test_a_new_trace_of_the_whole_frame_leaves_the_same_faint_paths_out():
+    radar, scene = radar_of(num_chirps=4), hidden_target()
+    everything = ep.trace(scene, radar, num_rays=4000, seed=3)
+    faint_power = 16 * np.median(np.abs(everything.amplitude) ** 2)
+    paths = ep.trace(scene, radar, num_rays=4000, seed=3, faint_power=faint_power)
+    assert everything.num_paths > paths.num_paths > 100 and paths.frame.statistics.num_faint_paths > 0
+    assert np.array_equal(ep.synthesize(paths, radar, retrace="always", keyframes=1), ep.synthesize(paths, radar))
+
+
 def test_parts_of_renewed_frames_add_up():
     radar = radar_of(num_chirps=32)
     paths = ep.trace(hidden_target(), radar, num_rays=3000)

@@ -4,6 +4,9 @@
 #include <random>
 #include <string>
 
+#include "cpp/support/scenes.h"
+#include "echopath/power/received_power.h"
+#include "echopath/radar/noise_power.h"
 #include "echopath/sim/rays/ray_allocation.h"
 
 namespace echopath::test_ray_allocation {
@@ -103,6 +106,69 @@ TEST(ShareOut, ServesObjectsBeforeImagesAndAddsUp) {
   EXPECT_DOUBLE_EQ(shares.at("pole over wall"), 50.0);
   EXPECT_GT(shares.at("car") + shares.at("pole"), 500.0);
   EXPECT_LT(shares.at("car over wall"), 500.0);
+}
+
+// A metal ball at rest, a rough plate that moves, and a small plate far away, whose echo is weak.
+Paths three_echoes() {
+  Scene scene;
+  testing::add_smooth_ball(scene, "ball", {10, 0, 0}, 0.1, 3);
+  testing::add_rectangle(scene, "car", {8, 2, -0.5}, {0, 1, 0}, {0, 0, 1}, testing::lambert(0.5));
+  Node car = scene.nodes()[1];
+  car.motion = std::make_shared<const LinearMotion>(Vec3(5.0, 0.0, 0.0));
+  scene.change(1, std::move(car));
+  testing::add_rectangle(scene, "far", {300, -5, 0}, {0, 0.3, 0}, {0, 0, 0.3}, testing::lambert(0.01));
+  return trace(scene, testing::plain_radar(Vec3::Zero(), Vec3::Zero()), testing::with_rays(3000));
+}
+
+ReceivedPower power_of_stratum(const Paths& paths, size_t stratum) {
+  std::vector<uint8_t> keep;
+  for (const auto of_path : paths.stratum) keep.push_back(of_path == stratum);
+  return received_power(paths.select(keep));
+}
+
+// The law as it is written down: rays in proportion to the error over the target, which is a quarter for what moves; within
+// a factor, and a quarter of them for what sends nothing back. The field of view keeps its rays.
+TEST(RayNeeds, FollowFromTheIntervalOfEachEcho) {
+  const Paths paths = three_echoes();
+  const RayShares launched = shares_of(paths.frame.strata);
+  const std::vector<WantedError> all = {{.db = 0.3},
+                                        {.db = 0.05, .law = RayLaw::kByPower},
+                                        {.db = 3.0, .least_growth = 1.0},
+                                        {.db = 0.3, .least_power = 1e-2 * received_power(paths).power},
+                                        {.db = 2.0, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower}};
+  int num_above = 0, num_below = 0;
+  for (const WantedError& wanted : all) {
+    const RayNeeds needs = ray_needs(paths, wanted);
+    double strongest = 0.0, worst = 0.0;
+    for (size_t k = 0; k < paths.frame.strata.size(); ++k) strongest = std::max(strongest, power_of_stratum(paths, k).power);
+    const double floor = wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : 1e-6 * strongest;
+    const double least = std::max(floor, wanted.least_power);
+    ASSERT_EQ(needs.strata.size(), paths.frame.strata.size());
+    for (size_t k = 0; k < needs.strata.size(); ++k) {
+      const Stratum& stratum = paths.frame.strata[k];
+      const RayNeed& found = needs.strata[k];
+      const ReceivedPower power = power_of_stratum(paths, k);
+      const double half = std::max(power.high_of_rays - power.power, power.power - power.low_of_rays);
+      const double missing = 10.0 * std::log10(1.0 + half / std::max(power.power, least));
+      const double target = wanted.db * (stratum.name == "car" ? 0.25 : 1.0);
+      const auto relative = [](double db) { return std::pow(10.0, 0.1 * db) - 1.0; };
+      double growth = wanted.law == RayLaw::kByDecibels ? missing / target : relative(missing) / relative(target);
+      growth = std::clamp(growth, wanted.least_growth, 32.0);
+      if (power.high_of_rays == 0.0) growth = std::max(0.25, wanted.least_growth);
+      if (stratum.object < 0) growth = 1.0;
+      EXPECT_EQ(found.stratum, stratum.name);
+      EXPECT_NEAR(found.rays, growth * launched.at(stratum.name), kRounding * found.rays) << stratum.name;
+      EXPECT_EQ(found.is_bounded, growth < 32.0) << stratum.name;
+      EXPECT_EQ(found.is_resolved, missing <= target || power.high_of_rays <= least) << stratum.name;
+      EXPECT_NEAR(found.echo.high, power.high_of_rays, kRounding * power.high_of_rays);
+      EXPECT_FALSE(found.is_image);
+      if (power.high_of_rays > least) worst = std::max(worst, missing);
+      (power.high_of_rays > least ? num_above : num_below) += 1;
+    }
+    EXPECT_NEAR(needs.worst_db, worst, kRounding);
+  }
+  EXPECT_GT(num_above, 5);
+  EXPECT_GT(num_below, 2);
 }
 
 // Needs of two machines differ in their last bits, or by a path or two of thousands.

@@ -5,10 +5,13 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <string>
 #include <tuple>
 
+#include "cpp/support/expect_error.h"
 #include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
+#include "echopath/power/faint_paths.h"
 #include "echopath/power/received_power.h"
 
 namespace echopath::test_received_power {
@@ -286,6 +289,18 @@ TEST(ReceivedPower, ErrorOfWhatChanceFindsIsTheRootOfTheSumOfSquares) {
   }
 }
 
+// Likewise of paths that a lot has kept for others, though a lattice has found them: each counts for 64.
+TEST(ReceivedPower, ErrorOfWhatStandsForOthersIsTheRootOfTheSumOfSquares) {
+  Paths paths = shot(lambert_plate(), plain_radar(Vec3::Zero(), Vec3::Zero()), 40000, 1, 1);
+  paths.frame.faint_power = 1.0;
+  const Paths some = thinned(paths);
+  double squares = 0.0;
+  for (const std::complex<double>& amplitude : replayed(some).amplitudes) squares += std::pow(std::norm(amplitude), 2);
+  EXPECT_GT(some.num_paths(), 100);
+  EXPECT_LT(some.num_paths(), paths.num_paths() / 32);
+  EXPECT_NEAR(received_power(some).chance / std::sqrt(squares), 1.0, kRounding);
+}
+
 // By the image method: lambda / (4 pi L) over the way of 20 m, times the gain of half of both antennas and the root of 9 W.
 TEST(GroupSums, KnowWhatAnEndlessMirrorWouldSendBack) {
   Scene scene;
@@ -358,8 +373,13 @@ TEST(ReceivedPower, KnowsEachPathAndTheStrongestHit) {
 
 TEST(ReceivedPower, IsThatOfAnAntennaThatIsThere) {
   const Paths paths = shot(lambert_plate(), plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 1);
-  for (const Channel channel : {Channel{-1, 0}, Channel{1, 0}, Channel{0, -1}, Channel{0, 1}})
-    EXPECT_THROW(received_power(paths, nullptr, channel), std::out_of_range);
+  const auto expect_refused = [&](Channel channel, const std::string& text) {
+    test::expect_error<std::out_of_range>([&] { received_power(paths, nullptr, channel); }, {text});
+  };
+  expect_refused({-1, 0}, "tx: must lie in 0 to 0, got -1");
+  expect_refused({1, 0}, "tx: must lie in 0 to 0, got 1");
+  expect_refused({0, -1}, "rx: must lie in 0 to 0, got -1");
+  expect_refused({0, 1}, "rx: must lie in 0 to 0, got 1");
   const std::vector<uint32_t> beyond(static_cast<size_t>(paths.num_paths()), 1);
   EXPECT_THROW(received_powers(paths, Sorting{beyond, 1}), std::invalid_argument);
 }

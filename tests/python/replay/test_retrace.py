@@ -179,6 +179,15 @@ def test_a_new_trace_of_the_whole_frame_leaves_the_same_faint_paths_out():
     assert np.array_equal(ep.synthesize(paths, radar, retrace="always", keyframes=1), ep.synthesize(paths, radar))
 
 
+def test_a_frame_has_no_more_stretches_than_chirps():
+    """Bounces that slide for 80 ms want more keyframes than two; each chirp is renewed by itself where that is fewer."""
+    radar = radar_of(num_chirps=2, chirp_interval=40e-3)
+    paths = ghosts_of(sliding_scene(), radar)
+    assert ep.validity(paths, radar).keyframes > 2
+    found = ep.synthesize(paths, radar, retrace="invalid")
+    assert np.array_equal(found, ep.synthesize(paths, radar, retrace="invalid", keyframes=2))
+
+
 def test_parts_of_renewed_frames_add_up():
     radar = radar_of(num_chirps=32)
     paths = ep.trace(hidden_target(), radar, num_rays=3000)

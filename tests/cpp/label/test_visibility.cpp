@@ -255,15 +255,36 @@ TEST(Visibility, WhatAMovingScreenUncoversMayAppear) {
   screen.motion = std::make_shared<LinearMotion>(Vec3(0.0, 10.0, 0.0));
   scene.add(std::move(screen));
   add_facing(scene, "beside", 10, 5, 6, -1, 1);
-  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const SurfaceMap surfaces = map_surfaces(scene, {{"plate", {"plate"}}, {"beside", {"beside"}}});
-  const auto is_found = [&](double other) {
+  const auto is_found = [&](double other, const Radar& radar = plain_radar(Vec3::Zero(), Vec3::Zero())) {
     const std::vector<uint32_t> asked{0};
     return !may_appear(scene, radar, surfaces, asked, {0.0, {0.0, other}, 0.05}).empty();
   };
   EXPECT_FALSE(is_found(0.01));   // edge at -0.5 m
   EXPECT_FALSE(is_found(0.013));  // 3 % in sight
   EXPECT_TRUE(is_found(0.018));   // 8 %
+  // From 2 m aside the screen that rests hides all of it.
+  EXPECT_FALSE(is_found(0.018, plain_radar(Vec3::Zero(), {0, 2, 0})));
+  EXPECT_FALSE(is_found(0.018, plain_radar({0, 2, 0}, Vec3::Zero())));
+}
+
+// A radar that drives to the right looks past the edge of a screen at 5 m: from y = -10 t, the screen at y > -0.6 m leaves
+// the plate free at y < 10 t - 1.2 m.
+TEST(Visibility, WhatTheRadarDrivesPastMayAppear) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -0.6, 6, -2, 2);
+  Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  radar.motion = std::make_shared<LinearMotion>(Vec3(0.0, -10.0, 0.0));
+  const SurfaceMap surfaces = map_surfaces(scene, {{"plate", {"plate"}}});
+  const auto is_found = [&](double time, double other) {
+    const std::vector<uint32_t> asked{0};
+    return !may_appear(scene, radar, surfaces, asked, {time, {time, other}, 0.05}).empty();
+  };
+  for (const double time : {0.0, 0.01}) {
+    EXPECT_FALSE(is_found(time, 0.026)) << "3 % in sight";
+    EXPECT_TRUE(is_found(time, 0.036)) << "8 %";
+  }
 }
 
 TEST(Visibility, CancelledJobStops) {

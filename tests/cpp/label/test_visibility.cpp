@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cpp/label/plates.h"
@@ -266,6 +267,54 @@ TEST(Visibility, WhatAMovingScreenUncoversMayAppear) {
   // From 2 m aside the screen that rests hides all of it.
   EXPECT_FALSE(is_found(0.018, plain_radar(Vec3::Zero(), {0, 2, 0})));
   EXPECT_FALSE(is_found(0.018, plain_radar({0, 2, 0}, Vec3::Zero())));
+}
+
+// Two screens that touch each other, of which one comes where the other goes.
+TEST(Visibility, WhatOneScreenUncoversForAnotherStaysHidden) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  for (const auto& [name, begin, end] : {std::tuple("goes", -6.0, 0.1), std::tuple("comes", 0.0, 6.0)}) {
+    add_facing(scene, name, 5, begin, end, -2, 2);
+    Node screen = scene.nodes().back();
+    screen.motion = std::make_shared<LinearMotion>(Vec3(0.0, -10.0, 0.0));
+    scene.change(static_cast<int>(scene.nodes().size()) - 1, std::move(screen));
+  }
+  const SurfaceMap surfaces = map_surfaces(scene, {{"plate", {"plate"}}});
+  const std::vector<uint32_t> asked{0};
+  const AppearingSettings settings{0.0, {0.0, 0.02, 0.06}, 0.05};
+  EXPECT_TRUE(may_appear(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), surfaces, asked, settings).empty());
+}
+
+// The one direction goes between two plates, so that nothing is known of them.
+TEST(Visibility, WhatNoDirectionMeetsMayAppear) {
+  Scene scene;
+  add_facing(scene, "object_left", 10, -1, -0.8, -1, 1);
+  add_facing(scene, "object_right", 10, 0.8, 1, -1, 1);
+  add_facing(scene, "screen", 5, -6, 6, -2, 2);
+  const SurfaceMap surfaces = map_surfaces(scene, {{"object", {"object*"}}});
+  const std::vector<uint32_t> asked{0};
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  EXPECT_EQ(may_appear(scene, radar, surfaces, asked, {0.0, {0.01}, 0.05, 1}), asked);
+  EXPECT_TRUE(may_appear(scene, radar, surfaces, asked, {0.0, {0.01}, 0.05}).empty());
+}
+
+// What a screen or an object that bends will be like is not followed.
+TEST(Visibility, WhatBendsOrWhatSuchHidesMayAppear) {
+  for (const std::string bends : {"none", "plate", "screen"}) {
+    Scene scene;
+    for (const auto& [name, distance, half] : {std::tuple("plate", 10.0, 1.0), std::tuple("screen", 5.0, 2.0)}) {
+      add_facing(scene, name, distance, -half, half, -half, half);
+      if (name != bends) continue;
+      Node node = scene.nodes().back();
+      const std::vector<Vec3>& corners = node.mesh->vertices();
+      node.deformation = std::make_shared<VertexSequence>(std::vector<double>{0.0, 1.0}, std::vector{corners, corners});
+      scene.change(static_cast<int>(scene.nodes().size()) - 1, std::move(node));
+    }
+    const SurfaceMap surfaces = map_surfaces(scene, {{"plate", {"plate"}}});
+    const std::vector<uint32_t> asked{0};
+    const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+    EXPECT_EQ(may_appear(scene, radar, surfaces, asked, {0.0, {0.01}, 0.05}).empty(), bends == "none") << bends;
+  }
 }
 
 // A radar that drives to the right looks past the edge of a screen at 5 m: from y = -10 t, the screen at y > -0.6 m leaves

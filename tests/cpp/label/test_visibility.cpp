@@ -228,6 +228,28 @@ TEST(Visibility, AnyNumberOfObjectsHideEachOther) {
   EXPECT_NEAR(occluded_by(seen, "screen"), 0.5, kShareError);
 }
 
+// Ends that are 5 cm apart see one outline, of which the nearer one sees 1 % more.
+TEST(Visibility, SolidAnglesOfNearEndsGoByTheirDistances) {
+  constexpr double kFlat = 1e-4;  // relative: a plate of 0.2 m at 10 m is nearly its area over the distance squared
+  Scene scene;
+  add_facing(scene, "plate", 10, -0.1, 0.1, -0.1, 0.1);
+  const ObjectVisibility seen = seen_in(scene, {"plate"}, plain_radar(Vec3::Zero(), {0.05, 0, 0})).front();
+  const double expected = rectangle_angle(-0.1, 0.1, -0.1, 0.1, 9.95) / rectangle_angle(-0.1, 0.1, -0.1, 0.1, 10);
+  EXPECT_NEAR(seen.receiver.solid_angle / seen.transmitter.solid_angle, expected, kFlat);
+}
+
+TEST(Visibility, OccludersComeFromTheLargestToTheSmallest) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "small", 5, 0.35, 2, -2, 2);
+  add_facing(scene, "large", 5, -2, 0.1, -2, 2);
+  add_facing(scene, "middle", 5, 0.1, 0.35, -2, 2);
+  const VisibilityFromEnd seen = seen_in(scene, {"plate"}).front().transmitter;
+  std::vector<std::string> names;
+  for (const auto& [name, share] : seen.occluders) names.push_back(name);
+  EXPECT_EQ(names, (std::vector<std::string>{"large", "middle", "small"}));
+}
+
 TEST(Visibility, KeptGeometryGivesTheSame) {
   Scene scene;
   add_disc(scene, "far", 10, 1);

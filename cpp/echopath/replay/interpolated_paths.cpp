@@ -39,7 +39,7 @@ double order_for(double tolerance, double tail, double first, int order) {
 std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const {
   std::vector<uint8_t> is_touched(paths_.scene->meshes().size());
   const auto touch = [&](uint32_t mesh) {
-    const std::atomic_ref<uint8_t> flag(is_touched[mesh]);  // read first: threads share what none writes
+    const std::atomic_ref<uint8_t> flag(is_touched[mesh]);  // is written once, so that threads go on sharing its memory
     if (!flag.load(std::memory_order_relaxed)) flag.store(1, std::memory_order_relaxed);
   };
   parallel_for_chunks(std::ssize(paths), kPathsOfTask, [&](int64_t begin, int64_t end) {

@@ -55,7 +55,8 @@ std::vector<ViewSet> sort_paths(const Paths& paths, const std::vector<Grouping>&
   std::vector<ViewSet> sets;
   for (size_t view = 0; view < views.size(); ++view) place(view, views[view](paths, job), sets, job);
   for (ViewSet& set : sets) {
-    for (Partition& partition : set.combined.partitions) partition.group = {};  // only the combination is needed now
+    // Only the combination is needed now.
+    for (Partition& partition : set.combined.partitions) partition.group = std::vector<uint32_t>();
   }
   return sets;
 }

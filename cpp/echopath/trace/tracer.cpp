@@ -233,7 +233,7 @@ Paths Tracer::run(Job* job) const {
   record.append(last_blocks, job);
   record.finish();
   images.doubles().leave_out(paths, job);
-  add_passes(paths, {origin_, geometry_.reach()}, job);
+  add_passes(paths, geometry_.rounding(), job);
   return paths;
 }
 

@@ -19,7 +19,7 @@ from .powers import ViewPowers, mean_square, parts_by_rival
 
 SIGNALS_IN_MEMORY = 128 << 20  # bytes that the signals of families may take at a time, unless one needs more
 STEP = 0.1                     # ratio of powers: how far each round goes below the last
-MOST_SUMS = 1 << 22            # of amplitudes, by rival and pair of cells of range
+MOST_SUMS = 1 << 23            # of amplitudes, by rival and pair of cells of range
 SHOWN = 1e-3                   # of the noise floor: ranges where a family can show less are left out of its map at first
 APART = 0.5                    # of the floor of the mask, as far as it is known: power with which cells are divided early
 

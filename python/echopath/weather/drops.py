@@ -56,7 +56,10 @@ def reflectivities(frequency: float, rain: float, temperature: float) -> NDArray
 
 
 def per_volume(frequency: float, rain: float, temperature: float) -> NDArray[np.float64]:
-    """Cross sections per volume in 1/m [2, N] of the drops about each of DIAMETERS: backscatter, extinction."""
+    """Cross sections per volume in 1/m [2, N] of the drops about each of DIAMETERS: backscatter, extinction.
+
+    frequency: Hz; rain: mm/h; temperature: K
+    """
     if rain == 0.0:
         return np.zeros((2, len(DIAMETERS)))
     index = np.sqrt(water_permittivity(frequency, temperature))

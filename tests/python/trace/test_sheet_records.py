@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.behind_sheets import GLASS, echo_of_ball, make_radar, make_scene, over_free
+from support.behind_sheets import FREQUENCY, GLASS, echo_of_ball, make_radar, make_scene, over_free
 
 # --- expressions, tables, files ---
 
@@ -92,19 +92,40 @@ def test_live_scenes_follow_a_pane():
     assert np.max(np.abs(view.cube - traced)) < 1e-4 * np.max(np.abs(traced))
 
 
-def test_what_a_curved_sheet_lets_through_stays_as_it_is_where_another_sheet_moves():
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.5, edge=0.1), name="radome", material=GLASS, position=(4.0, 0.0, 0.0), smooth=True)
-    scene.add(ep.actors.plate(2.0, 2.0), name="pane", material=GLASS, position=(2.0, 5.0, 0.0), yaw=-0.4)
-    for name, y in (("box", 0.2), ("far", 9.0)):
-        scene.add(ep.actors.box((1.0, 0.8, 1.2)), name=name, material=ep.Material.metal(), position=(8.0, y, 0.0), yaw=0.5)
-    live = ep.Live(scene, make_radar(), num_rays=2000, polarization="jones")
+def check_that_a_pane_moves_nothing_else(scene, place):
+    """That a live view is the fresh one after the pane has gone to a place (m)."""
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e8, num_samples=128, sampling_rate=20e6, num_chirps=16,
+                                chirp_interval=1e-3)
+    live = ep.Live(scene, make_radar(waveform), num_rays=2000, polarization="jones")
     live.update()
-    live.scene["pane"].position = (2.3, 5.0, 0.0)
+    live.scene["pane"].position = place
     view = live.update()
-    fresh = ep.Live(live.scene, make_radar(), num_rays=2000, polarization="jones").update().cube
+    fresh = ep.Live(live.scene, make_radar(waveform), num_rays=2000, polarization="jones").update().cube
     assert view.num_rays_shot < view.num_rays / 2
     assert np.max(np.abs(view.cube - fresh)) < 1e-12 * np.max(np.abs(fresh))
+
+
+def radome_and_pane(height: float, pane_size: float, pane_height: float):
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5, edge=0.1), name="radome", material=GLASS, position=(4.0, 0.0, height), smooth=True)
+    scene.add(ep.actors.plate(pane_size, pane_size), name="pane", material=GLASS, position=(2.0, 5.0, pane_height), yaw=-0.4)
+    return scene
+
+
+def test_what_a_curved_sheet_lets_through_stays_as_it_is_where_another_sheet_moves():
+    scene = radome_and_pane(0.0, 2.0, 0.0)
+    for name, y in (("box", 0.2), ("another", 9.0)):
+        scene.add(ep.actors.box((1.0, 0.8, 1.2)), name=name, material=ep.Material.metal(), position=(8.0, y, 0.0), yaw=0.5)
+    check_that_a_pane_moves_nothing_else(scene, (2.3, 5.0, 0.0))
+
+
+def test_what_a_curved_sheet_lets_through_from_afar_stays_as_it_is_where_another_sheet_moves():
+    """From beyond the points to which rays would be moved up in a scene of the sheets alone, whose size the pane decides."""
+    scene = radome_and_pane(0.7, 0.5, 6.0)
+    for name, place in (("box", (60.0, 1.5, -3.0)), ("another", (60.0, 20.0, 0.0))):
+        scene.add(ep.actors.box((4.0, 6.0, 6.0)), name=name, material=ep.Material(reflectivity=1.0, scattering=1.0),
+                  position=place, yaw=0.5)
+    check_that_a_pane_moves_nothing_else(scene, (2.0, 8.0, 6.0))
 
 
 def test_who_stands_behind_a_pane_is_visible_and_a_wall_hides_it():

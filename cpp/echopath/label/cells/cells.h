@@ -10,8 +10,7 @@ namespace echopath {
 inline constexpr int16_t kNoLabel = -1;
 
 // Returns the power of each part over the sum of all parts, [K, N] from [K, N]: it sums to 1 in each cell and is 0 where
-// no part has power. Raises invalid_argument unless num_parts in [1, 32767] divides the number of powers; so do the
-// functions below.
+// no part has power. Raises invalid_argument unless num_parts in [1, 32767] divides the number of powers.
 std::vector<double> power_shares(std::span<const double> power, int64_t num_parts);
 
 // Tells which cells have something to label, [N] of 0 or 1.
@@ -25,7 +24,7 @@ struct CellMask {
 CellMask cell_mask(std::span<const double> power, double noise_floor, double dynamic_range);
 
 // Returns the part of the largest power in each cell, the first of equal ones, [N] from [K, N]; kNoLabel where `labelled`
-// [N] is 0 or no part has power.
+// [N] is 0 or no part has power. Raises as power_shares.
 std::vector<int16_t> strongest_part(std::span<const double> power, int64_t num_parts, std::span<const uint8_t> labelled);
 
 struct MapShape {

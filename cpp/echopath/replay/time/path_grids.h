@@ -34,7 +34,7 @@ class PathGrids {
 
   const TimeGrids& grids() const { return grids_; }
   GridIndex first(int64_t path) const;
-  // Writes the first grids of paths [begin, begin + first.size()), or of as many that are given.
+  // Writes the first grids of paths [begin, begin + first.size()), or of the given paths, one each.
   void first(int64_t begin, std::span<GridIndex> first) const;
   void first(std::span<const int64_t> paths, std::span<GridIndex> first) const;
   NextGrid next(const UnfollowedPath& path, GridIndex polynomial) const;

@@ -112,7 +112,7 @@ void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
 void ReplayStream::run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink) {
   WindowPipeline out(*this, sink);
   add_still(by_grid.front(), out);
-  by_grid.front() = {};
+  by_grid.front() = std::vector<int64_t>();  // gives its memory back, which {} would keep
   add_moving(grids, std::move(by_grid), out);
   out.finish();
 }
@@ -139,7 +139,7 @@ void ReplayStream::add_moving(const PathGrids& grids, PathsByGrid by_grid, Windo
       const NextGrid next = grids.next(path, polynomial);
       (next.by_chirp ? by_chirp : by_grid)[next.grid.place()].push_back(path.path);
     }
-    paths = {};
+    paths = std::vector<int64_t>();
   }
   for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
     add_chirps(by_chirp, transmitter, out);

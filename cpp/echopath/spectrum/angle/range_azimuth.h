@@ -38,7 +38,8 @@ struct RangeAzimuth {
 // With all velocities Capon's covariance is that of a range and its neighbours, over all velocities. A gate leaves out the
 // other velocities; noise of the sum falls by the share of the velocities that it takes.
 // Runs in parallel over ranges; the result does not depend on the threads. Raises as `beamform`, and invalid_argument unless
-// `velocity` is within half a cell of one of the map, and for gates without a velocity of it or beside `velocity`.
+// `velocity` is within half a cell of one of the map, where it has several, and for gates without a velocity of it or beside
+// `velocity`.
 RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
                            const VelocityChoice& choice = {}, const BeamformOptions& options = {}, Job* job = nullptr);
 

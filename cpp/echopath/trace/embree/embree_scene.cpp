@@ -75,6 +75,12 @@ void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3&
   bring_to(scene, pose, [&](const Box&) { return origin; }, Upkeep::kTimes, job);
 }
 
+void EmbreeScene::update(const Scene& part, const PosedScene& pose, const RayRounding& of_all, Job* job) {
+  update(part, pose, of_all.origin, job);
+  lift_ = of_all.lift;
+  reach_ = of_all.reach;
+}
+
 void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& near, Upkeep upkeep, Job* job) {
   bring_to(scene, pose, [&](const Box& box) {
     return origin_in(box, near, upkeep != Upkeep::kTimes || scene.is_anything_moving());

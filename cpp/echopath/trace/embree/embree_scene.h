@@ -37,6 +37,13 @@ struct Segment {
   Vec3 from, to;  // m, relative to the origin
 };
 
+// Says where and how coarsely points and rays of a scene are rounded to single precision.
+struct RayRounding {
+  Vec3 origin;   // m, world: EmbreeScene::origin
+  double lift;   // m: EmbreeScene::lift
+  double reach;  // m: EmbreeScene::reach
+};
+
 // Answers queries of rays in a posed scene. Coordinates are relative to `origin` (world), so that single precision resolves
 // the space around it. A ray that starts far outside the scene is first moved up to it in double precision. Queries are
 // thread-safe, and pass sheets unless `sees` says otherwise.
@@ -56,6 +63,8 @@ class EmbreeScene {
   // trees, and one that shares a tree that tree (0.2 us a triangle). Elsewhere everything is built, unless nothing differs.
   // Raises as the constructor does and holds nothing after that.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
+  // Updates a part of a scene, which is rounded as all of it is.
+  void update(const Scene& part, const PosedScene& pose, const RayRounding& of_all, Job* job);
   // Says what may differ at the next update: the time alone; or `near` moves, too; or the scene is edited. Edits may touch
   // any object: the origin is then rounded even where nothing moves, as are lift and reach (up to powers of two), so that
   // they seldom depend on any one of them, and meshes that overlap little have trees of their own.
@@ -139,6 +148,7 @@ class EmbreeScene {
   // the same at most times, and meshes at rest need not be built again.
   static Vec3 origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves = false);
   const Vec3& origin() const { return meshes_.origin(); }
+  RayRounding rounding() const { return {origin(), lift_, reach_}; }
 
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
     const Surface& surface = surfaces_[mesh_id];

@@ -115,14 +115,15 @@ class FrustumLocator::Cells {
     const bool is_vain = static_cast<double>(kept) > 2.0 * kWorth * static_cast<double>(cell.size());
     below.num_vain = above.num_vain = is_vain ? cell.num_vain + 1 : 0;
     num_entries_ += kept - cell.size();
-    cell.holding = cell.crossing = {};
+    cell.holding = std::vector<int>();
+    cell.crossing = std::vector<int>();
   }
 
   static void end_with(Cell& cell) {
     const auto num_holding = std::ssize(cell.holding);
     cell.holding.insert(cell.holding.end(), cell.crossing.begin(), cell.crossing.end());
     std::inplace_merge(cell.holding.begin(), cell.holding.begin() + num_holding, cell.holding.end());
-    cell.crossing = {};
+    cell.crossing = std::vector<int>();
   }
 
   std::vector<int> all_;           // frusta that may reach a point outside of the cells

@@ -71,7 +71,7 @@ Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) cons
   writer.append(parts, job);
   writer.finish();
   doubles.leave_out(paths, job);
-  add_passes(paths, {shared.origin, shared.reach}, job);
+  add_passes(paths, {shared.origin, shared.lift, shared.reach}, job);
   return paths;
 }
 

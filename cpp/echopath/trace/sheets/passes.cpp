@@ -29,12 +29,12 @@ std::vector<uint32_t> sheets_of(const Scene& scene) {
 class SheetScene {
  public:
   // `ids` names the sheets, of which there is at least one.
-  SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const Rounding& rounding, Job* job)
-      : scene_(scene), ids_(std::move(ids)), reach_(rounding.reach) {
+  SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const RayRounding& rounding, Job* job)
+      : scene_(scene), ids_(std::move(ids)) {
     std::vector<bool> is_sheet(scene.meshes().size());
     for (const uint32_t id : ids_) is_sheet[id] = true;
     scene_.keep_meshes(is_sheet);
-    geometry_.update(scene_, PosedScene(scene_, time), rounding.origin, job);
+    geometry_.update(scene_, PosedScene(scene_, time), rounding, job);
   }
   const std::vector<uint32_t>& ids() const { return ids_; }
 
@@ -47,12 +47,11 @@ class SheetScene {
   }
   double behind(const RayHit& met) const { return geometry_.behind(met.distance, met.reported); }
   const Vec3& origin() const { return geometry_.origin(); }  // m, world, to which its points are relative
-  double reach() const { return reach_; }                    // m, beyond which rays are rounded no more
+  double reach() const { return geometry_.reach(); }         // m, beyond which rays are rounded no more
 
  private:
   Scene scene_;
   std::vector<uint32_t> ids_;
-  double reach_;
   EmbreeScene geometry_;
 };
 
@@ -180,7 +179,7 @@ void join(const std::vector<PassBlock>& blocks, Paths& paths) {
 
 }  // namespace
 
-void add_passes(Paths& paths, const Rounding& rounding, Job* job) {
+void add_passes(Paths& paths, const RayRounding& rounding, Job* job) {
   if (paths.num_paths() == 0) return;
   std::vector<uint32_t> ids = sheets_of(*paths.scene);
   if (ids.empty()) return;

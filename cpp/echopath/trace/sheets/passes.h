@@ -7,21 +7,16 @@
 // a polarised trace the matrix gets what both modes do to the components at either end of the path, over that; between hits,
 // sheets are taken to leave the polarisation as it is. Replay follows the fields of edge paths itself (path_passages.h).
 #include "echopath/record/paths.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 
 // Passes of one leg from which on it is taken to end at the next sheet: its path has no weight then, and is counted.
 inline constexpr int kMostPasses = 64;
 
-// Says where the geometry is rounded that the rays of the record have met. It is that of the whole scene, so that what one
-// path has of the sheets on its way does not depend on the place of any other sheet.
-struct Rounding {
-  Vec3 origin;   // m, world: EmbreeScene::origin
-  double reach;  // m: EmbreeScene::reach
-};
-
-// Does nothing where the scene has no sheets. The result is the same for any number of threads. Raises DeviceError and
-// Cancelled.
-void add_passes(Paths& paths, const Rounding& rounding, Job* job);
+// Does nothing where the scene has no sheets. `rounding` is that of the geometry that the rays of the record have met, the
+// whole scene: so what a path has of the sheets on its way depends on other sheets only as its rays do
+// (EmbreeScene::Upkeep). The result is the same for any number of threads. Raises DeviceError and Cancelled.
+void add_passes(Paths& paths, const RayRounding& rounding, Job* job);
 
 }  // namespace echopath

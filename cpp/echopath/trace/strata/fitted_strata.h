@@ -10,7 +10,8 @@
 
 namespace echopath {
 
-// Keeps the strata that one plan of rays asked for until the next plan has asked. Threads may ask side by side.
+// Keeps the strata that one plan of rays asked for until the next plan has asked. Threads may ask side by side,
+// while no plan begins.
 class FittedStrata {
  public:
   using Fitted = std::optional<Stratum>;

@@ -50,8 +50,8 @@ const std::vector<Vec3>& TargetMeshes::outer_vertices() {
 }
 
 void TargetMeshes::forget_vertices() {
-  vertices_ = {};
-  outer_vertices_ = {};
+  vertices_ = std::vector<Vec3>();  // {} would keep its memory
+  outer_vertices_ = std::vector<Vec3>();
   num_together_ = 0;
 }
 

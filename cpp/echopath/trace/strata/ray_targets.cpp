@@ -29,7 +29,7 @@ std::vector<bool> still_objects(std::vector<bool> still_meshes, const Scene& sce
   return still_meshes;
 }
 
-// Finds the targets of one object after the other.
+// Finds the targets of one object after the other, and at the end the images of whole objects, side by side.
 class TargetSearch {
  public:
   TargetSearch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

@@ -230,8 +230,8 @@ class TargetSearch {
     aim_at(things);
   }
 
-  // Returns the images of all targets, of one after the other. Those of whole objects, which are most of the work, are looked
-  // for here, side by side.
+  // Returns the images of all targets, of one after the other. Those of whole objects, which are most of the work, are
+  // looked for here, side by side.
   std::vector<RayTarget> all_images() {
     parallel_for(std::ssize(wholes_), [&](int64_t i) {
       auto& [target, place] = wholes_[i];

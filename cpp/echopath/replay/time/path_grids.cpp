@@ -118,14 +118,6 @@ GridIndex PathGrids::first(int64_t path) const {
   return std::max(first, range.has_one_set_of_cuts() ? range.most : first_in_joined_cuts(path));
 }
 
-void PathGrids::first(int64_t begin, std::span<GridIndex> first) const {
-  for (size_t i = 0; i < first.size(); ++i) first[i] = this->first(begin + static_cast<int64_t>(i));
-}
-
-void PathGrids::first(std::span<const int64_t> paths, std::span<GridIndex> first) const {
-  for (size_t i = 0; i < first.size(); ++i) first[i] = this->first(paths[i]);
-}
-
 PathGrids::Range PathGrids::range_of(int64_t path) const {
   const GridIndex of_first = of_mesh_[paths_.hits_of(path)->mesh_id];
   Range range{of_first, of_first};

@@ -1,7 +1,6 @@
 #pragma once
 // Finds the time grid that follows a path: it begins with the motion of the meshes that the path touches, and says how to go
 // on.
-#include <span>
 #include <vector>
 
 #include "echopath/replay/time/posed_grids.h"
@@ -34,9 +33,6 @@ class PathGrids {
 
   const TimeGrids& grids() const { return grids_; }
   GridIndex first(int64_t path) const;
-  // Writes the first grids of paths [begin, begin + first.size()), or of the given paths, one each.
-  void first(int64_t begin, std::span<GridIndex> first) const;
-  void first(std::span<const int64_t> paths, std::span<GridIndex> first) const;
   NextGrid next(const UnfollowedPath& path, GridIndex polynomial) const;
 
  private:

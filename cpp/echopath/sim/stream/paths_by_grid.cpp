@@ -31,16 +31,18 @@ class SortByGrid {
   PathsByGrid take() { return std::move(lists_); }
 
  private:
+  int64_t path_at(int64_t i) const { return some_ ? some_[i] : i; }
+
   std::pair<int64_t, int64_t> range_of(int64_t task) const {
     return {task * paths_of_task_, std::min((task + 1) * paths_of_task_, std::ssize(grid_))};
   }
 
   void find_grids(const PathGrids& grids, int64_t task) {
     const auto [begin, end] = range_of(task);
-    const std::span<GridIndex> here(grid_.data() + begin, static_cast<size_t>(end - begin));
-    if (some_) grids.first({some_ + begin, here.size()}, here);
-    else grids.first(begin, here);
-    for (const GridIndex grid : here) ++place_[task][grid.place()];
+    for (int64_t i = begin; i < end; ++i) {
+      grid_[i] = grids.first(path_at(i));
+      ++place_[task][grid_[i].place()];
+    }
   }
 
   // Turns the counts of the tasks into the places where each begins to write.
@@ -57,7 +59,7 @@ class SortByGrid {
     auto& places = place_[task];
     for (int64_t i = begin; i < end; ++i) {
       const size_t grid = grid_[i].place();
-      lists_[grid][places[grid]++] = some_ ? some_[i] : i;
+      lists_[grid][places[grid]++] = path_at(i);
     }
   }
 

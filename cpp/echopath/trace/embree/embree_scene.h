@@ -42,6 +42,8 @@ struct RayRounding {
   Vec3 origin;   // m, world: EmbreeScene::origin
   double lift;   // m: EmbreeScene::lift
   double reach;  // m: EmbreeScene::reach
+
+  bool operator==(const RayRounding&) const = default;
 };
 
 // Answers queries of rays in a posed scene. Coordinates are relative to `origin` (world), so that single precision resolves

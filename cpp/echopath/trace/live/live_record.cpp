@@ -38,17 +38,15 @@ bool is_launched_alike(const Stratum& a, const Stratum& b) {
 }
 
 SharedByRays::SharedByRays(const Tracer& tracer, const TraceSettings& asked)
-    : settings(asked), sbr(tracer.sbr()), origin(tracer.geometry().origin()), lift(tracer.geometry().lift()),
-      reach(tracer.geometry().reach()), strata(tracer.plan().strata), owners(tracer.plan().owners),
-      first_point(tracer.plan().first_point), surface_scatterers(tracer.plan().surface_scatterers),
-      sequences(sequences_of(tracer.frusta())) {}
+    : settings(asked), sbr(tracer.sbr()), rounding(tracer.geometry().rounding()), strata(tracer.plan().strata),
+      owners(tracer.plan().owners), first_point(tracer.plan().first_point),
+      surface_scatterers(tracer.plan().surface_scatterers), sequences(sequences_of(tracer.frusta())) {}
 
 // The field of view, the last stratum, owns all that no other stratum does.
 bool SharedByRays::is_same(const SharedByRays& other) const {
-  return asks_the_same(settings, other.settings) && sbr == other.sbr && origin == other.origin && lift == other.lift &&
-         reach == other.reach && surface_scatterers.empty() == other.surface_scatterers.empty() &&
-         sequences == other.sequences && is_launched_alike(strata.back(), other.strata.back()) && !has_foci(strata) &&
-         !has_foci(other.strata);
+  return asks_the_same(settings, other.settings) && sbr == other.sbr && rounding == other.rounding &&
+         surface_scatterers.empty() == other.surface_scatterers.empty() && sequences == other.sequences &&
+         is_launched_alike(strata.back(), other.strata.back()) && !has_foci(strata) && !has_foci(other.strata);
 }
 
 LiveRecord::LiveRecord(const Tracer& tracer, const TraceSettings& settings)
@@ -71,7 +69,7 @@ Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) cons
   writer.append(parts, job);
   writer.finish();
   doubles.leave_out(paths, job);
-  add_passes(paths, {shared.origin, shared.lift, shared.reach}, job);
+  add_passes(paths, shared.rounding, job);
   return paths;
 }
 

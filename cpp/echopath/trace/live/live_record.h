@@ -34,8 +34,7 @@ struct SharedByRays {
 
   TraceSettings settings;
   SbrSettings sbr;
-  Vec3 origin;
-  double lift, reach;  // m
+  RayRounding rounding;
   std::vector<Stratum> strata;
   RayOwners owners;
   int64_t first_point;

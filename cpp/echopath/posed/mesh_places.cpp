@@ -1,5 +1,8 @@
 #include "echopath/posed/mesh_places.h"
 
+#include <utility>
+
+#include "echopath/base/errors.h"
 #include "echopath/scene/chained_transforms.h"
 
 namespace echopath {
@@ -26,6 +29,12 @@ std::vector<Transform> PlacingNodes::world_from_meshes(double time) const {
   of_meshes.reserve(of_mesh_.size());
   for (const size_t node : of_mesh_) of_meshes.push_back(world[node]);
   return of_meshes;
+}
+
+MeshesToPose::MeshesToPose(const Scene& scene, std::shared_ptr<const MeshPlaces> places, std::vector<SurfacePatch> patches)
+    : places(std::move(places)), nodes(scene, this->places->meshes), patches(std::move(patches)) {
+  require(this->patches.size() == scene.meshes().size(), "patches", "must be one for each mesh of the scene",
+          this->patches.size());
 }
 
 }  // namespace echopath

@@ -27,12 +27,6 @@ struct MeshPlaces {
   }
 };
 
-// Says what of a scene is posed: some of its meshes, and of those that deform only patches.
-struct MeshesToPose {
-  std::shared_ptr<const MeshPlaces> places;
-  std::vector<SurfacePatch> patches;  // by mesh ID
-};
-
 // Lists the nodes of a scene that place some meshes: those of the meshes and all above them.
 class PlacingNodes {
  public:
@@ -47,6 +41,16 @@ class PlacingNodes {
   const Scene& scene_;
   std::vector<Placing> nodes_;  // parents before their children
   std::vector<size_t> of_mesh_;
+};
+
+// Says what of a scene is posed: some of its meshes, and of those that deform only patches. The scene must outlive it.
+struct MeshesToPose {
+  // patches: one for each mesh of the scene. Raises invalid_argument where they are not as many.
+  MeshesToPose(const Scene& scene, std::shared_ptr<const MeshPlaces> places, std::vector<SurfacePatch> patches);
+
+  std::shared_ptr<const MeshPlaces> places;
+  PlacingNodes nodes;                 // of the meshes by their places
+  std::vector<SurfacePatch> patches;  // by mesh ID
 };
 
 }  // namespace echopath

@@ -31,9 +31,7 @@ PosedScene::PosedScene(const Scene& scene, double time) : scene_(&scene), time_(
 
 PosedScene::PosedScene(const Scene& scene, const Radar& radar, const MeshesToPose& meshes, const Vec3& origin, double time)
     : PosedScene(scene, radar, origin, time) {
-  const bool is_whole = meshes.places && meshes.patches.size() == scene.meshes().size();
-  require(is_whole, "meshes", "must have places, and a patch for each mesh of the scene", meshes.patches.size());
-  add(meshes.places, PlacingNodes(scene, meshes.places->meshes), meshes.patches);
+  add(meshes.places, meshes.nodes, meshes.patches);
 }
 
 PosedScene::PosedScene(const Scene& scene, const Radar& radar, const Vec3& origin, double time)

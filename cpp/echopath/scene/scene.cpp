@@ -54,9 +54,9 @@ bool covers(const TimeSpan& span, double begin, double end, double slack = 0.0) 
 
 void require_span(const TimeSpan& span, double begin, double end, const std::string& name) {
   if (covers(span, begin, end, rounding_of(span.begin, span.end))) return;  // as the motions do
-  const std::string rule = streamed("must cover the frame, ", begin, " to ", end,
-                                    " s (that of an actor is as long as its duration=); node ", name);
-  require(false, "motion", rule, streamed(span.begin, " to ", span.end, " s"));
+  const std::string times = begin < end ? streamed("from ", begin, " to ", end) : streamed("at ", begin);
+  require(false, "motion", "must be defined " + times + " s (that of an actor is as long as its duration=); node " + name,
+          streamed(span.begin, " to ", span.end, " s"));
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
       mirrors_(find_mirrors(*empty_.scene, geometry_)), sbr_(settings_of_rays(settings)),
       frusta_(
           find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, casters_of(*empty_.scene, radar, settings), job)),
-      plan_(plan_rays(settings, fitted)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
+      plan_(plan_rays(settings, fitted, job)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
   if (!plan_.first_number.empty()) pieces_ = plan_.pieces(kRaysPerBlock);
   pose_edges();
@@ -88,7 +88,7 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
   empty_.frame.statistics.num_unfollowed_frusta = frusta_.num_unfollowed();
 }
 
-LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted) {
+LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted, const Job* job) {
   LaunchSettings launch;
   launch.num_rays = settings.num_rays;
   launch.seed = settings.seed;
@@ -96,6 +96,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted
   launch.batches = settings.batches;
   launch.guide = settings.guide;
   launch.fitted = fitted;
+  launch.job = job;
   launch.by_object = settings.for_edits;
   launch.by_name = settings.for_edits || settings.scatterers == Scatterers::kSurface;
   launch.is_steady = has_steady_rays(*empty_.scene, empty_.radar, settings.scatterers);

@@ -48,7 +48,7 @@ class Tracer {
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
   void require_memory(const std::vector<PathBlock>& ahead) const;
-  LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted);
+  LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted, const Job* job);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
   void aim_at_points(const TraceSettings& settings, Job* job);
   void pose_edges();

@@ -50,9 +50,11 @@ class Burst(NamedTuple):
         return self.start_time + chirps_duration(self.radar)
 
     @property
-    def last_sample(self) -> float:
-        """s, when it has been taken: a frame of a sequence may begin then, before the next chirp would."""
-        return self.start_time + self.radar.frame_duration
+    def earliest_next(self) -> float:
+        """s, from when on another may begin: half a sample before the last one is taken, with which the next frame of a
+        sequence may begin, or half a chirp before the next chirp would, if that is sooner."""
+        last_sample = self.start_time + self.radar.frame_duration
+        return min(last_sample - 0.5 / self.radar.waveform.sampling_rate, self.end_time - 0.5 * chirp_period(self.radar))
 
     def goes_on_from(self, before: Burst) -> bool:
         """Whether the scatterers of a burst before are known to go on in this one."""
@@ -191,10 +193,9 @@ def _followed(before: Burst | None, burst: Burst) -> Burst:
     if len(before.radar.transmitters) != len(burst.radar.transmitters) or \
             len(before.radar.receivers) != len(burst.radar.receivers):
         raise ValueError("frames: must all have the antennas of the first, got another number of them")
-    if burst.start_time < min(before.last_sample - 0.5 / burst.radar.waveform.sampling_rate,
-                              before.end_time - 0.5 * chirp_period(burst.radar)):
+    if burst.start_time < before.earliest_next:
         raise ValueError(f"frames: must come one after the other, got one that starts at {burst.start_time:g} s behind one that "
-                         f"ends at {before.last_sample:g} s")
+                         f"lets none begin before {before.earliest_next:g} s")
     return burst
 
 

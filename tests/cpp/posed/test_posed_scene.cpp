@@ -127,10 +127,10 @@ TEST(PosedScene, ASequenceDeformsInTheFrameOfItsNode) {
 }
 
 // The one mesh of a scene.
-MeshesToPose one_mesh(const SurfacePatch& patch) {
+MeshesToPose one_mesh(const Scene& scene, std::vector<SurfacePatch> patches) {
   auto places = std::make_shared<MeshPlaces>(1);
   places->add(0);
-  return {std::move(places), {patch}};
+  return {scene, std::move(places), std::move(patches)};
 }
 
 // Patches hold the vertices that they name, in their order, and nothing of them may be taken for the whole mesh.
@@ -140,13 +140,13 @@ TEST(PosedScene, DeformingMeshesArePosedInPatches) {
   radar.transmitters = radar.receivers = {Antenna()};
   SurfacePatch patch;
   patch.original_vertex = {2, 1};
-  const PosedScene posed(scene, radar, one_mesh(patch), Vec3::Zero(), 1.0);
+  const PosedScene posed(scene, radar, one_mesh(scene, {patch}), Vec3::Zero(), 1.0);
   ASSERT_EQ(posed.local_vertices(0).size(), 2u);
   EXPECT_LT((posed.local_vertices(0)[0] - triangle()->vertices()[2]).norm(), kRounding);
   EXPECT_NEAR(posed.local_vertices(0)[1].z(), 1.0, kRounding);
   EXPECT_THROW(posed.world_vertices(0), std::invalid_argument);
   EXPECT_THROW(posed.world_triangle(0, 0), std::invalid_argument);
-  EXPECT_THROW(PosedScene(scene, radar, {}, Vec3::Zero(), 1.0), std::invalid_argument);
+  EXPECT_THROW(one_mesh(scene, {}), std::invalid_argument);
 }
 
 // A mirrored placement turns the winding, and normals with it; uneven scales tilt them as cofactors do.
@@ -202,7 +202,7 @@ TEST(PosedScene, AntennasMoveAndTurnWithTheRadar) {
   radar.motion = std::make_shared<const LinearMotion>(Vec3(4, 0, 0), Vec3(0, 0, 0.5));
   const Scene scene = driving_scene();
   const Vec3 origin(1, 2, 3);
-  const PosedScene posed(scene, radar, one_mesh({}), origin, 2.0);
+  const PosedScene posed(scene, radar, one_mesh(scene, {SurfacePatch()}), origin, 2.0);
   ASSERT_EQ(posed.antennas(false).size(), 1u);
   ASSERT_EQ(posed.antennas(true).size(), 2u);
   const PosedAntenna& first = posed.transmitters.front();
@@ -226,7 +226,7 @@ TEST(PosedScene, AntennasStandWhereTheirRadarIsPlaced) {
   radar.motion = std::make_shared<const LinearMotion>(Vec3(4, 0, 0));
   const Vec3 origin(1, 2, 3);
   const Scene scene = driving_scene();
-  const PosedScene posed(scene, radar, one_mesh({}), origin, 2.0);
+  const PosedScene posed(scene, radar, one_mesh(scene, {SurfacePatch()}), origin, 2.0);
   const Vec3 ahead(0, std::cos(0.3), std::sin(0.3)), left(-1, 0, 0), up(0, -std::sin(0.3), std::cos(0.3));
   const PosedAntenna& first = posed.receivers.front();
   EXPECT_LT((first.position - (Vec3(15, -1, 2) + 0.1 * ahead + 0.2 * left - origin)).norm(), kRounding);

@@ -93,7 +93,7 @@ TEST(InterpolatedPaths, WhatIsDarkToTheFirstAntennasAloneIsNotLeftOut) {
 // Poses the whole scene, and one transmitter, at the nodes of samples of its chirps.
 PosedGrid whole_scene(const Paths& paths, const Radar& radar, const TimeGrids& grids, int transmitter) {
   FrameNodes nodes = nodes_of(grids.samples(transmitter), radar, grids.start_time(), grids.derivatives());
-  const MeshesToPose all{whole_meshes(*paths.scene).places, touched_meshes(paths).patches};
+  const MeshesToPose all{*paths.scene, whole_meshes(*paths.scene).places, touched_meshes(paths).patches};
   auto scenes = pose_at(*paths.scene, radar, all, paths.frame.transmitter, nodes.times);
   for (PosedScene& scene : *scenes) scene.transmitters = {scene.transmitters[static_cast<size_t>(transmitter)]};
   return {std::move(nodes), PosedNodes(std::move(scenes)), transmitter};

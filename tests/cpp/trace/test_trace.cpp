@@ -236,6 +236,18 @@ TEST(Launch, OwnersCoverEachSurfaceOnce) {
   for (size_t mesh = 0; mesh < owned.size(); ++mesh) EXPECT_NEAR(owned[mesh] / seen[mesh], 1.0, kSolidAngle) << mesh;
 }
 
+TEST(Launch, PlanningHeedsCancelling) {
+  const Scene scene = mixed_scene(Vec3::Zero());
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
+  Job job;
+  LaunchSettings settings;
+  settings.num_rays = 1000;
+  settings.job = &job;
+  EXPECT_NO_THROW(plan_launch(scene, geometry, {}, settings));
+  job.cancel();
+  EXPECT_THROW(plan_launch(scene, geometry, {}, settings), Cancelled);
+}
+
 TEST(Trace, BadInputIsNamed) {
   const auto message = [](const Scene& scene, const Radar& radar, const TraceSettings& settings) {
     return test::error_text([&] { trace(scene, radar, settings); });

@@ -185,7 +185,7 @@ def test_whole_floats_are_counts_of_bounces():
 def test_frames_beyond_the_walk_name_the_duration():
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(height=1.7, speed=1.4), name="walker", position=(8, 0, 0))
-    with pytest.raises(ValueError, match=r"^motion: must cover the frame, .*duration=.*walker"):
+    with pytest.raises(ValueError, match=r"^motion: must be defined from .*duration=.*walker"):
         ep.trace(scene, RADAR.replace(waveform=CHIRPS.replace(num_chirps=2000, chirp_interval=0.01)), num_rays=100)
 
 

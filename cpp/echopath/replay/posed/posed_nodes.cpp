@@ -49,11 +49,7 @@ std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, con
                                      std::span<const double> times) {
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(times.size());
-  const PlacingNodes nodes(scene, meshes.places->meshes);
-  for (const double time : times) {
-    scenes->emplace_back(scene, radar, origin, time);
-    scenes->back().add(meshes.places, nodes, meshes.patches);
-  }
+  for (const double time : times) scenes->emplace_back(scene, radar, meshes, origin, time);
   return scenes;
 }
 

@@ -31,7 +31,7 @@ class TouchedMeshes {
       const Node& node = scene_.node_of(id);
       if (kind_[id] == kDeforms) patches[id] = make_patch(*node.mesh, is_hit_[id], node.smooth);
     }
-    return {std::move(places_), std::move(patches)};
+    return {scene_, std::move(places_), std::move(patches)};
   }
 
  private:
@@ -73,7 +73,7 @@ MeshesToPose whole_meshes(const Scene& scene) {
     if (!node.deformation) continue;
     patches[id] = make_patch(*node.mesh, std::vector<uint8_t>(node.mesh->triangles().size(), 1), node.smooth);
   }
-  return {std::move(places), std::move(patches)};
+  return {scene, std::move(places), std::move(patches)};
 }
 
 }  // namespace echopath

@@ -66,16 +66,7 @@ PartlyPosedGrid PosedGrids::pose_partly(FrameNodes nodes, int transmitter) const
 // Refuses times outside of any motion that takes part, also of meshes that no path touches: that must not depend on what
 // was hit.
 void PosedGrids::require_times(std::span<const double> times) const {
-  const Scene& scene = *paths_.scene;
-  std::vector<Vec3> none;
-  for (size_t index = 0; index < scene.nodes().size(); ++index) {
-    if (!scene.takes_part(static_cast<int>(index))) continue;
-    const Node& node = scene.nodes()[index];
-    for (const double time : times) {
-      if (node.motion) scene.local_transform(static_cast<int>(index), time);
-      if (node.deformation) node.deformation->at(time, {}, none);
-    }
-  }
+  for (const double time : times) paths_.scene->require_times(time, time);
 }
 
 PosedNodes PosedGrids::pose(std::span<const double> times) const {
@@ -85,14 +76,10 @@ PosedNodes PosedGrids::pose(std::span<const double> times) const {
 
 PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar> radars) const {
   require_times(times);
-  const MeshesToPose& meshes = preparer_.meshes();
-  const PlacingNodes nodes(*paths_.scene, meshes.places->meshes);
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(times.size());
-  for (size_t i = 0; i < times.size(); ++i) {
-    scenes->emplace_back(*paths_.scene, radars[i], paths_.frame.transmitter, times[i]);
-    scenes->back().add(meshes.places, nodes, meshes.patches);
-  }
+  for (size_t i = 0; i < times.size(); ++i)
+    scenes->emplace_back(*paths_.scene, radars[i], preparer_.meshes(), paths_.frame.transmitter, times[i]);
   return PosedNodes(std::move(scenes));
 }
 

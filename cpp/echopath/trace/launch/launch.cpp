@@ -74,13 +74,10 @@ Stratum field_of_view(const LaunchSettings& settings) {
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings) {
   const Stratum field = field_of_view(settings);
-  const RayTargetSettings aims{settings.transmitter,
-                               settings.frusta,
-                               0.5 * field.solid_angle(),
-                               settings.sampler == Sampler::kLattice,
-                               settings.is_steady,
-                               settings.num_rays / (LaunchPlan::kFewestRays - 1),
-                               settings.fitted};
+  const RayTargetSettings aims{settings.transmitter,      settings.frusta,
+                               0.5 * field.solid_angle(), settings.sampler == Sampler::kLattice,
+                               settings.is_steady,        settings.num_rays / (LaunchPlan::kFewestRays - 1),
+                               settings.fitted,           settings.job};
   RayTargets found = find_ray_targets(scene, geometry, mirrors, aims);
   std::vector<FocusOfTarget> foci;
   if (!settings.guide.shares.empty()) foci = foci_of(settings.guide.foci, found.targets, field);

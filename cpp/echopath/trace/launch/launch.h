@@ -96,8 +96,10 @@ struct LaunchSettings {
   // What stands still has the same share in all frames, half of the rays that are aimed (has_steady_rays): by name.
   bool is_steady = false;
   FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
+  const Job* job = nullptr;        // RayTargetSettings::job
 };
 
+// Raises Cancelled when the job of the settings is.
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings);
 

@@ -38,6 +38,7 @@ class TargetSearch {
         is_still_(scene.still_meshes()), holds_still_(scene.nodes_above(still_objects(is_still_, scene))), out_(out) {}
 
   void take(const SceneObject& object) {
+    heed_cancelling();
     SceneObject still{object.node, {}}, rest{object.node, {}};
     for (const uint32_t id : object.mesh_ids) (is_still_[id] ? still : rest).mesh_ids.push_back(id);
     if (!settings_.is_steady || still.mesh_ids.empty() || rest.mesh_ids.empty()) return take_as_one(object);
@@ -63,6 +64,10 @@ class TargetSearch {
     TargetMeshes target;
     size_t place;
   };
+
+  void heed_cancelling() const {
+    if (settings_.job) settings_.job->throw_if_cancelled();
+  }
 
   static void append(std::vector<RayTarget> more, std::vector<RayTarget>& to) {
     std::move(more.begin(), more.end(), std::back_inserter(to));
@@ -161,6 +166,7 @@ class TargetSearch {
 
   void look_at(const std::vector<SceneObject>& parts, std::vector<Thing>& things) {
     for (const SceneObject& part : parts) {
+      heed_cancelling();
       TargetMeshes target = new_target(part);
       std::optional<RayTarget> direct = finder_.at_object(target);
       if (direct) {
@@ -234,6 +240,7 @@ class TargetSearch {
   // looked for here, side by side.
   std::vector<RayTarget> all_images() {
     parallel_for(std::ssize(wholes_), [&](int64_t i) {
+      heed_cancelling();
       auto& [target, place] = wholes_[i];
       for (int n = 1; n <= finder_.most_mirrors(); ++n) finder_.add_images(target, n, images_[place]);
       target.forget_vertices();
@@ -268,6 +275,7 @@ class TargetSearch {
     size_t num_found = 0;
     for (int num_mirrors = 1; num_mirrors <= finder_.most_mirrors(); ++num_mirrors) {
       for (size_t k = 0; k < things.size(); ++k) {
+        heed_cancelling();
         const size_t before = of_things[k].size();
         if (num_found < kMostThings) finder_.add_images(things[k].target, num_mirrors, of_things[k]);
         else leave_out(finder_.least_images(things[k].target, num_mirrors));

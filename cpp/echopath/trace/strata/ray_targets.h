@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "echopath/base/threads/job.h"
 #include "echopath/trace/frusta/mirror_frusta.h"
 #include "echopath/trace/strata/fitted_strata.h"
 
@@ -39,6 +40,7 @@ struct RayTargetSettings {
   bool is_steady = false;                                      // LaunchSettings::is_steady
   int64_t most_objects = std::numeric_limits<int64_t>::max();  // nothing is aimed at where there are more
   FittedStrata* fitted = nullptr;                              // the strata of plans before; may be null
+  const Job* job = nullptr;                                    // cancels the search; may be null
 };
 
 struct RayTargets {
@@ -52,6 +54,7 @@ struct RayTargets {
   int64_t num_left_out = 0;
 };
 
+// Raises Cancelled when the job is.
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                             const RayTargetSettings& settings);
 

@@ -150,6 +150,18 @@ def test_frames_may_follow_as_closely_as_those_of_a_sequence():
     found.plot()
 
 
+@pytest.mark.parametrize("num_samples", [64, 250])
+def test_how_soon_a_frame_may_follow_is_named(num_samples):
+    """From the last sample on, or the end of the last chirp, whichever is sooner; samples of 4 MHz take 16 or 62.5 us of a
+    chirp's 64 us. Half of a sample, or of a chirp, is taken for rounding."""
+    radar = build_radar(num_chirps=32, num_samples=num_samples, sampling_rate=4e6, chirp_interval=64e-6)
+    cubes = [random_cube(radar, seed) for seed in range(2)]
+    soonest = min(31 * 64e-6 + (num_samples - 1.5) / 4e6, 31.5 * 64e-6)
+    with pytest.raises(ValueError, match=f"lets none begin before {soonest:g} s"):
+        ep.spectrogram(cubes, radar, start_times=[0.0, soonest - 1e-9])
+    assert len(ep.spectrogram(cubes, radar, start_times=[0.0, soonest + 1e-9], window_length=32).trains) == 2
+
+
 def test_what_cannot_follow_is_refused():
     radar, cubes = build_radar(num_chirps=32), []
     cubes = [random_cube(radar, seed) for seed in range(2)]

@@ -195,6 +195,7 @@ class TargetSearch {
 
   // Returns whether a ray to any of kLooks vertices, evenly taken of all, meets the target or what lies behind it.
   bool is_in_sight(TargetMeshes& target) const {
+    heed_cancelling();
     const std::vector<Vec3>& vertices = target.vertices();
     for (int first = 0; first < kLooks; first += kPacketSize) {
       LaneVectors directions;

@@ -95,7 +95,9 @@ def _estimates(probe, count: int):
 
 
 def _check(name: str, statistic: float, freedom: int, num_tests: int = 1) -> Check:
-    promise = quantile(FALSE_ALARM_RATE / num_tests, freedom)
+    from scipy.special import stdtrit
+
+    promise = -float(stdtrit(freedom, 0.5 * FALSE_ALARM_RATE / num_tests))  # of |t| of Student's distribution
     return Check(name, statistic, promise, "standard errors", freedom + 1)
 
 
@@ -123,14 +125,3 @@ def _outlier(values, alike: float) -> float:
         return _ratio(float(values[index] - others.mean()), scatter)
 
     return max(map(apart, range(len(values))))
-
-
-def quantile(rate: float, freedom: int) -> float:
-    """What |t| of Student's distribution with so many degrees of freedom exceeds with the probability `rate`.
-
-    With t = sqrt(freedom) tan(angle) the density is cos(angle)^(freedom - 1), which is integrated by steps and inverted.
-    """
-    edges = np.linspace(0.0, 0.5 * np.pi, 200_001)
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    beyond = np.cumsum((np.cos(middles) ** (freedom - 1))[::-1])[::-1]
-    return math.sqrt(freedom) * math.tan(float(np.interp(-rate, -beyond / beyond[0], edges[:-1])))

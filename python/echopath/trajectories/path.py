@@ -154,29 +154,22 @@ def turn_of(tangent, bend):
 
 
 class SplinePath(Path):
-    """A C2 cubic spline over the chord lengths through points [P, 3], not-a-knot at its ends."""
+    """A C2 cubic spline over the chord lengths through points [P, 3], not-a-knot at its ends; two points: a line, three: a
+    parabola."""
 
     def __init__(self, points):
+        from scipy.interpolate import CubicSpline
+
         points = np.asarray(points, float)
         knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=-1))])
-        bends, h = second_derivatives(knots, points), np.diff(knots)[:, None]
-        slopes = np.diff(points, axis=0) / h - h / 6.0 * (2.0 * bends[:-1] + bends[1:])
-        self._powers = np.stack([points[:-1], slopes, 0.5 * bends[:-1], np.diff(bends, axis=0) / (6.0 * h)], axis=1)
-        self.knots = knots
+        self._spline = CubicSpline(knots, points, bc_type="not-a-knot")
         super().__init__(knots)
 
     def jets(self, u):
-        (a, b, c, d), t = self._pieces(u)
-        return a + t * (b + t * (c + t * d)), b + t * (2.0 * c + 3.0 * t * d), 2.0 * c + 6.0 * t * d
+        return self._spline(u), self._spline(u, 1), self._spline(u, 2)
 
     def slopes_at(self, u):
-        (_, b, c, d), t = self._pieces(u)
-        return b + t * (2.0 * c + 3.0 * t * d)
-
-    def _pieces(self, u):
-        """(coefficients [4, N, 3] of the powers of the parameter since the knot before, that parameter [N, 1])."""
-        k = np.minimum(np.maximum(np.searchsorted(self.knots, u, side="right") - 1, 0), len(self.knots) - 2)
-        return np.moveaxis(self._powers[k], 1, 0), (u - self.knots[k])[:, None]
+        return self._spline(u, 1)
 
 
 class ArcPath(Path):
@@ -201,42 +194,6 @@ class ArcPath(Path):
 
     def _parameters(self, distances):
         return distances
-
-
-def second_derivatives(knots, values):
-    """Those [P, C] of the C2 spline, not-a-knot at its ends, through values [P, C]; two points: a line, three: a parabola."""
-    count = len(knots)
-    h = np.diff(knots)
-    slopes = np.diff(values, axis=0) / h[:, None]
-    bends = np.zeros(values.shape)
-    if count < 3:
-        return bends
-    jumps = 6.0 * np.diff(slopes, axis=0)
-    if count == 3:
-        bends[:] = jumps[0] / (3.0 * (h[0] + h[1]))
-        return bends
-    below, middle, above = h[:-1].copy(), 2.0 * (h[:-1] + h[1:]), h[1:].copy()
-    middle[0] += h[0] + h[0] ** 2 / h[1]       # the first bend is that of the line through the next two
-    above[0] -= h[0] ** 2 / h[1]
-    middle[-1] += h[-1] + h[-1] ** 2 / h[-2]
-    below[-1] -= h[-1] ** 2 / h[-2]
-    bends[1:-1] = _tridiagonal(below, middle, above, jumps)
-    bends[0] = bends[1] - h[0] / h[1] * (bends[2] - bends[1])
-    bends[-1] = bends[-2] + h[-1] / h[-2] * (bends[-2] - bends[-3])
-    return bends
-
-
-def _tridiagonal(below, middle, above, right):
-    """The solution [N, C] of a tridiagonal system, by elimination."""
-    middle, right = middle.copy(), right.copy()
-    for k in range(1, len(middle)):
-        factor = below[k] / middle[k - 1]
-        middle[k] -= factor * above[k - 1]
-        right[k] -= factor * right[k - 1]
-    right[-1] /= middle[-1]
-    for k in range(len(middle) - 2, -1, -1):
-        right[k] = (right[k] - above[k] * right[k + 1]) / middle[k]
-    return right
 
 
 def turned_path(points, radius: float):

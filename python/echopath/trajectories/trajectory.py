@@ -297,7 +297,7 @@ def _about_z(angle, rate):
 def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):
     """The Profile of a path, by the arguments of Trajectory."""
     table, stops = checked_speed(speed, speed_over), checked_stops("stops", stops)
-    places = np.minimum(stops[:, 0], path.length)
+    places = np.where(stops[:, 0] > path.length - DISTANCE_TOLERANCE, path.length, stops[:, 0])
     if np.any(np.isfinite(stops[:, 0]) & (stops[:, 0] > path.length + DISTANCE_TOLERANCE)):
         raise refused(ValueError, "stops", f"at distances from 0 to {path.length:g} m, or math.inf", stops.tolist())
     stops = np.stack([places, stops[:, 1]], axis=-1)

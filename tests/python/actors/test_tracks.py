@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.tracks.assignment import assigned, hungarian
+from echopath.tracks.assignment import assigned
 from echopath.tracks.track import _outline_distances
 from support.radars import build_radar
 
@@ -217,14 +217,6 @@ def test_what_stands_stands_for_antennas_ahead_of_the_axle_that_turns():
 
 
 # --- assignment ---
-
-def test_the_assignment_is_the_best_one():
-    solve = pytest.importorskip("scipy.optimize").linear_sum_assignment
-    generator = np.random.default_rng(1)
-    for rows, columns in [(1, 1), (3, 3), (5, 9), (20, 20), (20, 31)] * 5:
-        cost = generator.normal(size=(rows, columns))
-        assert cost[np.arange(rows), hungarian(cost)].sum() == pytest.approx(cost[solve(cost)].sum())
-
 
 def test_pairs_beyond_the_limit_are_left_alone():
     cost = np.array([[1.0, 9.0], [2.0, np.inf]])

@@ -118,7 +118,8 @@ def test_a_stop_takes_the_way_and_the_time_of_its_brakes():
 
 @pytest.mark.parametrize("middle, end", [(2.1, 6.8), (2.1, 7.8), (3.1, 13.3)])
 def test_a_stop_at_the_end_is_there_however_the_length_rounds(middle, end):
-    """At 1 m/s, 1 m/s^2 of brakes and 2 s of standing: the way of the middle point adds up to less than `end` by rounding."""
+    """At 1 m/s, 1 m/s^2 of brakes and 2 s of standing: the way of the middle point adds up to less or more than `end` by
+    rounding."""
     one = ep.Trajectory([(0, 0), (middle, 0), (end, 0)], speed=1.0, stops=[(end, 2.0)], deceleration=1.0)
     assert one.end == pytest.approx((end - 0.5) + 1.0 + 2.0) and one.position(one.end - 1.0)[0] == pytest.approx(end)
     with pytest.raises(ValueError, match=f"^stops: must be at distances from 0 to {end:g} m"):

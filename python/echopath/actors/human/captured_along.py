@@ -11,14 +11,12 @@ import numpy as np
 
 from ... import _core
 from ...base.numerics.rotations import about_z, matrices, product, quaternions
-from ...trajectories.path import second_derivatives
 from ..keyframes import Frames
 
 MOST_FRAMES = 400        # that are held against each other
 SHORTEST = 0.4           # s, of a cycle
 LEAST_WAY = 0.5          # m, of a cycle
 MOST_APART = 0.10        # m, root mean square over the parts, between both ends of a cycle
-OVERLAP = 4              # samples beyond both ends of a cycle, so that its splines close
 
 
 @dataclass(frozen=True)
@@ -96,13 +94,8 @@ def _level(points):
 
 def _periodic(values, shares):
     """Values [T, N, C] at shares [T] of C2 splines through one period of them [K, N, C]."""
-    count = len(values)
-    index = np.arange(-OVERLAP, count + OVERLAP + 1)
-    table = values.reshape(count, -1)[index % count]
-    bends = second_derivatives(index.astype(float), table)
-    u = np.mod(shares, 1.0) * count
-    k = np.minimum(np.floor(u).astype(int), count - 1)
-    b = (u - k)[:, None]
-    a, k = 1.0 - b, k + OVERLAP
-    found = a * table[k] + b * table[k + 1] + ((a**3 - a) * bends[k] + (b**3 - b) * bends[k + 1]) / 6.0
-    return found.reshape(len(found), *values.shape[1:])
+    from scipy.interpolate import CubicSpline
+
+    closed = np.concatenate([values, values[:1]])
+    spline = CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")
+    return spline(np.mod(shares, 1.0))

@@ -80,10 +80,10 @@ def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: flo
     cube = chain.mixed(chain.sent(cube))
     cube = cube if interference is None else cube + chain.mixed_alone(interference)
     cube, leaked = chain.amplified(chain.coupled(cube)), chain.leaked()
-    cube = cube if leaked is None else cube + leaked
+    cube = cube if leaked is None else cube + as_samples(leaked, radar.waveform.real)
     if seed is not None:
         cube = _noise(cube, radar, seed, start_time)
-    gain = compression(cube, radar, receiver)
+    gain = compression(cube, radar, receiver, leaked)
     cube = cube if gain is None else compressed(cube, gain, radar)
     cube = chain.unbalanced(chain.filtered(cube, chain.models_of(cube)))
     cube = with_offset(cube, radar.waveform, receiver)
@@ -121,14 +121,14 @@ class Chain:
         return cube if self._oscillator.is_ideal else self._oscillator.alone(cube)
 
     def leaked(self):
-        """The leakage with what couples from receiver to receiver and with their errors, in a shape that a cube takes; None:
-        none."""
+        """The leakage with what couples from receiver to receiver and with their errors, complex in a shape that a cube takes
+        (`as_samples` makes its samples); None: none."""
         leaked = leakage(self._radar, self._receiver, self._slots, self._oscillator)
         if leaked is None:
             return None
         leaked = coupled(leaked, self._radar, self._receiver, self._slots, real=False)
         factors = self._receiver_factors()
-        return as_samples(leaked if factors is None else leaked * factors, self._radar.waveform.real)
+        return leaked if factors is None else leaked * factors
 
     def coupled(self, cube, whole=None):
         """With what couples from receiver to receiver; whole: as in `turned`."""

@@ -9,13 +9,19 @@ from .settings import Receiver
 _ONE_DB = 10.0 ** 0.1 - 1.0  # power over saturation power where the gain is 1 dB lower
 
 
-def compression(cube: np.ndarray, radar, receiver: Receiver) -> np.ndarray | None:
+def compression(cube: np.ndarray, radar, receiver: Receiver, leaked: np.ndarray | None) -> np.ndarray | None:
     """The gain of the amplifier for each sample of a cube, which falls with the power at its input as
-    1 / sqrt(1 + power / saturation); None: it does not."""
+    1 / sqrt(1 + power / saturation); None: it does not.
+
+    leaked: the leakage in that cube, complex (`Chain.leaked`), or None. The power of a signal of less than a period does not show
+    in real samples, which may all be near 0.
+    """
     if receiver.compression_dbm is None:
         return None
     saturation = 1e-3 * 10.0 ** (receiver.compression_dbm / 10.0) / _ONE_DB
-    return 1.0 / np.sqrt(1.0 + np.abs(analytic(cube, radar.waveform.real)) ** 2 / saturation)
+    real = radar.waveform.real
+    signal = analytic(cube, real) if leaked is None else analytic(cube - as_samples(leaked, real), real) + leaked
+    return 1.0 / np.sqrt(1.0 + np.abs(signal) ** 2 / saturation)
 
 
 def compressed(cube: np.ndarray, gain: np.ndarray, radar) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import COMMON, ArrayLike, anything, checked, optional, real, refused, seed as seed_rule, text
 from ..arguments.part_names import CONVERTER, INTERFERENCE, LEAKAGE, NOISE, OF_RECEIVER, OFFSET, require_free
+from ..base.numerics.analytic import as_samples
 from ..transmit import radar_of_noise, signal_shape
 from .chain import Chain
 from .channels import require_channels
@@ -50,10 +51,10 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
         found[INTERFERENCE] = chain.mixed_alone(interference)
     found = _through(chain.amplified, _through(chain.coupled, found, radar), radar)
     if (leaked := chain.leaked()) is not None:
-        found[LEAKAGE] = np.broadcast_to(leaked, shape)
+        found[LEAKAGE] = np.broadcast_to(as_samples(leaked, radar.waveform.real), shape)
     if seed is not None:
         found[NOISE] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
-    gain = compression(sum(found.values()), radar, receiver)
+    gain = compression(sum(found.values()), radar, receiver, leaked)
     found = {name: cube if gain is None else compressed(cube, gain, radar) for name, cube in found.items()}
     models = chain.models_of(sum(found.values()))
     found = {name: chain.unbalanced(chain.filtered(cube, models)) for name, cube in found.items()}

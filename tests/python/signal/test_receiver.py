@@ -256,6 +256,24 @@ def test_a_blocker_compresses_a_weak_echo_and_mirrors_it():
     assert db(levels(alone)[40] / 1e-4) == pytest.approx(-1.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("turns", [0.0, 0.125, 0.25])
+def test_leakage_of_less_than_a_period_compresses_real_samples_by_its_power(turns):
+    """A weak echo beside leakage of power P and phase p has the gain g + 2 h cos(p) e^{-jp} in real samples: those of the
+    leakage are all 0 where p is a quarter of a turn, and the amplifier has its power all the same."""
+    power, point, cell, weak = 1e-5, -30.0, 90, 1e-14
+    faults = dict(leakage_db=[[10.0 * np.log10(power / 0.02)]], leakage_delay=turns / 77e9, compression_dbm=point)
+    radar = one_channel(real=True, transmit_power=0.02, receiver=ep.Receiver(**faults))
+    echo = np.sqrt(2.0) * tone(cell, weak).real
+    beside, alone = (ep.receive(cube, radar, seed=None).cube for cube in (echo, 0.0 * echo))
+    x = power / (1e-3 * 10 ** (point / 10) / (10 ** 0.1 - 1))
+    gain, half = (1 + x) ** -0.5, -0.5 * x * (1 + x) ** -1.5
+    phase = 2.0 * np.pi * turns
+    wanted = abs(gain + 2.0 * half * np.cos(phase) * np.exp(-1j * phase))
+    assert np.sqrt(2.0 * levels(beside - alone)[cell] / weak) == pytest.approx(wanted, rel=SHARE)
+    part = ep.receive_parts({"echo": 0.0 * echo}, radar, seed=None)["leakage"]
+    np.testing.assert_allclose(part, alone, rtol=0.0, atol=1e-12 * np.sqrt(power))
+
+
 @pytest.mark.parametrize("frequency", [200e3, 781250.0, 4e6])
 def test_filters_have_their_response(frequency):
     cell = round(frequency * COUNT / RATE)

@@ -166,7 +166,7 @@ class FrameRun:
         if not has_rain_echoes(self.scene, self.trace.effects):
             return None
         with clock("rain"):
-            return rain_cube(self.scene, self.radar, start_time=paths.frame.start_time, seed=self.trace.seed,
+            return rain_cube(self._scene_of(paths), self.radar, start_time=paths.frame.start_time, seed=self.trace.seed,
                              effects=self.trace.effects, polarization=paths.frame.polarization)
 
     def _interference_cube(self, paths, clock, progress):

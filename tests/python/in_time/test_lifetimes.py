@@ -292,6 +292,23 @@ def test_other_radars_are_heard_without_a_word_of_what_is_absent(recwarn):
     assert not [str(warning.message) for warning in recwarn if "absent" in str(warning.message)]
 
 
+def test_what_is_absent_hides_no_rain():
+    """A screen right before the radar, and a motion that is not made for the frames without it."""
+    scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=50.0))
+    screen = ep.Mesh([(0.5, -9.0, -9.0), (0.5, 9.0, -9.0), (0.5, 9.0, 9.0), (0.5, -9.0, 9.0)], [(0, 1, 2), (0, 2, 3)])
+    still = ep.KeyframeMotion(times=[1.0, 2.0], translations=np.zeros((2, 3)), rotations=[(1.0, 0.0, 0.0, 0.0)] * 2)
+    scene.add(ep.actors.box((1.0, 1.0, 1.0)), name="box", material=ROUGH, position=(9.0, 0.0, 0.0))
+    scene.add(screen, name="screen", material="metal", motion=still)
+    scene["screen"].lifetime = (1.0, 2.0)
+    without = scene.copy()
+    without.remove("screen")
+    given = {"labels": False, "truth": False, "frames": 3, "interval": 0.6}
+    absent, there, bare = drive(scene, **given)[0], drive(scene, **given)[2], drive(without, **given)
+    assert np.abs(absent.rain_cube).max() > 0.0
+    np.testing.assert_array_equal(absent.rain_cube, bare[0].rain_cube)
+    assert not np.array_equal(there.rain_cube, bare[2].rain_cube)
+
+
 def test_info_tells_who_comes_and_goes_and_no_overlaps_of_those_that_are_absent(tmp_path, capsys):
     """Two cars depart from one place, one behind the other."""
     (tmp_path / "fcd.xml").write_text(fcd().replace('x="11.0" y="0.0"', 'x="9.0" y="-4.0"'))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .. import _core
-from ..arguments.checks import refused
+from ..arguments.checks import an, refused, text
 from ..base.text.counts import counted
 
 
@@ -19,6 +19,7 @@ class Part:
     motion: motion relative to the actor's root (group nodes do not move), or None.
     position: [3] place of the mesh in the actor's frame in m, which the motion adds to.
     smooth: whether the mesh stands for a curved surface (Scene.add).
+    Raises TypeError or ValueError naming name or mesh; Scene.add checks the others.
     """
 
     name: str
@@ -27,6 +28,10 @@ class Part:
     motion: _core.Motion | _core.Deformation | None = None
     position: Sequence[float] = (0.0, 0.0, 0.0)
     smooth: bool = False
+
+    def __post_init__(self):
+        text("name", self.name)
+        an(_core.Mesh)("mesh", self.mesh)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 
@@ -280,7 +281,7 @@ def _refuse_two_motions(content, motion, speed) -> None:
 
 def _parts_of(content, material) -> list:
     """(name, mesh, material, motion, placement, smooth) of each part of an actor or of a list of named meshes."""
-    if hasattr(content, "parts"):
+    if _has_parts(content):
         return [(part.name, part.mesh, part.material if material is None else material, part.motion,
                  placement(part.position, 0.0, None), getattr(part, "smooth", False)) for part in content.parts]
     if isinstance(content, (list, tuple)):
@@ -290,7 +291,16 @@ def _parts_of(content, material) -> list:
         return [(name, mesh, material, None, None, False) for name, mesh in content]
     hint = "; ep.mesh_from makes one of it" if hasattr(content, "faces") or hasattr(content, "cells") else ""
     hint = f"; {content.__name__}() makes one" if inspect.isfunction(content) else hint
+    hint = "; ep.load_mesh and ep.load_model read files" if isinstance(content, (str, os.PathLike)) else hint
     raise refused(TypeError, "mesh_or_actor", f"a Mesh, an Actor, a Model, a list of (name, Mesh) or None{hint}", content)
+
+
+def _has_parts(content) -> bool:
+    """Whether it is an Actor, or like one; the parts of a pathlib.Path are the names of its folders."""
+    if isinstance(content, Actor):
+        return True
+    parts = getattr(content, "parts", None)
+    return isinstance(parts, (list, tuple)) and all(hasattr(part, "name") and hasattr(part, "mesh") for part in parts)
 
 
 def _are_arrays(content) -> bool:

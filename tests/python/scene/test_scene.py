@@ -1,6 +1,7 @@
 """Meshes, mesh files and scenes as Python sees them."""
 import gc
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -221,7 +222,9 @@ def test_bad_values_are_refused_by_name_and_add_nothing(square, keywords, words)
     (ep.Mesh(CORNERS, SQUARE), {"materil": "metal"}, "'material'"),
     (ep.Mesh(CORNERS, SQUARE), {"material": 3}, "material"),
     (ep.Mesh(CORNERS, SQUARE), {"material": "metal", "motion": "fast"}, "motion"),
-    ("wall.obj", {"material": "metal"}, "mesh_or_actor"),
+    ("wall.obj", {"material": "metal"}, "mesh_or_actor: .*; ep.load_mesh and ep.load_model read files, got 'wall.obj'"),
+    (Path("wall.obj"), {"material": "metal"}, "mesh_or_actor: .*; ep.load_mesh and ep.load_model read files, got .*wall.obj"),
+    (SimpleNamespace(parts=["head", "hand"]), {}, "mesh_or_actor: must be a Mesh, an Actor"),
     ([ep.Mesh(CORNERS, SQUARE)], {"material": "metal"}, "mesh_or_actor"),
 ])
 def test_bad_kinds_are_refused_by_name(content, keywords, word):

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.checks import choice, refused
+from ..arguments.checks import choice
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..base.text.counts import counted
 from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
-from .part_powers import draw_part_powers
-from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours, short_name
+from .part_powers import draw_part_powers, require_powers
+from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours, require_drawable, short_name
 
 if TYPE_CHECKING:
     from .. import _core
@@ -41,9 +41,11 @@ def plot_labels(labels: Labels, *, title: str = "Which part made each cell",
 
     labels: Labels; title: above the map; powers: {part: ep.ReceivedPower}, None: none are drawn
     Returns a matplotlib figure: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up.
-    Raises TypeError naming labels.
+    Raises TypeError naming labels or powers.
     """
     _require_labels(labels)
+    if powers is not None:
+        require_powers(powers)
     with new_figure(13.0 if powers else 9.0, 4.8) as figure:
         panels = figure.subfigures(1, 2 if powers else 1, squeeze=False, width_ratios=(2.3, 1.0) if powers else None)[0]
         _draw_map(panels[0], labels, _part_areas(labels), title)
@@ -79,8 +81,7 @@ def _map_without_cells(labels, title: str) -> Figure:
 
 def _require_labels(labels) -> None:
     """Raises unless they are labels of one partition, not those of a frame by partitions."""
-    if not hasattr(labels, "part_names"):  # the class itself draws with this module
-        raise refused(TypeError, "labels", "Labels, as frame.labels['parts'] is", labels)
+    require_drawable("labels", "Labels, as frame.labels['parts'] is", labels, "part_names", "ghosts")
 
 
 def draw_labels(labels: Labels, *, what: str = "parts", ax: Axes | None = None, title: str = "") -> Axes:
@@ -88,8 +89,9 @@ def draw_labels(labels: Labels, *, what: str = "parts", ax: Axes | None = None, 
 
     labels: Labels; ax: axes to draw in; title: above them
     Returns the axes: range in m across, radial velocity in m/s or azimuth in degrees up. Raises ValueError for other words,
-    TypeError naming `ax`.
+    TypeError naming `labels` or `ax`.
     """
+    _require_labels(labels)
     areas_of = {"parts": _part_areas, "objects": _class_areas}
     choice(*areas_of)("what", what)
     with axes_or_new(ax, 9.0, 4.8) as ax:

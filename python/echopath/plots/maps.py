@@ -13,6 +13,7 @@ from ..arguments.part_names import REST
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, with_error
 from ..spectra.moving import static_speed
+from .part_powers import require_powers
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, require_drawable, set_title
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def power_dbm(spectrum: _core.RangeDoppler) -> np.ndarray:
 
     spectrum: RangeDoppler. Raises TypeError naming it.
     """
-    require_drawable("spectrum", "a RangeDoppler, as ep.range_doppler makes it of a cube", spectrum, "values")
+    require_drawable("spectrum", "a RangeDoppler, as ep.range_doppler makes it of a cube", spectrum, "values", "velocity")
     power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
     return in_dbm(power, SMALLEST_POWER)
 
@@ -134,10 +135,12 @@ def plot_partition(spectra: Mapping[str, _core.RangeDoppler], *, title: str = ""
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
     note: small print; title: above the maps; radar_moves: to it what stands has velocities, too
-    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, vmin or
-    vmax.
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, powers,
+    vmin or vmax.
     """
     _require_maps(spectra)
+    if powers is not None:
+        require_powers(powers)
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
     columns = len(spectra) if len(spectra) <= 3 else 2
@@ -164,10 +167,12 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
 
     whole, spectra, powers, note, vmin, vmax (dBm), radar_moves: as of `plot_partition`; title: above the whole; parts_title:
         above the parts
-    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, vmin or
-    vmax.
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, powers,
+    vmin or vmax.
     """
     _require_maps(spectra)
+    if powers is not None:
+        require_powers(powers)
     vmin, vmax = _limits(whole, vmin, vmax)
     with new_figure(3.2 * max(2, len(spectra)) + 0.8, 6.8) as figure:
         upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.05))
@@ -191,10 +196,12 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
 def _require_maps(spectra) -> None:
     """Raises unless they are maps by the names of parts: those of one partition, not the partitions of a frame."""
     rule = "one map at least by the names of parts, as frame.part_spectra['parts'] has them"
-    if not isinstance(spectra, Mapping) or any(isinstance(one, Mapping) for one in spectra.values()):
+    if not isinstance(spectra, Mapping):
         raise refused(TypeError, "spectra", rule, spectra)
     if not spectra:
         raise refused(ValueError, "spectra", rule, spectra)
+    for one in spectra.values():
+        require_drawable("spectra", rule, one, "values", "velocity")
 
 
 def _draw_whole(axes, spectrum, vmin: float, vmax: float, title: str):

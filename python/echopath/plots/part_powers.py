@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments.checks import refused
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..paths.resolution import RESOLVED_DB
 from ..signals.measures import for_pictures, with_error
@@ -25,13 +26,19 @@ def plot_part_powers(powers: Mapping[str, _core.ReceivedPower], *, title: str = 
     powers: {part: ep.ReceivedPower}; title: above them. Returns a matplotlib figure: power in dBm across.
     Raises TypeError naming `powers`.
     """
-    rule = "a dict of ReceivedPower, as frame.mean_part_powers['parts'] is one"
-    require_drawable("powers", rule, powers, "items")
-    for power in powers.values():
-        require_drawable("powers", rule, power, "interval_db")
+    require_powers(powers)
     with new_figure(6.0, 1.0 + 0.45 * len(powers) + (SMALL_PRINT if _is_hollow(powers) else 0.0)) as figure:
         draw_part_powers(figure.subplots(), powers, title)
     return figure
+
+
+def require_powers(powers: Mapping[str, _core.ReceivedPower]) -> None:
+    """Raises TypeError unless they are powers by the names of parts: those of one partition, not the partitions of a frame."""
+    rule = "a dict of ReceivedPower, as frame.mean_part_powers['parts'] is one"
+    if not isinstance(powers, Mapping):
+        raise refused(TypeError, "powers", rule, powers)
+    for power in powers.values():
+        require_drawable("powers", rule, power, "interval_db")
 
 
 def draw_part_powers(axes, powers: dict, title="Mean received power by part") -> None:

@@ -70,7 +70,7 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     labels: SpectrogramLabels; title: above the axes
     Returns the axes: time in s across, radial velocity in m/s up. Raises TypeError naming `labels` or `ax`.
     """
-    require_drawable("labels", "SpectrogramLabels, as ep.spectrogram_labels makes them", labels, "whole", "dominant")
+    require_drawable("labels", "SpectrogramLabels, as ep.spectrogram_labels makes them", labels, "whole", "trains")
     from matplotlib.colors import ListedColormap
 
     level = in_dbm(labels.whole, SMALLEST_POWER)

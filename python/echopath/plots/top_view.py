@@ -55,6 +55,8 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
     if maps is None:
         raise refused(TypeError, "maps", "a RangeAzimuth, which frames have whose antennas tell azimuths apart", maps)
     maps = maps if isinstance(maps, dict) else {"": maps}
+    if not maps:
+        raise refused(ValueError, "maps", _MAP_RULE, maps)
     for one in maps.values():
         require_drawable("maps", _MAP_RULE, one, "azimuth", "power")
     first = next(iter(maps.values()))

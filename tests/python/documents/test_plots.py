@@ -61,6 +61,35 @@ def spectrum():
                            window="hann", zero_pad=1)
 
 
+@pytest.mark.parametrize("draw, argument", [
+    (ep.plots.draw_range_doppler, "spectrum"), (ep.plots.draw_labels, "labels"), (ep.plots.draw_spectrogram_labels, "labels")])
+def test_tables_of_what_is_drawn_are_refused_by_name(draw, argument, spectrum):
+    """What a frame has by the names of its partitions, in the place of one of these."""
+    with pytest.raises(TypeError, match=f"^{argument}: must be "):
+        draw({"parts": spectrum})
+    with pytest.raises(TypeError, match=f"^{argument}: must be "):
+        draw(SimpleNamespace(values=spectrum.values, whole=spectrum.values, dominant=spectrum.values, part_names=["other"]))
+
+
+@pytest.mark.parametrize("draw, argument", [
+    (lambda table, spectrum: plots.plot_partition({"wall": table}), "spectra"),
+    (lambda table, spectrum: plots.plot_partition({"wall": 5.0}), "spectra"),
+    (lambda table, spectrum: plots.plot_overview(spectrum, {"wall": None}), "spectra"),
+    (lambda table, spectrum: plots.plot_overview(spectrum, table, powers={"parts": table}), "powers"),
+    (lambda table, spectrum: plots.plot_partition(table, powers=[1.0]), "powers"),
+    (lambda table, spectrum: plots.plot_part_powers({"wall": table}), "powers"),
+    (lambda table, spectrum: plots.plot_labels(SimpleNamespace(part_names=[], ghosts=[]), powers={"parts": table}), "powers"),
+    (lambda table, spectrum: plots.plot_labels(SimpleNamespace(part_names=[], ghosts=[]), powers=[1.0]), "powers")])
+def test_partitions_in_the_place_of_one_are_refused_by_name(draw, argument, spectrum):
+    with pytest.raises(TypeError, match=f"^{argument}: must be "):
+        draw({"wall": spectrum}, spectrum)
+
+
+def test_no_map_from_above_is_refused():
+    with pytest.raises(ValueError, match="^maps: must be "):
+        plots.plot_range_azimuth({})
+
+
 def test_a_map_shows_power_in_dbm(spectrum):
     assert power_dbm(spectrum)[20, 40] == pytest.approx(-70.0)  # 1e-10 W
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from .._core import amplitude_tolerance
-from ..arguments.checks import ArrayLike, an, checked
+from ..arguments.checks import ArrayLike, an, checked, refused
 from ..arguments.settings import SignalSettings
 from .check import Check
 
@@ -23,8 +23,9 @@ def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float 
     SignalProbe that was filled with it; tolerance: rms of the samples, relative, and phase_tolerance: rad, as promised
     Returns list [C] of Check: samples against direct sums of all echoes, then phases and amplitudes of moving echoes between
     nodes against evaluation at the chirp (none where nothing moves). Raises TypeError or ValueError naming
-    the argument.
+    the argument, also for a probe that no signal has filled and for a cube without the samples that it has drawn.
     """
+    _require_samples(cube, probe)
     checks = [_samples(cube, probe, tolerance)]
     count = int(probe.num_echoes.sum())
     if count == 0:
@@ -33,6 +34,15 @@ def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float 
     phase, amplitude = float(np.max(probe.phase_error)), float(np.max(probe.amplitude_error))
     return [*checks, Check(f"{name}, phase", phase, BEYOND_TAIL * phase_tolerance, "rad rms", count),
             Check(f"{name}, size", amplitude, BEYOND_TAIL * amplitude_tolerance(phase_tolerance), "of the amplitude rms", count)]
+
+
+def _require_samples(cube, probe) -> None:
+    """Raises ValueError unless there are samples of the probe, and the cube reaches as far as they do."""
+    if not len(probe.chirp):
+        raise refused(ValueError, "probe", "one that synthesize or decompose has filled", probe)
+    least = [int(np.max(drawn)) + 1 for drawn in (probe.tx, probe.rx, probe.chirp, probe.sample)]
+    if any(size < needed for size, needed in zip(cube.shape, least)):
+        raise refused(ValueError, "cube", f"the one that the probe was filled with, of at least {least}", cube)
 
 
 def _samples(cube, probe, tolerance: float) -> Check:

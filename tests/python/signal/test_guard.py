@@ -119,6 +119,17 @@ def test_silent_where_all_is_well(batches):
     assert all(len(frame.checks) == (5 if batches is None else 7) for frame in frames)
 
 
+def test_signals_that_are_not_those_of_the_probe_are_refused(paths):
+    probe = ep.SignalProbe()
+    cube = np.zeros((1, 1, 8, 32), complex)
+    with pytest.raises(ValueError, match="^probe: must be one that synthesize or decompose has filled"):
+        ep.check_signal(cube, probe)
+    cube = ep.synthesize(paths, probe=probe)
+    for other in (cube[:, :, :0], cube[:, :, :, :1], cube[:, :0]):
+        with pytest.raises(ValueError, match="^cube: must be the one that the probe was filled with, of at least "):
+            ep.check_signal(other, probe)
+
+
 def disagreeing(cube, probe, **promises) -> list:
     return [check.name for check in ep.check_signal(cube, probe, **promises) if not check.agrees]
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -52,14 +53,20 @@ def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time
     start_time: s, first sample of the frame
     interference: what other radars send (`interference`), of the shape of the cube in sqrt(W), or None: the errors of the
         radar's transmitters are not in it, and its own oscillator turns it by its phase of now, whatever the delay
-    Returns Reception. Raises TypeError or ValueError naming the argument, also where the receiver has tables of other
-    antennas. Warns (RuntimeWarning) where the converter clips more than 1 % of the codes, gives the same one for
-    all, or has steps that add more to the noise than it has itself.
+    Returns Reception, whose cube is never the one that was given. Raises TypeError or ValueError naming the argument, also
+    where the receiver has tables of other antennas. Warns (RuntimeWarning) where the converter clips more than 1 % of the
+    codes, gives the same one for all, or has steps that add more to the noise than it has itself.
     """
     other = None if interference is None else np.asarray(interference, np.complex128)
     if other is not None and other.shape != np.shape(cube):
         raise refused(ValueError, "interference", f"of the shape of the cube, {np.shape(cube)}", other)
-    return reception(np.asarray(cube, np.complex128), radar, seed, start_time, other)
+    found = reception(np.asarray(cube, np.complex128), radar, seed, start_time, other)
+    return dataclasses.replace(found, cube=apart_from([cube, other], found.cube))
+
+
+def apart_from(given: Iterable, made: np.ndarray) -> np.ndarray:
+    """What was made of given cubes; a copy where one of them is left as it was, so that neither changes with the other."""
+    return made.copy() if any(one is not None and np.may_share_memory(one, made) for one in given) else made
 
 
 def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time: float,

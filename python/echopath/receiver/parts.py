@@ -10,7 +10,7 @@ from ..arguments.checks import COMMON, ArrayLike, anything, checked, optional, r
 from ..arguments.part_names import CONVERTER, INTERFERENCE, LEAKAGE, NOISE, OF_RECEIVER, OFFSET, require_free
 from ..base.numerics.analytic import as_samples
 from ..transmit import radar_of_noise, signal_shape
-from .chain import Chain
+from .chain import Chain, apart_from
 from .channels import require_channels
 from .converter import converted
 from .imbalance import compressed, compression, with_offset
@@ -29,8 +29,8 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
     "noise" (thermal), "offset" (of the branches) and "converter" (rounding and saturation).
     parts: {name: cube} of `decompose`, each as `receive` takes it, in sqrt(W)
     radar, seed, start_time (s), interference: as in `receive`
-    Returns {name: cube} complex128 of the same shapes. Raises TypeError or ValueError naming the argument, also for parts of one
-    of those names.
+    Returns {name: cube} complex128 of the same shapes, none of which is one of those given. Raises TypeError or ValueError
+    naming the argument, also for parts of one of those names.
     """
     shape = signal_shape(radar)
     cubes = {name: _checked_cube(f"parts.{text('parts', name)}", cube, shape) for name, cube in _checked_table(parts).items()}
@@ -38,6 +38,7 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
     receiver = Receiver() if radar.receiver is None else radar.receiver
     require_channels(receiver, radar)
     found = _before_the_converter(cubes, radar, receiver, seed, start_time, other)
+    found = {name: apart_from([*cubes.values(), other], cube) for name, cube in found.items()}
     if receiver.adc is not None:
         before = sum(found.values())
         found[CONVERTER] = converted(before, radar.waveform, receiver.adc)[0] - before

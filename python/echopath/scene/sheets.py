@@ -65,7 +65,7 @@ def sheet_coefficients(material: _core.Material, *, frequency: float, incidence:
     from_behind: the wave meets the last layer first
     Returns SheetCoefficients, [N] each. Raises TypeError or ValueError naming the argument.
     """
-    angles = np.atleast_1d(np.asarray(incidence, np.float64))
+    angles = np.atleast_1d(np.array(incidence, np.float64))  # a copy, which the result keeps
     rows = _core._sheet_coefficients(material, frequency, angles, from_behind)
     return SheetCoefficients(angles, *rows[:4], rows[4].real, rows[4].imag)
 

@@ -38,6 +38,18 @@ def test_an_ideal_receiver_keeps_every_bit():
     np.testing.assert_array_equal(ep.receive(cube, radar.replace(receiver=ep.Receiver()), seed=5).cube, plain)
 
 
+@pytest.mark.parametrize("receiver", [None, ep.Receiver()])
+def test_what_a_receiver_gives_is_not_what_it_was_given(receiver):
+    """Also where nothing is done to the cube: a caller who goes on in one of them keeps the other."""
+    cube, radar = tone(33.3), one_channel().replace(receiver=receiver)
+    kept = cube.copy()
+    for other in (ep.receive(cube, radar, seed=None).cube, ep.receive(0.0 * cube, radar, seed=None, interference=cube).cube,
+                  *ep.receive_parts({"one": cube, "two": cube}, radar, seed=None).values(),
+                  *ep.receive_parts({"one": 0.0 * cube}, radar, seed=None, interference=cube).values()):
+        other[...] = 7.0
+    np.testing.assert_array_equal(cube, kept)
+
+
 @pytest.mark.parametrize("filters", [{"high_pass": [175e3]}, {"low_pass": 5e6}])
 def test_white_noise_for_a_receiver_with_filters_is_warned_of(filters):
     radar = one_channel(receiver=ep.Receiver(**filters))

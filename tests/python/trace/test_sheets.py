@@ -244,3 +244,10 @@ def test_coefficients_of_sheets_travel_and_compare():
     one, other = (ep.sheet_coefficients(ep.materials["glass_pane"], frequency=frequency, incidence=[0.0, 0.3])
                   for frequency in (77e9, 78e9))
     assert pickle.loads(pickle.dumps(one)) == one == copy.deepcopy(one) != other
+
+
+def test_coefficients_keep_their_angles():
+    angles = np.array([0.0, 0.3])
+    found = ep.sheet_coefficients(ep.materials["glass_pane"], frequency=77e9, incidence=angles)
+    angles[:] = 1.0
+    assert found.incidence.tolist() == [0.0, 0.3]

@@ -138,7 +138,7 @@ def ellipsoid(semi_axes: float | Sequence[float], *, edge: float | None = None) 
     Raises TypeError or ValueError naming the argument.
     """
     a, b, c = semi_axes
-    edge = _round_edge(edge, min(a, b), max(a, b, c))
+    edge = _round_edge("semi_axes", edge, min(a, b), max(a, b, c), 4.0 * np.pi * max(a, b) * max(a, b, c))
     section = surfaces.table_section([(-c, 0, 0, a, b, 2), (c, 0, 0, a, b, 2)], c, c)
     return _mesh(surfaces.swept(section, -c, c, edge))
 
@@ -152,7 +152,7 @@ def capsule(radius: float, length: float, *, edge: float | None = None) -> _core
     """
     if length < 2.0 * radius:
         raise ValueError(f"length: must be at least twice the radius {radius!r} m, got {length!r}")
-    edge = _round_edge(edge, radius, length)
+    edge = _round_edge("length", edge, radius, length, 2.0 * np.pi * radius * length)
     section = surfaces.table_section([(-length / 2, 0, 0, radius, radius, 2), (length / 2, 0, 0, radius, radius, 2)],
                                      radius, radius)
     return _mesh(surfaces.swept(section, -length / 2, length / 2, edge))
@@ -167,7 +167,16 @@ def _facing(a, b):
     return (a, b) if np.cross(a, b)[0] < 0 else (b, a)
 
 
-def _round_edge(edge, radius, size):
+def _round_edge(argument, edge, radius, size, area):
+    """The edge of triangles of a round body, all in m and m^2.
+
+    argument: the one to refuse where the body is too large beside its smallest radius; area: at most that of the body
+    """
     if edge is None:
-        return radius * np.pi / (2 * ROUND_PIECES)
-    return min(surfaces.edge_length(edge, 3.0 * size), radius)
+        edge = radius * np.pi / (2 * ROUND_PIECES)
+    else:
+        edge = min(surfaces.edge_length(edge, 3.0 * size), radius)
+    if 2.0 * area / edge ** 2 > surfaces.MAX_TRIANGLES:
+        raise ValueError(f"{argument}: must be small enough for less than {surfaces.MAX_TRIANGLES} triangles beside the smallest "
+                         f"radius, {radius!r} m, got {size!r} m")
+    return edge

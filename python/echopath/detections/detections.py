@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..arguments.checks import refused
+from ..arguments.checks import LARGEST_COUNT, count
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..presentation.tables import make_table, write_csv
@@ -86,15 +86,14 @@ class Detections:
         Model: lengths and amplitudes of at most 8 channels at mid-frame, the velocity of `path_cells` and its change over the
         frame for the first antennas, and the response of the windows; powers are means over the channels. Taken are the
         strongest that hold 99.99 % of the sum of the powers of single paths, of which the shares are.
-        i: index, 0 to D - 1. Empty where is_noise. Raises ValueError where `detect` was given no paths, TypeError for what
-        is no index, IndexError.
+        i: index, 0 to D - 1, or from the end, -1 to -D. Empty where is_noise. Raises ValueError where `detect` was given no
+        paths, TypeError or ValueError for what is no whole number, IndexError.
         """
-        if not hasattr(i, "__index__"):
-            raise refused(TypeError, "i", "the index of a detection, a whole number", i)
+        i = count(-LARGEST_COUNT)("i", i)
         if self.echoes is None:
             raise ValueError("paths: detect(..., paths=) was not given any")
         if not -len(self) <= i < len(self):
-            raise IndexError(f"i: must be in [0, {len(self)}), got {i}")
+            raise IndexError(f"i: must be in [0, {len(self)}), or count from the end, got {i}")
         if self.is_noise[i]:
             return np.zeros(0, np.int64), np.zeros(0)
         self.echoes.evaluate(self.cells)

@@ -30,6 +30,9 @@ def _row(unit: str = "", largest: float = math.inf) -> Rule:
     return check
 
 
+_OFFSETS = array("[]", "[N]", "[N, M]", "[N, M, K]", finite=True)
+
+
 def _check_size(argument: str, numbers: Row, unit: str, largest: float) -> None:
     if max(map(abs, numbers), default=0.0) > largest:
         raise refused(ValueError, argument, f"from {-largest:g} to {largest:g} {unit}", numbers)
@@ -116,9 +119,10 @@ class PhaseNoise(Settings):
     def density(self, offset: ArrayLike) -> np.ndarray:
         """Power relative to the carrier's in 1 Hz.
 
-        offset: Hz, a number or an array of either sign
-        Returns an array of that shape, linear, in 1/Hz. Raises TypeError for what are no numbers.
+        offset: Hz of either sign, a number or an array of at most three axes
+        Returns an array of that shape, linear, in 1/Hz. Raises TypeError or ValueError for what are no finite numbers.
         """
+        offset = _OFFSETS("offset", offset)
         log = np.log10(np.maximum(np.abs(offset), self.offsets[0]))
         return 10.0 ** (np.interp(log, np.log10(self.offsets), self.levels) / 10.0)
 

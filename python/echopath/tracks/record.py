@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.checks import refused
+from ..arguments.checks import LARGEST_COUNT, count
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.text.counts import counted
@@ -60,8 +60,7 @@ class Tracks:
 
         number: of the track. Raises TypeError for what is no number, KeyError for one that is not there.
         """
-        if not hasattr(number, "__index__"):
-            raise refused(TypeError, "number", "the number of a track, a whole number", number)
+        number = count(-LARGEST_COUNT)("number", number)
         chosen = self.track == number
         if not chosen.any():
             raise KeyError(f"number: must be that of one of {self.num_tracks} tracks, got {number}")

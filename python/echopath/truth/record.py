@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.checks import LARGEST_COUNT, count, refused
+from ..arguments.checks import LARGEST_COUNT, count, refused, text
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.numerics.rotations import quaternions
@@ -105,8 +105,9 @@ class Truth:
     def of_object(self, name: str) -> Truth:
         """The rows of one object, in the order of the frames.
 
-        name: as in the rows. Raises KeyError.
+        name: as in the rows. Raises KeyError, TypeError for what is no text.
         """
+        name = text("name", name)
         if not np.any(self.name == name):
             raise KeyError(f"name: must be one of {', '.join(dict.fromkeys(self.name.tolist()))}, got {name!r}")
         return self._where(self.name == name)

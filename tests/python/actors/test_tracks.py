@@ -291,6 +291,8 @@ def test_tracks_travel_and_are_drawn(tmp_path):
     pyplot.close(ax.figure)
     with pytest.raises(KeyError, match="number: must be that of one of 2 tracks, got 7"):
         tracks.of_track(7)
+    with pytest.raises(TypeError, match="^number: must be a whole number"):
+        tracks.of_track(np.array([0, 1]))
 
 
 def test_tracks_become_a_table():

@@ -40,7 +40,11 @@ def calls(tmp_path_factory):
         "detections_to_csv": (labelled.detections.to_csv, {"path": folder / "detections.csv"}),
         "detections_to_pcd": (labelled.detections.to_pcd, {"path": folder / "detections.pcd"}),
         "truth_to_csv": (ep.truth(frame).to_csv, {"path": folder / "truth.csv"}),
-        "of_frame": (ep.truth(frame).of_frame, {"frame": 0}),
+        "of_frame": (ep.truth(frame).of_frame, {"frame": 0}), "detection_paths": (labelled.detections.paths, {"i": 0}),
+        "density": (ep.PhaseNoise(offsets=[1e3], levels=[-90.0]).density, {"offset": 1e3}),
+        "Part": (_part, {"name": "part", "mesh": ep.actors.plate(1, 1)}),
+        "draw_range_doppler": (_drawn(ep.plots.draw_range_doppler), {"spectrum": frame.spectrum}),
+        "draw_labels": (_drawn(ep.plots.draw_labels), {"labels": labels}),
         "extent": (ep.spectrogram(frame).extent, {}),
         "within": (cells.within, {"range_indices": (0, 1), "velocity_indices": (0, 1)}),
         "paths_of": (families.paths_of, {"family": families.families[0]}),
@@ -60,6 +64,21 @@ def _actors() -> dict:
             right = {one.name: BY_NAME[one.name] for one in taken if one.default is one.empty}
             made[name] = (make, right | ({"edge": COARSE} if any(one.name == "edge" and one.default for one in taken) else {}))
     return made
+
+
+def _part(name, mesh):
+    return ep.Part(name, mesh, "metal")
+
+
+def _drawn(draw):
+    """The function of what it draws alone, by the same name."""
+    argument = next(iter(inspect.signature(draw).parameters.values()))
+
+    def called(**right):
+        return draw(**right)
+
+    called.__signature__ = inspect.Signature([argument.replace(kind=argument.KEYWORD_ONLY)])
+    return called
 
 
 def _add(**arguments):

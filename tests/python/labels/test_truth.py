@@ -234,6 +234,8 @@ def test_a_walking_person_goes_at_their_speed_in_the_mean():
     assert len(found.of_object("walker")) == 8 and len(found.of_frame(3)) == 1
     with pytest.raises(KeyError, match="must be one of walker, got 'runner'"):
         found.of_object("runner")
+    with pytest.raises(TypeError, match="^name: must be text"):
+        found.of_object(["walker", "walker"])
 
 
 # --- what the radar sees ---

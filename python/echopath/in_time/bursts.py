@@ -72,7 +72,7 @@ def frames_rule(argument: str, value):
     """What can be iterated for frames or cubes; a single one becomes a list of it."""
     if isinstance(value, Frame | FrameMaps):
         return [value]
-    if isinstance(value, np.ndarray) and value.ndim == 4:
+    if getattr(value, "ndim", None) == 4:  # also an array of xarray, which could be iterated, too
         return [_CUBE(argument, value)]
     return iterable(argument, value, _RULE)
 

@@ -77,3 +77,11 @@ def test_paths_are_a_dataset_of_their_columns(radar):
     assert np.array_equal(named.weight, paths.weight) and np.array_equal(named.triangle_id, paths.triangle_id)
     assert named.attrs["mesh_names"] == ["plate"] and named.length.attrs["units"] == "m"
     assert float(named.length.min()) == pytest.approx(2.0 * RANGE, abs=1e-3)
+
+
+def test_maps_over_time_take_a_cube_of_xarray(radar):
+    xarray = pytest.importorskip("xarray")
+    cube = np.random.default_rng(1).normal(size=(2, 4, 32, 128)) + 0j
+    named = xarray.DataArray(cube, dims=("tx", "rx", "chirp", "sample"))
+    for over_time in (ep.spectrogram, ep.range_time, ep.angle_time):
+        np.testing.assert_array_equal(over_time(named, radar).power, over_time(cube, radar).power)

@@ -94,7 +94,7 @@ def spectrogram_labels(parts: Mapping[str, Spectrogram], whole: Spectrogram | No
     noise_margin_db: dB above the mean of the noise that the whole must be, -300 to 300
     dynamic_range_db: dB below the strongest cell that the mask goes down to, None: no limit
     Returns SpectrogramLabels with maps [time, velocity]; a cell belongs to its strongest part. Raises TypeError or ValueError
-    naming the argument, also for spectrograms of other times or velocities.
+    naming the argument, also for spectrograms of other times or velocities. Its arrays are its own.
     """
     first = next(iter(parts.values()))
     for name, one in [*parts.items(), *([("whole", whole)] if whole is not None else [])]:
@@ -110,14 +110,15 @@ def labels_of(parts: dict[str, Spectrogram], whole: Spectrogram | None, noise_ma
     """
     first = next(iter(parts.values()))
     power = np.stack([one.power for one in parts.values()])
-    total = power.sum(axis=0) if whole is None else whole.power
+    total = power.sum(axis=0) if whole is None else whole.power.copy()
     range_db = np.inf if dynamic_range_db is None else dynamic_range_db
     floor = floor_over(first.noise_power, noise_margin_db)
     above_noise, mask = masks_of(total, floor, 10.0 ** (-0.1 * range_db), strongest)
     return SpectrogramLabels(
-        times=first.times, velocity=first.velocity, train=first.train, trains=first.trains, part_names=list(parts), power=power,
-        whole=total, share=_core.power_shares(power), dominant=_core.strongest_part(power, mask), noise_power=first.noise_power,
-        noise_margin_db=noise_margin_db, dynamic_range_db=range_db, above_noise=above_noise, mask=mask)
+        times=first.times.copy(), velocity=first.velocity.copy(), train=first.train.copy(), trains=first.trains.copy(),
+        part_names=list(parts), power=power, whole=total, share=_core.power_shares(power),
+        dominant=_core.strongest_part(power, mask), noise_power=first.noise_power, noise_margin_db=noise_margin_db,
+        dynamic_range_db=range_db, above_noise=above_noise, mask=mask)
 
 
 def _require_same(name: str, one: Spectrogram, first: Spectrogram) -> None:

@@ -1,4 +1,5 @@
 """Velocity, range and azimuth over time of bodies that move; the maps as values."""
+import copy
 import pickle
 
 import numpy as np
@@ -133,6 +134,17 @@ def test_the_strongest_part_owns_a_cell():
     assert np.array_equal(without.whole, parts["slow"].power + parts["fast"].power)
     with pytest.raises(ValueError, match="parts: must all have the same times, which 'b' has not"):
         ep.spectrogram_labels({"a": parts["slow"], "b": ep.spectrogram(fast, radar, window_length=64, hop=8)})
+
+
+@pytest.mark.parametrize("has_whole", [False, True])
+def test_labels_stay_as_they_are_where_a_spectrogram_is_turned_to_other_units(has_whole):
+    radar = build_radar(num_chirps=128)
+    part = ep.spectrogram(tone(radar, 3.0, 1.0, 1e-9), radar, window_length=64)
+    labels = ep.spectrogram_labels({"part": part}, part if has_whole else None)
+    kept = copy.deepcopy(labels)
+    for values in (part.power, part.times, part.velocity, part.train, part.trains):
+        values *= 3
+    assert labels == kept
 
 
 def values_of(passing):

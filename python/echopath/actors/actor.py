@@ -49,6 +49,7 @@ class Actor:
     def __post_init__(self):
         if not isinstance(self.parts, Sequence) or not all(isinstance(part, Part) for part in self.parts):
             raise refused(TypeError, "parts", "a list of Part", self.parts)
+        object.__setattr__(self, "parts", list(self.parts))  # its own, which the caller's list does not change
         names = [part.name for part in self.parts]
         for name in names:
             if not name or any(not step for step in name.split("/")):

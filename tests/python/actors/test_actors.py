@@ -121,6 +121,13 @@ def test_ground_looks_up_and_wall_towards_the_street():
     assert (wall.vertices.min(axis=0).tolist(), wall.vertices.max(axis=0).tolist()) == ([-2.5, 0, 0], [2.5, 0, 3])
 
 
+def test_an_actor_has_a_list_of_its_own():
+    parts = [ep.Part("hand", ep.actors.plate(0.1, 0.1), "skin")]
+    actor = ep.Actor(parts)
+    parts.append("head")
+    assert [part.name for part in actor.parts] == ["hand"] and ep.Actor(tuple(actor.parts)) == actor
+
+
 @pytest.mark.parametrize("make, message", [
     (lambda: ep.actors.plate(-1.0, 1.0), "width: must be a finite number from 1e-09 to 1000000000 m, got -1.0"),
     (lambda: ep.actors.plate(1.0, float("nan")), "height: must be a finite number from 1e-09 to 1000000000 m, got nan"),

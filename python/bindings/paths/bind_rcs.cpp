@@ -45,7 +45,8 @@ std::vector<RcsDirections> pairs_of(const py::object& incidence, const py::objec
   require(is_one || is_one_out || in.size() == out.size(), "observation", "must be one or as many as incidence, rows",
           out.size());
   std::vector<RcsDirections> pairs;
-  for (size_t i = 0; i < std::max(in.size(), out.size()); ++i) {
+  const size_t num_pairs = is_one ? out.size() : in.size();
+  for (size_t i = 0; i < num_pairs; ++i) {
     pairs.push_back({in[is_one ? 0 : i], out[is_one_out ? 0 : i]});
   }
   is_one = is_one && is_one_out;

@@ -268,3 +268,10 @@ def test_flat_metal_returns_the_polarization_as_it_came():
     scalar = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=direction, num_rays=1 << 13)
     assert vv == pytest.approx(scalar, rel=RECORD, abs=0) and hh == pytest.approx(scalar, rel=RECORD, abs=0)
     assert vh < CROSS * vv
+
+
+@pytest.mark.parametrize("incidence, observation", [((-1, 0, 0), np.zeros((0, 3))), (np.zeros((0, 3)), (-1, 0, 0)),
+                                                    (np.zeros((0, 3)), None), (np.zeros((0, 3)), np.zeros((0, 3)))])
+def test_no_directions_have_no_cross_sections(incidence, observation):
+    found = ep.rcs(plate_scene(0.1), frequency=FREQUENCY, incidence=incidence, observation=observation, num_rays=100)
+    assert found.shape == (0,)

@@ -17,6 +17,7 @@
 namespace echopath::bindings {
 namespace {
 
+constexpr double kRoundingOfCosines = 1e-9;
 constexpr auto kPatternKind = choice<AntennaPattern::Kind>("kind", "isotropic", "cosine_power", "table");
 
 AntennaPattern isotropic(Arg<"gain", Real> gain) { return AntennaPattern::isotropic(*gain); }
@@ -56,6 +57,8 @@ py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& 
 }
 
 double gain_of(const AntennaPattern& pattern, Arg<"cos_boresight", Real> cos_boresight) {
+  require(std::abs(*cos_boresight) <= 1.0 + kRoundingOfCosines, "cos_boresight", "must be a cosine, from -1 to 1",
+          *cos_boresight);
   return pattern.gain(*cos_boresight);
 }
 
@@ -104,7 +107,8 @@ void bind_patterns(py::module_& m) {
                                   "Power gain over direction; made by Isotropic, CosinePower or GainTable.");
   define_no_init(type, "ep.Isotropic, ep.CosinePower, ep.GainTable and ep.load_antenna");
   define(type, "gain", &gain_of, py::arg("cos_boresight"),
-         "Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.");
+         "Linear power gain where cos_boresight is the cosine of the angle from the boresight, from -1 to 1. "
+         "A table raises ValueError.");
   define(type, "field", &field_of, py::arg("directions"),
          "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame. Raises TypeError or "
          "ValueError naming the argument.");

@@ -53,6 +53,14 @@ def test_table_gives_the_gain_that_was_sampled():
         pattern.gain(1.0)
 
 
+@pytest.mark.parametrize("degrees", [30.0, -1.1, 1.0 + 1e-6])
+def test_gains_are_asked_for_by_cosines(degrees):
+    for pattern in (ep.CosinePower(2.0), ep.Isotropic()):
+        with pytest.raises(ValueError, match="^cos_boresight: must be a cosine, from -1 to 1, got "):
+            pattern.gain(degrees)
+        assert pattern.gain(1.0 + 1e-15) == pytest.approx(pattern.peak_gain, rel=1e-14)  # of unit vectors, whose product is rounded
+
+
 def test_other_patterns_have_no_table():
     for pattern, efficiency in ((ep.Isotropic(0.5), 0.5), (ep.CosinePower(3.0), 1.0)):
         assert pattern.efficiency == pytest.approx(efficiency)

@@ -42,7 +42,7 @@ std::string shown(py::handle value) {
     if (py::isinstance<py::array>(value)) return array_text(py::reinterpret_borrow<py::array>(value));
     if (PyFloat_Check(value.ptr())) return cut(py::repr(py::float_(PyFloat_AS_DOUBLE(value.ptr()))));
     if (has_short_text(value)) return cut(py::repr(value));
-    if (py::hasattr(value, "dtype") && py::hasattr(value, "item")) return cut(py::str(value));  // a scalar of NumPy
+    if (py::isinstance(value, py::module_::import("numpy").attr("generic"))) return cut(py::str(value));
   } catch (const std::exception&) {  // such as an int of too many digits
     PyErr_Clear();
   }

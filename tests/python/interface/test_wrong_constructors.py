@@ -230,3 +230,10 @@ def test_signatures_show_plain_types():
 def test_meshes_refuse_vertices_that_are_not_finite():
     with pytest.raises(ValueError, match="^vertices: vertex 2 must be finite .*, got +0 nan +0$"):
         ep.Mesh([[0, 0, 0], [1, 0, 0], [0, NAN, 0], [0, 1, 0]], [[0, 1, 3], [0, 1, 2]])
+
+
+def test_tables_of_pandas_are_shown_in_one_line():
+    pandas = pytest.importorskip("pandas")
+    for value in (pandas.Series([1.0, 2.0, 3.0]), pandas.Categorical(["a", "b"])):
+        with pytest.raises(TypeError, match=rf"^num_samples: must be .*, got {type(value).__name__}$"):
+            ep.ChirpSequence(num_samples=value)

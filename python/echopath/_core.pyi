@@ -1241,7 +1241,7 @@ class AntennaPattern:
         """
     def gain(self, cos_boresight: float) -> float:
         """
-        Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.
+        Linear power gain where cos_boresight is the cosine of the angle from the boresight, from -1 to 1. A table raises ValueError.
         """
     def replace(self, **kwargs: object) -> AntennaPattern:
         """

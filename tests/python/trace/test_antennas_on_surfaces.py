@@ -11,6 +11,7 @@ ANTENNA = (0.0, 0.0, 0.5)
 CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=300e6, num_samples=64, sampling_rate=10e6, num_chirps=4,
                           chirp_interval=30e-6)
 pytestmark = pytest.mark.filterwarnings("ignore:of [0-9]+ rays:RuntimeWarning")  # that met a surface at the radar
+SINGLE = 1e-6  # relative: weights are of single precision
 METAL_MIRROR = ep.Material.metal(mirror=True)
 
 
@@ -52,6 +53,25 @@ def test_an_antenna_has_no_image_in_a_mirror_on_which_it_lies():
     paths = ep.trace(scene, radar, num_rays=200)
     assert np.isfinite(ep.synthesize(paths, radar)).all()
     assert paths.select("T 'plate' R").num_paths == 0
+
+
+@pytest.mark.parametrize("polarization", ["scalar", "jones"])
+def test_a_mirror_that_leaves_the_antenna_is_heard_from_a_millimetre_on(polarization):
+    """As an object without a position is, whose front begins at the radar. The way to it and back is 2 v t, the echo that of an
+    image, wavelength sqrt(P) / (4 pi 2 v t); it was without bounds, and no number at the begin."""
+    speed = 100.0
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", speed=speed)
+    radar = ep.Radar(CHIRPS, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+    paths = ep.trace(scene, radar, num_rays=200, polarization=polarization)
+    assert paths.num_paths == 1
+    times = np.array([0.0, 1e-9, 4.9e-6, 5.1e-6, 1e-5, 1e-4])  # s: the way is 1 mm long after 5 us
+    way = 2.0 * speed * times
+    wavelength = ep.speed_of_light / CHIRPS.start_frequency
+    image = np.divide(wavelength * np.sqrt(radar.transmit_power), 4.0 * np.pi * way, out=np.zeros(6), where=way > 1e-3)
+    np.testing.assert_allclose(np.abs(paths.amplitudes(times, 0, 0)[:, 0]), image, rtol=SINGLE)
+    cube = ep.synthesize(paths, radar)
+    assert np.abs(cube[0, 0, 0]).max() == 0.0 and 0.0 < np.abs(cube).max() <= image.max()
 
 
 def test_a_rim_beside_the_antenna_hides_nothing_ahead_of_it():

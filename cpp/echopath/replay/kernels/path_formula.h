@@ -124,10 +124,11 @@ ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Re
 
 // --- flagged mirrors alone ---
 
-// Returns the factor of a path that is `length` (m) long, of which `root_gains` is sqrt(Gt Gr).
+// Returns the factor of a path that is `length` (m) long, of which `root_gains` is sqrt(Gt Gr): 0 where the whole path is so
+// short that both antennas are near.
 template <class Real>
 ECHOPATH_INLINE Real mirror_size(Real root_gains, Real length) {
-  return root_gains / length;
+  return reaches_antenna(length) ? root_gains / length : Real{};
 }
 
 // --- diffuse paths ---

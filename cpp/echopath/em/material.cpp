@@ -9,6 +9,8 @@ namespace echopath {
 namespace {
 
 constexpr size_t kMostLayers = 64;
+// Of permittivities and of conductivities in S/m, far beyond all matter, whose squares and those of one over them are finite.
+constexpr double kLargest = 1e100;
 
 void validate_permittivity(const std::complex<double>& permittivity) {
   require(std::isfinite(permittivity.real()) && std::isfinite(permittivity.imag()), "permittivity", "must be finite",
@@ -16,6 +18,14 @@ void validate_permittivity(const std::complex<double>& permittivity) {
   require(permittivity.imag() <= 0, "permittivity", "is eps' - j eps'': its imaginary part must not be positive",
           permittivity);
   require(permittivity != std::complex<double>(0.0, 0.0), "permittivity", "must not be 0", permittivity);
+  const double size = std::abs(permittivity);
+  require(size >= 1.0 / kLargest && size <= kLargest, "permittivity", "must be from 1e-100 to 1e100 in size", permittivity);
+}
+
+void validate_conductivity(double conductivity) {
+  require(std::isfinite(conductivity) && conductivity >= 0, "conductivity", "must be >= 0 S/m", conductivity);
+  require(conductivity <= kLargest, "conductivity", "must be at most 1e100 S/m; conductor=True is without bounds",
+          conductivity);
 }
 
 void validate_layers(const Material& material) {
@@ -23,8 +33,7 @@ void validate_layers(const Material& material) {
   for (const Layer& layer : material.layers) {
     require(std::isfinite(layer.thickness) && layer.thickness > 0, "thickness", "of a layer must be > 0 m", layer.thickness);
     validate_permittivity(layer.permittivity);
-    require(std::isfinite(layer.conductivity) && layer.conductivity >= 0, "conductivity", "must be >= 0 S/m",
-            layer.conductivity);
+    validate_conductivity(layer.conductivity);
   }
   if (!material.is_sheet() || !material.mirror) return;
   constexpr const char* kRule =
@@ -49,7 +58,7 @@ void Material::validate() const {
   require(kinds == 1, "material", "takes exactly one of conductor, permittivity, reflectivity, layers", kinds);
   if (permittivity) validate_permittivity(*permittivity);
   validate_layers(*this);
-  require(std::isfinite(conductivity) && conductivity >= 0, "conductivity", "must be >= 0 S/m", conductivity);
+  validate_conductivity(conductivity);
   require(conductivity == 0 || permittivity.has_value(), "conductivity", "needs a permittivity", conductivity);
   if (reflectivity) require(*reflectivity >= 0 && *reflectivity <= 1, "reflectivity", "must lie in [0, 1]", *reflectivity);
   require(std::isfinite(roughness_height) && roughness_height >= 0, "roughness_height", "must be >= 0 m", roughness_height);

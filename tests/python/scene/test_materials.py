@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.base.storage.data_folder import data_folder
+from support.radars import build_radar
 
 TWO_PLACES = 0.005     # the material file says it with two places
 THREE_PLACES = 0.0005  # with three
@@ -110,6 +111,9 @@ def test_equal_materials_are_one_key():
     ({}, "exactly one"),
     ({"conductor": True, "permittivity": 4}, "exactly one"),
     ({"permittivity": 4 + 1j}, "permittivity"),
+    ({"permittivity": 1e200}, "permittivity: must be from 1e-100 to 1e100 in size"),
+    ({"permittivity": 1e-310}, "permittivity: must be from 1e-100 to 1e100 in size"),
+    ({"permittivity": 4, "conductivity": 1e300}, "conductivity: must be at most 1e100 S/m; conductor=True"),
     ({"reflectivity": 1.5}, "reflectivity"),
     ({"permittivity": 4, "scattering": 2.0}, "scattering"),
     ({"permittivity": 4, "scattering": 1.0, "cross_polarization": 0.6}, "cross_polarization"),
@@ -119,6 +123,19 @@ def test_equal_materials_are_one_key():
 def test_bad_values_are_refused_by_name(arguments, word):
     with pytest.raises(ValueError, match=word):
         ep.Material(**arguments)
+
+
+@pytest.mark.parametrize("polarization", ["scalar", "jones"])
+@pytest.mark.parametrize("matter, sign", [({"permittivity": 1e100}, 1.0), ({"permittivity": 4, "conductivity": 1e100}, 1.0),
+                                          ({"permittivity": 1e-100}, -1.0)])
+def test_the_largest_and_the_smallest_permittivities_reflect_all(matter, sign, polarization):
+    """Fresnel's coefficient is (1 - n) / (1 + n) at normal incidence: that of a conductor without bounds, of other sign at 0."""
+    echoes = []
+    for material in (ep.Material.metal(), ep.Material(**matter)):
+        scene = ep.Scene()
+        scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=material, position=(3, 0, 0))  # a mirror: one path
+        echoes.append(ep.trace(scene, build_radar(num_chirps=4), num_rays=100, polarization=polarization).amplitude)
+    np.testing.assert_allclose(echoes[1], sign * echoes[0], rtol=1e-6)  # weights are of single precision
 
 
 @pytest.mark.parametrize("arguments, word", [

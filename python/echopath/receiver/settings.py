@@ -15,6 +15,7 @@ LARGEST_DB = 1000.0  # of gains, of which several and their squares are finite n
 LARGEST_OFFSET = 10.0 ** (LARGEST_DB / 20.0)  # sqrt(W), likewise
 LONGEST_DELAY = 1.0  # s, of leakage, coupling and jitter: phases of radars are still told to a thousandth of a turn after it
 FASTEST_TURN = 1e9  # rad/s, of a drift: a tone beyond the band of any converter
+LARGEST_ERROR = 1e30  # Hz, Hz/s, ...: beyond any chirp, and phases of it are finite numbers
 HIGHEST_LEVEL = 20.0  # dBc/Hz, of a phase that turns about at random: masks of radars are far below it
 
 
@@ -215,7 +216,8 @@ class Receiver(Settings):
     adc: GivenAdc = kept(None)
 
     RULES: ClassVar[Mapping[str, Rule]] = {
-        "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": _table("[tx, rx]"),
+        "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row("Hz, Hz/s, ...", LARGEST_ERROR),
+        "leakage_db": _table("[tx, rx]"),
         "leakage_delay": real(0.0, LONGEST_DELAY, "s"), "coupling_db": _table("[rx, rx]"),
         "coupling_delay": real(0.0, LONGEST_DELAY, "s"), "transmitter_gain_db": _row("dB", LARGEST_DB),
         "transmitter_phase": _row(), "receiver_gain_db": _row("dB", LARGEST_DB), "receiver_phase": _row(),

@@ -18,11 +18,15 @@ from .gas import gas_attenuation, saturation_pressure
 from .rain import rain_attenuation
 
 DB_PER_NEPER = 20.0 / math.log(10.0)
+FASTEST_WIND = 1000.0  # m/s, beyond any storm
 BAND = 1e9, 1e12  # Hz, in which the recommendations hold: fits to them go anywhere beyond
 
 
 def _wind(argument: str, value) -> tuple[float, float, float]:
-    return tuple(vector(argument, value).tolist())
+    wind = tuple(vector(argument, value).tolist())
+    if max(map(abs, wind)) > FASTEST_WIND:
+        raise refused(ValueError, argument, f"[3] of at most {FASTEST_WIND:g} m/s", value)
+    return wind
 
 
 @settings_class
@@ -31,7 +35,7 @@ class Weather(Settings):
 
     rain_mm_per_hour: 0 to 300; fog_g_per_m3: water in fog, 0 to 10 (0.05: sight of 300 m, 0.5: of 50 m)
     temperature: K; pressure: Pa; humidity: of the air, share in [0, 1] of saturation
-    wind: [3] in m/s, world axes, of the drops beside their fall; turbulence: m/s, spread of each of their velocities
+    wind: [3] in m/s, at most 1000, world axes, of the drops beside their fall; turbulence: m/s, spread of each velocity
     Attenuation by gases is that of Recommendation ITU-R P.676-12 (line by line), by fog P.840-8 (droplets), by rain P.838-3, all
     for 1 GHz to 1 THz (fog: 200 GHz), on level paths. The echoes of rain are those of spheres of water with the sizes of
     Marshall and Palmer 1948.

@@ -413,9 +413,9 @@ def test_decibels_whose_powers_are_no_numbers_are_refused(make, name):
 @pytest.mark.parametrize("make, name", [
     (lambda: ep.Receiver(leakage_delay=1e300), "leakage_delay"), (lambda: ep.Receiver(coupling_delay=2.0), "coupling_delay"),
     (lambda: ep.Receiver(phase_drift=[0.0, -1e300]), "phase_drift"), (lambda: ep.Receiver(dc_offset=(0.0, 1e300)), "dc_offset"),
-    (lambda: ep.Adc(clock_jitter=1e300), "clock_jitter")])
+    (lambda: ep.Receiver(frequency_error=[0.0, 1e308]), "frequency_error"), (lambda: ep.Adc(clock_jitter=1e300), "clock_jitter")])
 def test_delays_and_turns_whose_phases_are_no_numbers_are_refused(make, name):
-    with pytest.raises(ValueError, match=rf"^{name}: must be .*from .* to .* (s|rad/s|sqrt\(W\)), got"):
+    with pytest.raises(ValueError, match=rf"^{name}: must be .*from .* to .* (s|rad/s|sqrt\(W\)|Hz, Hz/s, ...), got"):
         make()
 
 

@@ -273,6 +273,8 @@ def test_weather_travels_with_its_scene():
     scene = ball_scene(WET)
     assert pickle.loads(pickle.dumps(scene)).weather == WET and scene.copy().weather == WET
     assert pickle.loads(pickle.dumps(WET)) == WET == WET.replace()
+    with pytest.raises(ValueError, match=r"^wind: must be \[3\] of at most 1000 m/s, got"):
+        ep.Weather(wind=(0.0, -1e300, 0.0))
     with pytest.raises(ValueError, match="^humidity: "):
         ep.Weather(humidity=60)
     # Steam tables: at 322.15 K water boils at 117.5 hPa.

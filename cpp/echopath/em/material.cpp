@@ -9,7 +9,7 @@ namespace echopath {
 namespace {
 
 constexpr size_t kMostLayers = 64;
-// Of permittivities and of conductivities in S/m, far beyond all matter, whose squares and those of one over them are finite.
+// Bounds permittivities and conductivities in S/m, far beyond all matter: their squares are finite.
 constexpr double kLargest = 1e100;
 
 void validate_permittivity(const std::complex<double>& permittivity) {

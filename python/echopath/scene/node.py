@@ -67,8 +67,8 @@ class SceneNode:
     @property
     def children(self) -> list[SceneNode]:
         """The objects right below it, in their order."""
-        index = self._index
-        return [SceneNode(self._scene, node.name) for node in self._scene.nodes if node.parent == index]
+        above = self._node.name
+        return [SceneNode(self._scene, node.name) for node in self._scene.nodes if node.name.rpartition("/")[0] == above]
 
     @property
     def mesh(self) -> _core.Mesh | None:
@@ -175,7 +175,7 @@ class SceneNode:
 
     @property
     def _node(self) -> _core.Node:
-        return self._scene._node(self._index)
+        return _core.Scene.__getitem__(self._scene, self._name)  # in one step: no edit of another thread comes between
 
     def _change(self, **fields) -> None:
         with self._scene._edit():

@@ -1,4 +1,6 @@
 """Live scenes that several threads change and look at: edits are whole, and nobody waits for ever."""
+import itertools
+import sys
 import threading
 
 import numpy as np
@@ -68,6 +70,30 @@ def test_settings_of_one_object_by_two_threads_are_all_kept():
             assert plate.visible == bool(number % 2)
 
     run_together(move, hide)
+
+
+@pytest.mark.parametrize("step", range(12))
+@pytest.mark.parametrize("read, its_own", [
+    pytest.param(lambda node: node.position[0], 7.0, id="position"),
+    pytest.param(lambda node: [child.name for child in node.children], ["pair/part"], id="children"),
+])
+def test_what_is_read_of_an_object_is_its_own_whatever_another_thread_removes(read, its_own, step):
+    """What stands before the object goes between two steps of the interpreter that reads."""
+    scene, steps = small_live().scene, itertools.count()
+    scene.add([("part", PLATE)], name="pair", material="metal", position=(7.0, 0.0, 1.0))
+    scene.add([("other", PLATE)], name="last", material="metal", position=(9.0, 0.0, 1.0))
+    pair, before = scene["pair"], sys.getprofile()
+
+    def meddle(frame, event, argument):
+        if next(steps) == step:
+            run_together(lambda: scene.remove("plate"))
+
+    sys.setprofile(meddle)
+    try:
+        found = read(pair)
+    finally:
+        sys.setprofile(before)
+    assert found == its_own
 
 
 def test_an_edit_of_many_meshes_is_one_change():

@@ -17,6 +17,7 @@ namespace echopath::test_parallel {
 namespace {
 
 constexpr int64_t kCount = 10000;
+constexpr int kStages = 3000000;  // so many that a reader meets some that begin: seven runs of ten did
 
 class ParallelFor : public ::testing::Test {
  protected:
@@ -60,6 +61,24 @@ TEST_F(ParallelFor, AdvancesTheJobByItsCount) {
   EXPECT_EQ(job.fraction(), 0.0);
   parallel_for(kCount, [](int64_t) {}, &job);
   EXPECT_EQ(job.fraction(), 0.25);
+}
+
+TEST(Job, TellsNoMoreThanAllWhileStagesBegin) {
+  Job job;
+  std::atomic<bool> has_ended = false;
+  std::thread stages([&] {
+    for (int i = 0; i < kStages; ++i) {
+      for (const int64_t total : {int64_t{1}, kCount}) {
+        job.start(total);
+        job.advance(total);
+      }
+    }
+    has_ended = true;
+  });
+  double most = 0.0;
+  while (!has_ended) most = std::max(most, job.fraction());
+  stages.join();
+  EXPECT_LE(most, 1.0);
 }
 
 TEST_F(ParallelFor, CancelledBeforeTheLoopRunsNothing) {

@@ -1,6 +1,7 @@
 #pragma once
 // Tells the progress of one long computation, and cancels it. The worker side calls `advance`; another thread may read
 // `fraction` and call `cancel`. All functions are safe from any thread.
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 
@@ -20,9 +21,10 @@ class Job {
   void advance(int64_t amount) { done_ += amount; }
   void cancel() { cancelled_ = true; }
   bool cancelled() const { return cancelled_ || (whole_ && whole_->cancelled()); }
+  // Returns the share that is done, 0 to 1, also where `start` comes between the two numbers that tell it.
   double fraction() const {
     const int64_t total = total_;
-    return total > 0 ? static_cast<double>(done_) / static_cast<double>(total) : 0.0;
+    return total > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total)) : 0.0;
   }
   void throw_if_cancelled() const {
     if (cancelled()) throw Cancelled();

@@ -27,9 +27,16 @@ std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, cons
   return still;
 }
 
-std::shared_ptr<const StillRays> KeptStillRays::get(const std::function<StillRays()>& find) {
+std::shared_ptr<const StillRays> KeptStillRays::kept() {
   const std::lock_guard lock(mutex_);
-  if (!rays_) rays_ = std::make_shared<const StillRays>(find());
+  return rays_;
+}
+
+std::shared_ptr<const StillRays> KeptStillRays::get(const std::function<StillRays()>& find) {
+  if (std::shared_ptr<const StillRays> before = kept()) return before;
+  auto found = std::make_shared<const StillRays>(find());
+  const std::lock_guard lock(mutex_);
+  if (!rays_) rays_ = std::move(found);
   return rays_;
 }
 

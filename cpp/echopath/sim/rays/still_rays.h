@@ -34,9 +34,13 @@ std::optional<Scene> standing_scene(const Scene& scene, const Radar& radar, cons
 // for the start. Thread-safe.
 class KeptStillRays {
  public:
-  std::shared_ptr<const StillRays> get(const std::function<StillRays()>& find);  // which is called unless some are kept
+  // Returns what is kept or else what `find`, the trace of a pilot, says. Threads that ask meanwhile do not wait for it,
+  // which nothing could cancel: they find the same.
+  std::shared_ptr<const StillRays> get(const std::function<StillRays()>& find);
 
  private:
+  std::shared_ptr<const StillRays> kept();
+
   std::mutex mutex_;
   std::shared_ptr<const StillRays> rays_;
 };

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "cpp/support/sanitized.h"
 #include "echopath/base/memory/lazy.h"
 
 namespace echopath::test_lazy {
@@ -34,6 +35,7 @@ TEST(Lazy, IsMadeOnceHoweverManyThreadsAsk) {
 }
 
 TEST(Lazy, IsMadeByTheNextWhereMakingItFailed) {
+  if (test::kThreadsAreWatched) GTEST_SKIP() << "behind an exception the thread sanitizer's own call_once waits for ever";
   const Lazy<int> value;
   const auto fail = []() -> int { throw std::runtime_error("not yet"); };
   EXPECT_THROW(value.get(fail), std::runtime_error);

@@ -9,6 +9,7 @@ extern "C" void __tsan_init() __attribute__((weak));
 
 namespace echopath::test {
 
-inline const bool kIsSanitized = &__asan_init != nullptr || &__tsan_init != nullptr;
+inline const bool kThreadsAreWatched = &__tsan_init != nullptr;
+inline const bool kIsSanitized = &__asan_init != nullptr || kThreadsAreWatched;
 
 }  // namespace echopath::test

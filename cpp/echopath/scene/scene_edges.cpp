@@ -32,7 +32,7 @@ class KnownSeams {
   }
 
   static KnownSeams& of_process() {
-    static KnownSeams known;
+    static KnownSeams& known = *new KnownSeams;  // never destroyed: threads may outlive what is static
     return known;
   }
 

@@ -55,7 +55,9 @@ class Worker {
   std::thread thread_;  // last: it uses the others from its first moment
 };
 
-bool is_looking = false;  // of the main thread, which alone runs handlers of signals; guarded by the GIL
+// Of each thread: handlers of signals run in the main one alone, but from Python 3.12 on others collect garbage where they
+// look for signals, and finalisers give the GIL away.
+thread_local bool is_looking = false;
 
 void look_for_signals() {
   const bool before = std::exchange(is_looking, true);

@@ -21,8 +21,8 @@ namespace echopath::bindings {
 // Called with the GIL, from any thread; Python sees signals on its main one only.
 void run_beside(const std::string& stage, const pybind11::object& progress, const std::function<void(Job&)>& work);
 
-// Whether `run_beside` is looking for signals right now. A handler of signals that must not raise in the middle of anything
-// else may raise then: that ends the job.
+// Whether `run_beside` of this thread is looking for signals right now. A handler of signals that must not raise in the
+// middle of anything else may raise then: that ends the job.
 bool looks_for_signals();
 
 // run_beside for work with a result: const Paths paths = run_job("trace", progress, [&](Job& job) { return trace(..., &job);

@@ -1,4 +1,8 @@
 """The record of a trace against a slow independent ray-triangle loop, and its rules as Python sees them."""
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -180,3 +184,25 @@ def test_facets_are_told_but_ask_for_no_rays():
     assert fine <= 0.05 and 2.0 * fine < coarse <= 0.15
     assert len({one.frame.statistics.num_rays for one in paths.values()}) == 1
     assert max(one.frame.error_db for one in paths.values()) <= 0.05
+
+
+def test_hits_stay_the_same_bits_when_the_program_changes_its_environment():
+    """The instruction set is asked for before the program starts: what it does to its environment later asks for none."""
+    code = """
+import os
+import numpy as np
+import echopath as ep
+
+def hits():
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(height=1.78, speed=1.4), name="walker", position=(8.0, 0.5, 0.0))
+    waveform = ep.ChirpSequence(start_frequency=77e9, num_chirps=2, num_samples=64)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))])
+    return ep.trace(scene, radar, num_rays=20_000).hits
+
+before = hits()
+del os.environ["ECHOPATH_INSTRUCTION_SET"]
+after = hits()
+assert len(before) > 10_000 and np.array_equal(before, after)
+"""
+    subprocess.run([sys.executable, "-c", code], env=os.environ | {"ECHOPATH_INSTRUCTION_SET": "baseline"}, check=True)

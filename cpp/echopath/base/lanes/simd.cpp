@@ -27,24 +27,35 @@ InstructionSet best_set() {
   return best;
 }
 
-InstructionSet asked_set() {
+struct Choice {
+  InstructionSet set;
+  bool is_asked;
+};
+
+Choice choose() {
   const char* asked = std::getenv("ECHOPATH_INSTRUCTION_SET");
-  if (!asked || !*asked) return best_set();
+  if (!asked || !*asked) return {best_set(), false};
   for (const InstructionSet set : kAll) {
     if (std::string(asked) != name_of(set)) continue;
     require(machine_has(set), "ECHOPATH_INSTRUCTION_SET", "must be one that this machine has", asked);
-    return set;
+    return {set, true};
   }
   require(false, "ECHOPATH_INSTRUCTION_SET", "must be baseline, avx2 or avx512", asked);
-  return InstructionSet::kBaseline;
+  return {InstructionSet::kBaseline, true};
+}
+
+// The environment is read once: what the program makes of it later must not change bits, and to read it while another
+// thread sets a variable is a race.
+const Choice& choice() {
+  static const Choice made = choose();
+  return made;
 }
 
 }  // namespace
 
-InstructionSet instruction_set() {
-  static const InstructionSet set = asked_set();
-  return set;
-}
+InstructionSet instruction_set() { return choice().set; }
+
+bool is_instruction_set_asked() { return choice().is_asked; }
 
 const char* name_of(InstructionSet set) {
   switch (set) {

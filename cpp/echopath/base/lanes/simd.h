@@ -35,6 +35,8 @@ enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 // baseline, avx2 or avx512. It is fixed at the first call. Raises invalid_argument where the variable names another, or one
 // that the machine lacks.
 InstructionSet instruction_set();
+// Tells whether the variable named it. Fixed and raised as that.
+bool is_instruction_set_asked();
 const char* name_of(InstructionSet set);
 
 // Calls `call` with the instruction set picked, as a constant.

@@ -1,7 +1,5 @@
 #include "echopath/trace/embree/embree_device.h"
 
-#include <cstdlib>
-
 #include "echopath/base/errors.h"
 #include "echopath/base/lanes/simd.h"
 
@@ -13,8 +11,7 @@ const char* device_options() {
 #if defined(ECHOPATH_THREAD_SANITIZER)
   return "threads=1";  // what TBB's workers do in libraries that are not instrumented would look like races
 #elif defined(ECHOPATH_X86_KERNELS)
-  const char* asked = std::getenv("ECHOPATH_INSTRUCTION_SET");
-  if (!asked || !*asked || instruction_set() == InstructionSet::kAvx512) return nullptr;
+  if (!is_instruction_set_asked() || instruction_set() == InstructionSet::kAvx512) return nullptr;
   return instruction_set() == InstructionSet::kAvx2 ? "isa=avx2" : "isa=sse2";
 #else
   return nullptr;

@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <string>
@@ -17,7 +18,7 @@
 namespace echopath::bindings {
 namespace {
 
-constexpr double kRoundingOfCosines = 1e-9;
+constexpr double kRoundingOfCosines = 3e-6;  // of products of two vectors of single precision
 constexpr auto kPatternKind = choice<AntennaPattern::Kind>("kind", "isotropic", "cosine_power", "table");
 
 AntennaPattern isotropic(Arg<"gain", Real> gain) { return AntennaPattern::isotropic(*gain); }
@@ -59,7 +60,7 @@ py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& 
 double gain_of(const AntennaPattern& pattern, Arg<"cos_boresight", Real> cos_boresight) {
   require(std::abs(*cos_boresight) <= 1.0 + kRoundingOfCosines, "cos_boresight", "must be a cosine, from -1 to 1",
           *cos_boresight);
-  return pattern.gain(*cos_boresight);
+  return pattern.gain(std::clamp(*cos_boresight, -1.0, 1.0));
 }
 
 py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, Arg<"directions", Points> directions) {

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import array, checked, count, optional, real
+from ..arguments.checks import array, checked, count, optional, real, refused
 from . import surfaces
 
 ROUND_PIECES = 12   # default pieces of an icosahedron edge of a sphere, and of a quarter turn of other round bodies
@@ -138,9 +138,8 @@ def ellipsoid(semi_axes: float | Sequence[float], *, edge: float | None = None) 
     Raises TypeError or ValueError naming the argument.
     """
     a, b, c = semi_axes
-    edge = _round_edge("semi_axes", edge, min(a, b), max(a, b, c), 4.0 * np.pi * max(a, b) * max(a, b, c))
     section = surfaces.table_section([(-c, 0, 0, a, b, 2), (c, 0, 0, a, b, 2)], c, c)
-    return _mesh(surfaces.swept(section, -c, c, edge))
+    return _round_body("semi_axes", semi_axes, section, c, edge, min(a, b), max(a, b, c))
 
 
 @checked(radius=_LENGTH, length=_LENGTH, edge=_EDGE)
@@ -152,10 +151,9 @@ def capsule(radius: float, length: float, *, edge: float | None = None) -> _core
     """
     if length < 2.0 * radius:
         raise ValueError(f"length: must be at least twice the radius {radius!r} m, got {length!r}")
-    edge = _round_edge("length", edge, radius, length, 2.0 * np.pi * radius * length)
     section = surfaces.table_section([(-length / 2, 0, 0, radius, radius, 2), (length / 2, 0, 0, radius, radius, 2)],
                                      radius, radius)
-    return _mesh(surfaces.swept(section, -length / 2, length / 2, edge))
+    return _round_body("length", length, section, 0.5 * length, edge, radius, length)
 
 
 def _mesh(surface):
@@ -167,16 +165,16 @@ def _facing(a, b):
     return (a, b) if np.cross(a, b)[0] < 0 else (b, a)
 
 
-def _round_edge(argument, edge, radius, size, area):
-    """The edge of triangles of a round body, all in m and m^2.
+def _round_body(argument, value, section, half_length, edge, radius, size) -> _core.Mesh:
+    """The mesh of a body that is swept along z (`surfaces.swept`), from -half_length to half_length m.
 
-    argument: the one to refuse where the body is too large beside its smallest radius; area: at most that of the body
+    argument, value: what to refuse where the body is too large for triangles as small as its smallest radius asks for
+    edge, radius, size: m, as the user gave it, the smallest radius, the largest width
     """
-    if edge is None:
-        edge = radius * np.pi / (2 * ROUND_PIECES)
-    else:
-        edge = min(surfaces.edge_length(edge, 3.0 * size), radius)
-    if 2.0 * area / edge ** 2 > surfaces.MAX_TRIANGLES:
-        raise ValueError(f"{argument}: must be small enough for less than {surfaces.MAX_TRIANGLES} triangles beside the smallest "
-                         f"radius, {radius!r} m, got {size!r} m")
-    return edge
+    chosen = radius * np.pi / (2 * ROUND_PIECES) if edge is None else min(surfaces.edge_length(edge, 3.0 * size), radius)
+    if surfaces.num_swept_triangles(section, -half_length, half_length, chosen) > surfaces.MAX_TRIANGLES:
+        if edge == chosen:
+            raise surfaces.too_short(edge)
+        raise refused(ValueError, argument, f"small enough beside the smallest radius, {radius!r} m, for less than "
+                      f"{surfaces.MAX_TRIANGLES} triangles", value)
+    return _mesh(surfaces.swept(section, -half_length, half_length, chosen))

@@ -11,6 +11,7 @@ from .curves import monotone_cubic
 RING_SAMPLES = 256       # points that the perimeter of a section is measured with
 MERIDIAN_SAMPLES = 600   # likewise of the length of a swept surface
 ROW_HEIGHT = 0.87        # distance of the rings of near-equilateral triangles, in edges
+FEWEST_OF_RING = 5         # vertices
 WELD = 1e-9              # m: vertices nearer than that are one
 MAX_TRIANGLES = 20_000_000
 
@@ -20,8 +21,13 @@ def edge_length(value, size, triangles_per_square=4.0):
     if value is None:
         return np.inf
     if triangles_per_square * (size / value) ** 2 > MAX_TRIANGLES:
-        raise ValueError(f"edge: must be long enough for less than {MAX_TRIANGLES} triangles, got {value!r} m")
+        raise too_short(value)
     return value
+
+
+def too_short(edge) -> ValueError:
+    """The error of an edge in m that makes too many triangles."""
+    return ValueError(f"edge: must be long enough for less than {MAX_TRIANGLES} triangles, got {edge!r} m")
 
 
 def parallelogram(corner, u, v, edge=np.inf):
@@ -128,6 +134,15 @@ def swept(section, begin, end, edge, axes=(0, 1, 2)):
     return vertices, np.concatenate(triangles)
 
 
+def num_swept_triangles(section, begin, end, edge):
+    """About how many triangles `swept` makes of ellipses (the perimeter of an ellipse is that of Ramanujan 1914)."""
+    _, values, along = _meridian(section, begin, end)
+    a, b = values[:, 2], values[:, 3]
+    perimeter = np.pi * (3.0 * (a + b) - np.sqrt((3.0 * a + b) * (a + 3.0 * b)))
+    of_ring = 2.0 * np.maximum(perimeter / edge, FEWEST_OF_RING)
+    return float(np.sum(0.5 * (of_ring[1:] + of_ring[:-1]) * np.diff(along)) / (ROW_HEIGHT * edge))
+
+
 def num_pieces(length, edge):
     """Number of equal pieces of a line that are at most `edge` long."""
     return max(1, int(np.ceil(length / edge - 1e-9)))
@@ -147,12 +162,18 @@ def cross(a, b):
 
 def _ring_places(section, begin, end, edge):
     """Places of the rings, tips included, at equal distances along the longest meridian."""
-    t = begin + (end - begin) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, MERIDIAN_SAMPLES)))
-    u, v, half_u, half_v, _ = section(t).T
-    steps = [np.hypot(np.diff(t), np.diff(line)) for line in (u + half_u, u - half_u, v + half_v, v - half_v)]
-    along = np.concatenate([[0.0], np.cumsum(np.max(steps, axis=0))])
+    t, _, along = _meridian(section, begin, end)
     count = max(3, int(round(along[-1] / (ROW_HEIGHT * edge))))
     return np.interp(np.linspace(0.0, along[-1], count + 1), along, t)
+
+
+def _meridian(section, begin, end):
+    """(places [N] in m, values of the sections there [N, 5], m [N] along the longest meridian)"""
+    t = begin + (end - begin) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, MERIDIAN_SAMPLES)))
+    values = section(t)
+    u, v, half_u, half_v, _ = values.T
+    steps = [np.hypot(np.diff(t), np.diff(line)) for line in (u + half_u, u - half_u, v + half_v, v - half_v)]
+    return t, values, np.concatenate([[0.0], np.cumsum(np.max(steps, axis=0))])
 
 
 def _ring(value, edge, offset):
@@ -162,7 +183,7 @@ def _ring(value, edge, offset):
     du, dv = u[1:] - u[:-1], v[1:] - v[:-1]
     along = np.zeros(len(angle))
     np.cumsum(np.sqrt(du * du + dv * dv), out=along[1:])
-    count = max(5, int(round(along[-1] / edge)))
+    count = max(FEWEST_OF_RING, int(round(along[-1] / edge)))
     at = (np.arange(count) + offset) / count * along[-1]
     return np.stack(_superellipse(value, _circle(np.interp(at, along, angle))), axis=-1)
 

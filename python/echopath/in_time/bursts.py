@@ -194,8 +194,8 @@ def _followed(before: Burst | None, burst: Burst) -> Burst:
             len(before.radar.receivers) != len(burst.radar.receivers):
         raise ValueError("frames: must all have the antennas of the first, got another number of them")
     if burst.start_time < before.earliest_next:
-        raise ValueError(f"frames: must come one after the other, got one that starts at {burst.start_time:g} s behind one that "
-                         f"lets none begin before {before.earliest_next:g} s")
+        raise ValueError(f"frames: must come one after the other, got one that starts at {burst.start_time:.9g} s behind one "
+                         f"that lets none begin before {before.earliest_next:.9g} s")
     return burst
 
 

@@ -14,7 +14,7 @@ from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, with_error
 from ..spectra.moving import static_speed
 from .part_powers import require_powers
-from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, require_drawable, set_title
+from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
 
 if TYPE_CHECKING:
     from .. import _core
@@ -48,12 +48,22 @@ def _noise_above(share: float, num_channels: int) -> float:
     return low
 
 
+def _is_map(value) -> bool:
+    return hasattr(value, "values") and hasattr(value, "velocity")
+
+
+def _require_map(argument: str, value) -> None:
+    """Raises TypeError naming the argument unless it is a range-Doppler map."""
+    if not _is_map(value):
+        raise refused(TypeError, argument, "a RangeDoppler, as ep.range_doppler makes it of a cube", value)
+
+
 def power_dbm(spectrum: _core.RangeDoppler) -> np.ndarray:
     """Mean power of the channels, [velocity, range] in dB re 1 mW.
 
     spectrum: RangeDoppler. Raises TypeError naming it.
     """
-    require_drawable("spectrum", "a RangeDoppler, as ep.range_doppler makes it of a cube", spectrum, "values", "velocity")
+    _require_map("spectrum", spectrum)
     power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
     return in_dbm(power, SMALLEST_POWER)
 
@@ -135,10 +145,12 @@ def plot_partition(spectra: Mapping[str, _core.RangeDoppler], *, title: str = ""
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
     note: small print; title: above the maps; radar_moves: to it what stands has velocities, too
-    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, powers,
-    vmin or vmax.
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, whole,
+    powers, vmin or vmax.
     """
     _require_maps(spectra)
+    if whole is not None:
+        _require_map("whole", whole)
     if powers is not None:
         require_powers(powers)
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
@@ -167,9 +179,10 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
 
     whole, spectra, powers, note, vmin, vmax (dBm), radar_moves: as of `plot_partition`; title: above the whole; parts_title:
         above the parts
-    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, powers,
-    vmin or vmax.
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming whole, spectra,
+    powers, vmin or vmax.
     """
+    _require_map("whole", whole)
     _require_maps(spectra)
     if powers is not None:
         require_powers(powers)
@@ -196,7 +209,7 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
 def _require_maps(spectra) -> None:
     """Raises unless they are maps by the names of parts: those of one partition, not the partitions of a frame."""
     rule = "one map at least by the names of parts, as frame.part_spectra['parts'] has them"
-    if not isinstance(spectra, Mapping) or not all(hasattr(one, "velocity") for one in spectra.values()):
+    if not isinstance(spectra, Mapping) or not all(map(_is_map, spectra.values())):
         raise refused(TypeError, "spectra", rule, spectra)
     if not spectra:
         raise refused(ValueError, "spectra", rule, spectra)

@@ -20,7 +20,8 @@ def compression(cube: np.ndarray, radar, receiver: Receiver, leaked: np.ndarray 
         return None
     saturation = 1e-3 * 10.0 ** (receiver.compression_dbm / 10.0) / _ONE_DB
     real = radar.waveform.real
-    signal = analytic(cube, real) if leaked is None else analytic(cube - as_samples(leaked, real), real) + leaked
+    shows_all = leaked is None or not real
+    signal = analytic(cube, real) if shows_all else analytic(cube - as_samples(leaked, real), real) + leaked
     return 1.0 / np.sqrt(1.0 + np.abs(signal) ** 2 / saturation)
 
 

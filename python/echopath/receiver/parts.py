@@ -52,7 +52,7 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
         found[INTERFERENCE] = chain.mixed_alone(interference)
     found = _through(chain.amplified, _through(chain.coupled, found, radar), radar)
     if (leaked := chain.leaked()) is not None:
-        found[LEAKAGE] = np.broadcast_to(as_samples(leaked, radar.waveform.real), shape)
+        found[LEAKAGE] = np.array(np.broadcast_to(as_samples(leaked, radar.waveform.real), shape))
     if seed is not None:
         found[NOISE] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver, leaked)

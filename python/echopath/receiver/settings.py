@@ -31,7 +31,7 @@ def _row(unit: str = "", largest: float = math.inf) -> Rule:
     return check
 
 
-_OFFSETS = array("[]", "[N]", "[N, M]", "[N, M, K]", finite=True)
+_OFFSETS = array("[]", "[N]", "[N, M]", "[N, M, K]", "[N, M, K, L]", finite=True)
 
 
 def _check_size(argument: str, numbers: Row, unit: str, largest: float) -> None:
@@ -120,7 +120,7 @@ class PhaseNoise(Settings):
     def density(self, offset: ArrayLike) -> np.ndarray:
         """Power relative to the carrier's in 1 Hz.
 
-        offset: Hz of either sign, a number or an array of at most three axes
+        offset: Hz of either sign, a number or an array of at most four axes
         Returns an array of that shape, linear, in 1/Hz. Raises TypeError or ValueError for what are no finite numbers.
         """
         offset = _OFFSETS("offset", offset)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.checks import LARGEST_COUNT, count
+from ..arguments.checks import count
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.text.counts import counted
@@ -58,9 +58,10 @@ class Tracks:
     def of_track(self, number: int) -> Tracks:
         """The rows of one track, ascending in time (s).
 
-        number: of the track. Raises TypeError for what is no number, KeyError for one that is not there.
+        number: of the track. Raises TypeError or ValueError for what is no whole number of at least 0, KeyError for one that is
+            not there.
         """
-        number = count(-LARGEST_COUNT)("number", number)
+        number = count(0)("number", number)
         chosen = self.track == number
         if not chosen.any():
             raise KeyError(f"number: must be that of one of {self.num_tracks} tracks, got {number}")

@@ -296,14 +296,14 @@ def _about_z(angle, rate):
 
 def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):
     """The Profile of a path, by the arguments of Trajectory."""
-    table, stops = checked_speed(speed, speed_over), checked_stops("stops", stops)
-    places = np.where(stops[:, 0] > path.length - DISTANCE_TOLERANCE, path.length, stops[:, 0])
-    if np.any(np.isfinite(stops[:, 0]) & (stops[:, 0] > path.length + DISTANCE_TOLERANCE)):
-        raise refused(ValueError, "stops", f"at distances from 0 to {path.length:g} m, or math.inf", stops.tolist())
-    stops = np.stack([places, stops[:, 1]], axis=-1)
+    table, given = checked_speed(speed, speed_over), checked_stops("stops", stops)
+    places, waits = given.T
+    if np.any(np.isfinite(places) & (places > path.length + DISTANCE_TOLERANCE)):
+        raise refused(ValueError, "stops", f"at distances from 0 to {path.length:g} m, or math.inf", given.tolist())
+    places = np.where(places > path.length - DISTANCE_TOLERANCE, path.length, places)  # the length is rounded either way
     if np.any(np.diff(places) <= 0.0):
-        raise refused(ValueError, "stops", "at ascending distances", stops.tolist())
-    limits = Limits(stops, acceleration, deceleration, lateral_acceleration)
+        raise refused(ValueError, "stops", "at ascending distances", given.tolist())
+    limits = Limits(np.stack([places, waits], axis=-1), acceleration, deceleration, lateral_acceleration)
     if speed_over == "distance":
         return over_distance(start_time, table, path, limits)
     if limits.are_any:

@@ -25,7 +25,7 @@ BAND = 1e9, 1e12  # Hz, in which the recommendations hold: fits to them go anywh
 def _wind(argument: str, value) -> tuple[float, float, float]:
     wind = tuple(vector(argument, value).tolist())
     if max(map(abs, wind)) > FASTEST_WIND:
-        raise refused(ValueError, argument, f"[3] of at most {FASTEST_WIND:g} m/s", value)
+        raise refused(ValueError, argument, f"[3], each of at most {FASTEST_WIND:g} m/s", value)
     return wind
 
 
@@ -35,7 +35,7 @@ class Weather(Settings):
 
     rain_mm_per_hour: 0 to 300; fog_g_per_m3: water in fog, 0 to 10 (0.05: sight of 300 m, 0.5: of 50 m)
     temperature: K; pressure: Pa; humidity: of the air, share in [0, 1] of saturation
-    wind: [3] in m/s, at most 1000, world axes, of the drops beside their fall; turbulence: m/s, spread of each velocity
+    wind: [3] in m/s, each at most 1000, world axes, of the drops beside their fall; turbulence: m/s, spread of each velocity
     Attenuation by gases is that of Recommendation ITU-R P.676-12 (line by line), by fog P.840-8 (droplets), by rain P.838-3, all
     for 1 GHz to 1 THz (fog: 200 GHz), on level paths. The echoes of rain are those of spheres of water with the sizes of
     Marshall and Palmer 1948.

@@ -74,6 +74,9 @@ def test_tables_of_what_is_drawn_are_refused_by_name(draw, argument, spectrum):
 @pytest.mark.parametrize("draw, argument", [
     (lambda table, spectrum: plots.plot_partition({"wall": table}), "spectra"),
     (lambda table, spectrum: plots.plot_partition({"wall": 5.0}), "spectra"),
+    (lambda table, spectrum: plots.plot_partition({"wall": SimpleNamespace(velocity=spectrum.velocity, power=1.0)}), "spectra"),
+    (lambda table, spectrum: plots.plot_partition(table, whole=table), "whole"),
+    (lambda table, spectrum: plots.plot_overview(table, table), "whole"),
     (lambda table, spectrum: plots.plot_overview(spectrum, {"wall": None}), "spectra"),
     (lambda table, spectrum: plots.plot_overview(spectrum, table, powers={"parts": table}), "powers"),
     (lambda table, spectrum: plots.plot_partition(table, powers=[1.0]), "powers"),

@@ -53,13 +53,13 @@ def test_table_gives_the_gain_that_was_sampled():
         pattern.gain(1.0)
 
 
-@pytest.mark.parametrize("degrees", [30.0, -1.1, 1.0 + 1e-6])
+@pytest.mark.parametrize("degrees", [30.0, -1.1, 1.001])
 def test_gains_are_asked_for_by_cosines(degrees):
     for pattern in (ep.CosinePower(2.0), ep.Isotropic()):
         with pytest.raises(ValueError, match="^cos_boresight: must be a cosine, from -1 to 1, got "):
             pattern.gain(degrees)
-        rounded = 1.0 + 1e-15  # as products of unit vectors may be
-        assert pattern.gain(rounded) == pytest.approx(pattern.peak_gain, rel=1e-14)
+        for rounded in (1.0 + 1e-15, 1.0 + 2e-6):  # as products of unit vectors of double and single precision may be
+            assert pattern.gain(rounded) == pattern.gain(1.0)
 
 
 def test_other_patterns_have_no_table():

@@ -224,6 +224,7 @@ def test_bad_values_are_refused_by_name_and_add_nothing(square, keywords, words)
     (ep.Mesh(CORNERS, SQUARE), {"material": "metal", "motion": "fast"}, "motion"),
     ("wall.obj", {"material": "metal"}, "mesh_or_actor: .*; ep.load_mesh and ep.load_model read files, got 'wall.obj'"),
     (Path("wall.obj"), {"material": "metal"}, "mesh_or_actor: .*; ep.load_mesh and ep.load_model read files, got .*wall.obj"),
+    (Path("."), {"material": "metal"}, "mesh_or_actor: .*; ep.load_mesh and ep.load_model read files"),
     (SimpleNamespace(parts=["head", "hand"]), {}, "mesh_or_actor: must be a Mesh, an Actor"),
     ([ep.Mesh(CORNERS, SQUARE)], {"material": "metal"}, "mesh_or_actor"),
 ])

@@ -50,6 +50,15 @@ def test_what_a_receiver_gives_is_not_what_it_was_given(receiver):
     np.testing.assert_array_equal(cube, kept)
 
 
+def test_each_part_may_be_changed_by_itself():
+    """Leakage is alike in all chirps, which share no memory for it."""
+    radar = one_channel().replace(receiver=ep.Receiver(leakage_db=[[-40.0]], leakage_delay=1e-9))
+    leaked = ep.receive_parts({"one": tone(33.3)}, radar, seed=None)["leakage"]
+    before = leaked[0, 0, 1:].copy()
+    leaked[0, 0, 0] *= 2.0
+    np.testing.assert_array_equal(leaked[0, 0, 1:], before)
+
+
 @pytest.mark.parametrize("filters", [{"high_pass": [175e3]}, {"low_pass": 5e6}])
 def test_white_noise_for_a_receiver_with_filters_is_warned_of(filters):
     radar = one_channel(receiver=ep.Receiver(**filters))

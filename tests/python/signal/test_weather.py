@@ -273,7 +273,7 @@ def test_weather_travels_with_its_scene():
     scene = ball_scene(WET)
     assert pickle.loads(pickle.dumps(scene)).weather == WET and scene.copy().weather == WET
     assert pickle.loads(pickle.dumps(WET)) == WET == WET.replace()
-    with pytest.raises(ValueError, match=r"^wind: must be \[3\] of at most 1000 m/s, got"):
+    with pytest.raises(ValueError, match=r"^wind: must be \[3\], each of at most 1000 m/s, got"):
         ep.Weather(wind=(0.0, -1e300, 0.0))
     with pytest.raises(ValueError, match="^humidity: "):
         ep.Weather(humidity=60)

@@ -63,8 +63,8 @@ PartlyPosedGrid PosedGrids::pose_partly(FrameNodes nodes, int transmitter) const
   return {{std::move(nodes), std::move(posed), transmitter}, std::move(scenes), *paths_.scene, preparer_.meshes().patches};
 }
 
-// Refuses times outside of any motion that takes part, also of meshes that no path touches: that must not depend on what
-// was hit.
+// Refuses times outside of the motion of any node that takes part and is there at that time, also where no path touches it:
+// that must not depend on what was hit.
 void PosedGrids::require_times(std::span<const double> times) const {
   for (const double time : times) paths_.scene->require_times(time, time);
 }

@@ -62,7 +62,7 @@ class Part:
     def level(self, tx: int, rx: int):
         """Power of a channel in dBm, f32 [velocity, range]."""
         if (tx, rx) not in self._levels:
-            channel = SimpleNamespace(values=self.spectrum.values[tx:tx + 1, rx:rx + 1])
+            channel = SimpleNamespace(values=self.spectrum.values[tx:tx + 1, rx:rx + 1], velocity=self.spectrum.velocity)
             self._levels[tx, rx] = power_dbm(channel).astype(np.float32)
         return self._levels[tx, rx]
 

@@ -11,7 +11,7 @@ from .curves import monotone_cubic
 RING_SAMPLES = 256       # points that the perimeter of a section is measured with
 MERIDIAN_SAMPLES = 600   # likewise of the length of a swept surface
 ROW_HEIGHT = 0.87        # distance of the rings of near-equilateral triangles, in edges
-FEWEST_OF_RING = 5         # vertices
+FEWEST_OF_RING = 5       # vertices
 WELD = 1e-9              # m: vertices nearer than that are one
 MAX_TRIANGLES = 20_000_000
 

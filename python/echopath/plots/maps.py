@@ -14,7 +14,7 @@ from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, with_error
 from ..spectra.moving import static_speed
 from .part_powers import require_powers
-from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
+from .style import MAP_COLOURS, axes_or_new, colour_bar, is_drawable, new_figure, require_drawable, set_title
 
 if TYPE_CHECKING:
     from .. import _core
@@ -29,6 +29,7 @@ VELOCITY_MARGIN = 0.5        # m/s, likewise
 CELLS_OF_MARGIN = 1.5        # likewise: the cell of the signal whole, and one beyond it
 MAP_SIZE = 9.0, 4.4          # inches, of one map
 LEVEL = optional(real(-1e4, 1e4, "dBm"))
+_DRAWN = "values", "velocity"  # attributes that tell a map
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
 
 
@@ -48,14 +49,9 @@ def _noise_above(share: float, num_channels: int) -> float:
     return low
 
 
-def _is_map(value) -> bool:
-    return hasattr(value, "values") and hasattr(value, "velocity")
-
-
 def _require_map(argument: str, value) -> None:
     """Raises TypeError naming the argument unless it is a range-Doppler map."""
-    if not _is_map(value):
-        raise refused(TypeError, argument, "a RangeDoppler, as ep.range_doppler makes it of a cube", value)
+    require_drawable(argument, "a RangeDoppler, as ep.range_doppler makes it of a cube", value, *_DRAWN)
 
 
 def power_dbm(spectrum: _core.RangeDoppler) -> np.ndarray:
@@ -209,7 +205,7 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
 def _require_maps(spectra) -> None:
     """Raises unless they are maps by the names of parts: those of one partition, not the partitions of a frame."""
     rule = "one map at least by the names of parts, as frame.part_spectra['parts'] has them"
-    if not isinstance(spectra, Mapping) or not all(map(_is_map, spectra.values())):
+    if not isinstance(spectra, Mapping) or not all(is_drawable(one, *_DRAWN) for one in spectra.values()):
         raise refused(TypeError, "spectra", rule, spectra)
     if not spectra:
         raise refused(ValueError, "spectra", rule, spectra)

@@ -37,9 +37,14 @@ _SETTINGS = {
 }
 
 
+def is_drawable(value, *attributes: str) -> bool:
+    """Whether the value has the attributes that are drawn."""
+    return all(hasattr(value, name) for name in attributes)
+
+
 def require_drawable(argument: str, rule: str, value, *attributes: str) -> None:
-    """Raises TypeError naming the argument and the rule unless the value has the attributes that are drawn."""
-    if not all(hasattr(value, name) for name in attributes):
+    """Raises TypeError naming the argument and the rule unless the value is drawable by them."""
+    if not is_drawable(value, *attributes):
         raise refused(TypeError, argument, rule, value)
 
 

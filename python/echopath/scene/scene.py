@@ -297,8 +297,8 @@ def _parts_of(content, material) -> list:
 
 def _has_parts(content) -> bool:
     """Whether it is an Actor, or like one; the parts of a pathlib.Path are the names of its folders."""
-    if isinstance(content, (Actor, os.PathLike)):
-        return isinstance(content, Actor)
+    if isinstance(content, os.PathLike):
+        return False
     parts = getattr(content, "parts", None)
     return isinstance(parts, (list, tuple)) and all(hasattr(part, "name") and hasattr(part, "mesh") for part in parts)
 

@@ -107,10 +107,10 @@ def _own_points(detections) -> tuple:
 def _merged(points, weights, speeds, merge_distance: float) -> tuple:
     """Means of the points that chains of steps shorter than `merge_distance` join, by weight, and the speed of the one of
     the largest weight."""
-    from scipy.sparse.csgraph import connected_components
-
     if merge_distance == 0.0 or len(points) < 2:
         return points, speeds
+    from scipy.sparse.csgraph import connected_components
+
     count, group = connected_components(np.linalg.norm(points[:, None] - points, axis=2) < merge_distance, directed=False)
     members = group == np.arange(count)[:, None]
     total = members @ weights

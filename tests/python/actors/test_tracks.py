@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from scipy import special
 
 import echopath as ep
 from echopath.tracks.assignment import assigned
@@ -119,7 +120,6 @@ def test_detections_near_each_other_are_one():
 
 def test_errors_are_as_large_as_the_covariance_says():
     """NEES of many runs of the very model; bounds: 99.9 % of chi-square / N (Bar-Shalom 2001, section 5.4)."""
-    special = pytest.importorskip("scipy.special")
     generator, runs, errors = np.random.default_rng(3), 50, []
     settings = {"range_std": 0.15, "azimuth_std": 0.01, "acceleration_std": 20.0, "speed_std": 6.0}
     for _ in range(runs):

@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import special
 
 import echopath as ep
 from support.rcs_targets import (
@@ -54,7 +55,6 @@ def test_mie_rcs_is_that_of_the_table(ka):
 
 
 def test_mie_rcs_agrees_with_library_bessel_functions():
-    special = pytest.importorskip("scipy.special")
     for ka in (0.03, 0.7, 7.3, 63.0, 411.0):
         n = np.arange(1, int(ka + 4.05 * ka ** (1 / 3) + 12) + 1)
         j, y = special.spherical_jn(n, ka), special.spherical_yn(n, ka)

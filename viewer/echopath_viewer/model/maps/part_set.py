@@ -3,11 +3,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from types import SimpleNamespace
 
 import numpy as np
 
-from echopath.plots import power_dbm
+from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.plots.maps import cells_of_scene
 
 WHOLE = "whole"
@@ -62,8 +61,8 @@ class Part:
     def level(self, tx: int, rx: int):
         """Power of a channel in dBm, f32 [velocity, range]."""
         if (tx, rx) not in self._levels:
-            channel = SimpleNamespace(values=self.spectrum.values[tx:tx + 1, rx:rx + 1], velocity=self.spectrum.velocity)
-            self._levels[tx, rx] = power_dbm(channel).astype(np.float32)
+            power = np.abs(self.spectrum.values[tx, rx]) ** 2
+            self._levels[tx, rx] = in_dbm(power, SMALLEST_POWER).astype(np.float32)
         return self._levels[tx, rx]
 
 

@@ -40,13 +40,10 @@ def noise_peak_db(num_channels: int) -> float:
 
 
 def _noise_above(share: float, num_channels: int) -> float:
-    """What a share of cells exceeds: sums of so many powers of mean 1, whose distribution is Erlang's, by bisection."""
-    low, high = 0.0, 10.0 * (num_channels - math.log(share))
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        logs = (k * math.log(middle) - middle - math.lgamma(k + 1.0) for k in range(num_channels))
-        low, high = (middle, high) if sum(map(math.exp, logs)) > share else (low, middle)
-    return low
+    """What a share of cells exceeds: sums of so many powers of mean 1, whose distribution is Erlang's."""
+    from scipy.special import gammainccinv
+
+    return float(gammainccinv(num_channels, share))
 
 
 def _require_map(argument: str, value) -> None:

@@ -9,30 +9,6 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kBlocksInFlight = ReplayStream::kBlocksInFlight;
-constexpr int64_t kEchoesInFlight = 1 << 18;  // paths x channels; as many are handed over meanwhile
-constexpr int64_t kNodesOfAPath = 16;         // with more nodes per path, fewer echoes are in flight
-// The values of a block at its nodes stay in the second-level cache. No power of two: rows of nodes would share the sets of
-// the first.
-constexpr int64_t kLargestBlock = 1000;
-
-// Echoes with nodes in every chirp are replayed few at a time, and the next take over their memory: a page that is touched
-// for the first time costs as much as a path does at all its nodes.
-constexpr int64_t kNodesOfChirps = 128;
-constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
-constexpr int64_t kMinBlock = 64;            // fills the registers with vectors of joined echoes
-
-constexpr int64_t kBlocksOfChirps = 16;  // in flight: 32, with their tiles, left the cache that all cores share
-
-int64_t blocks_in_flight(int64_t num_rows) { return num_rows > kNodesOfChirps ? kBlocksOfChirps : kBlocksInFlight; }
-
-int64_t block_size(int64_t num_channels, int64_t num_rows) {
-  const int64_t values = num_channels * ((num_rows + kNodesOfAPath - 1) / kNodesOfAPath);
-  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (blocks_in_flight(num_rows) * values), 1, kLargestBlock);
-  if (num_rows <= kNodesOfChirps) return most;
-  return std::min(most, std::max(kMinBlock, kValuesInFlight / (blocks_in_flight(num_rows) * num_channels * num_rows)));
-}
-
 // Returns the paths less those that were left, in their order.
 std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<const int64_t> paths) {
   std::vector<int64_t> rest;
@@ -47,6 +23,23 @@ std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<
   return rest;
 }
 
+// Returns the paths that were left less those that turned, in their order: of those that were `tried`, some `failed`. All
+// three lists are in the same order.
+std::vector<UnfollowedPath> without_turned(const std::vector<UnfollowedPath>& left, const std::vector<int64_t>& tried,
+                                           const std::vector<UnfollowedPath>& failed) {
+  std::vector<UnfollowedPath> rest;
+  auto next_tried = tried.begin();
+  auto next_failed = failed.begin();
+  for (const UnfollowedPath& path : left) {
+    const bool was_tried = next_tried != tried.end() && *next_tried == path.path;
+    const bool has_failed = next_failed != failed.end() && next_failed->path == path.path;
+    if (was_tried) ++next_tried;
+    if (has_failed) ++next_failed;
+    if (!was_tried || has_failed) rest.push_back(path);
+  }
+  return rest;
+}
+
 }  // namespace
 
 struct ReplayStream::Block {
@@ -56,46 +49,58 @@ struct ReplayStream::Block {
   std::vector<UnfollowedPath> left;
 };
 
-// Holds blocks that are replayed together.
+// Describes paths that are replayed at the nodes of one grid.
+struct ReplayStream::Work {
+  Extent extent;
+  Replay replay;
+  GridIndex polynomial = GridIndex::none();  // that interpolates the paths, which then may be left
+  std::vector<int64_t> paths;
+  std::vector<UnfollowedPath> left = {};
+};
+
+// Holds blocks of one work that were in flight together.
 struct ReplayStream::Window {
-  int first_channel = 0;
-  size_t num_channels = 0;
+  Extent extent;
   std::vector<Block> blocks;
 };
 
-// Hands windows to the sink, each while the next is replayed.
+// Hands windows to the sink, those of a flight while the next one is replayed.
 class ReplayStream::WindowPipeline {
  public:
   WindowPipeline(const ReplayStream& stream, const Sink& sink) : stream_(stream), sink_(sink) {}
 
-  // Hands the last window to the sink while `replay` makes the next, each with whatever threads the other leaves idle.
-  void beside(const std::function<void(Window& next)>& replay) {
-    Window next;
-    run_both([&] { finish(); }, [&] { replay(next); });
+  // Hands the last windows to the sink while `replay` makes the next, each with whatever threads the other leaves idle.
+  void beside(const std::function<std::vector<Window>()>& replay) {
+    std::vector<Window> next;
+    run_both([&] { finish(); }, [&] { next = replay(); });
     last_ = std::move(next);
   }
 
   void finish() {
-    std::vector<int64_t> paths;
-    int64_t num_paths = 0;
-    for (const Block& block : last_.blocks) {
-      paths.insert(paths.end(), block.paths.begin(), block.paths.end());
-      num_paths += block.num_paths;
-    }
-    std::vector<Echoes> echoes(last_.blocks.size());
-    for (size_t channel = 0; channel < last_.num_channels; ++channel) {
-      if (stream_.job_) stream_.job_->throw_if_cancelled();
-      for (size_t i = 0; i < echoes.size(); ++i) echoes[i] = std::move(last_.blocks[i].channels[channel]);
-      sink_(last_.first_channel + static_cast<int>(channel), echoes, {paths, num_paths});
-      stream_.replayer_.recycle(echoes);
-    }
-    last_ = {};
+    for (Window& window : last_) hand_over(window);
+    last_.clear();
   }
 
  private:
+  void hand_over(Window& window) {
+    std::vector<int64_t> paths;
+    int64_t num_paths = 0;
+    for (const Block& block : window.blocks) {
+      paths.insert(paths.end(), block.paths.begin(), block.paths.end());
+      num_paths += block.num_paths;
+    }
+    std::vector<Echoes> echoes(window.blocks.size());
+    for (int channel = 0; channel < window.extent.num_channels; ++channel) {
+      if (stream_.job_) stream_.job_->throw_if_cancelled();
+      for (size_t i = 0; i < echoes.size(); ++i) echoes[i] = std::move(window.blocks[i].channels[channel]);
+      sink_(window.extent.first_channel + channel, echoes, {paths, num_paths});
+      stream_.replayer_.recycle(echoes);
+    }
+  }
+
   const ReplayStream& stream_;
   const Sink& sink_;
-  Window last_;
+  std::vector<Window> last_;
 };
 
 void ReplayStream::run(const Sink& sink) {
@@ -111,84 +116,131 @@ void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
 
 void ReplayStream::run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink) {
   WindowPipeline out(*this, sink);
-  add_still(by_grid.front(), out);
-  by_grid.front() = std::vector<int64_t>();  // gives its memory back, which {} would keep
-  add_moving(grids, std::move(by_grid), out);
+  PathsByGrid by_chirp = no_paths_by_grid(replayer_.grids());
+  replay_polynomials(grids, by_grid, by_chirp, out);
+  replay_in_chirps(by_chirp, by_grid[GridIndex::none().place()], out);
   out.finish();
 }
 
-void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& out) {
-  if (!paths.empty()) replayer_.pose_still();
-  run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
-}
-
-// Replays each path at the polynomial that its meshes need; where that was not enough, at the next, or with its amplitude in
-// every chirp.
-void ReplayStream::add_moving(const PathGrids& grids, PathsByGrid by_grid, WindowPipeline& out) {
-  PathsByGrid by_chirp = no_paths_by_grid(replayer_.grids());
+// Replays what rests, and each other path at the polynomial that its meshes need. Where that was not enough, it is replayed
+// at the next one in another round, or is added to `by_chirp`, if its amplitude is needed in every chirp, or to the paths
+// that need samples.
+void ReplayStream::replay_polynomials(const PathGrids& grids, PathsByGrid& by_grid, PathsByGrid& by_chirp,
+                                      WindowPipeline& out) {
   const auto is_empty = [](const std::vector<int64_t>& some) { return some.empty(); };
   if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest();
+  std::vector<Work> works = still_works(by_grid.front());
+  for (;;) {
+    append_polynomials(by_grid, works);
+    if (works.empty()) return;
+    replay_all(works, out);
+    replay_turning(works, out);
+    for (const Work& work : works) {
+      for (const UnfollowedPath& path : work.left) {
+        if (path.is_negligible) continue;
+        const NextGrid next = grids.next(path, work.polynomial);
+        (next.by_chirp ? by_chirp : by_grid)[next.grid.place()].push_back(path.path);
+      }
+    }
+    works.clear();
+  }
+}
+
+// Takes the paths away, as the functions below do: their memory is given back once they are replayed.
+std::vector<ReplayStream::Work> ReplayStream::still_works(std::vector<int64_t>& paths) {
+  std::vector<Work> works;
+  if (paths.empty()) return works;
+  replayer_.pose_still();
+  const Replay replay = [this](auto part, auto, auto&) { return replayer_.still(part); };
+  works.push_back({{0, num_channels(), 1}, replay, GridIndex::none(), std::exchange(paths, {})});
+  return works;
+}
+
+void ReplayStream::append_polynomials(PathsByGrid& by_grid, std::vector<Work>& works) {
   for (const GridIndex polynomial : replayer_.grids().polynomials()) {
     std::vector<int64_t>& paths = by_grid[polynomial.place()];
     if (paths.empty()) continue;
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
     replayer_.pose_polynomial(polynomial, paths);
-    const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
-    for (const UnfollowedPath& path : without_turning(run_blocks(paths, extent, replay, out), polynomial, out)) {
-      if (path.is_negligible) continue;
-      const NextGrid next = grids.next(path, polynomial);
-      (next.by_chirp ? by_chirp : by_grid)[next.grid.place()].push_back(path.path);
+    const Replay replay = [this, polynomial](auto part, auto, auto& left) {
+      return replayer_.interpolated(part, polynomial, left);
+    };
+    works.push_back({extent, replay, polynomial, std::exchange(paths, {})});
+  }
+}
+
+// Sends on those paths whose amplitudes the polynomial did not follow, but whose logarithms it does. The others stay left,
+// in their order.
+void ReplayStream::replay_turning(std::vector<Work>& works, WindowPipeline& out) const {
+  std::vector<Work> turning;
+  std::vector<size_t> source;  // [work of turning]
+  for (size_t i = 0; i < works.size(); ++i) {
+    std::vector<int64_t> may_turn;
+    for (const UnfollowedPath& path : works[i].left) {
+      const bool lacks_amplitude_alone = path.order_for_length == 0.0 && !path.is_negligible && !path.is_turned;
+      if (lacks_amplitude_alone && replayer_.can_turn(path.path)) may_turn.push_back(path.path);
     }
-    paths = std::vector<int64_t>();
+    if (may_turn.empty()) continue;
+    const GridIndex polynomial = works[i].polynomial;
+    Extent extent = works[i].extent;
+    extent.has_logarithms = true;
+    const Replay replay = [this, polynomial](auto part, auto, auto& some) {
+      return replayer_.turning(part, polynomial, some);
+    };
+    turning.push_back({extent, replay, polynomial, std::move(may_turn)});
+    source.push_back(i);
   }
+  replay_all(turning, out);
+  for (size_t k = 0; k < turning.size(); ++k) {
+    std::vector<UnfollowedPath>& left = works[source[k]].left;
+    left = without_turned(left, turning[k].paths, turning[k].left);
+  }
+}
+
+// Replays what no polynomial follows in amplitude, or in length. Only the scene as posed for one transmitter is held, but
+// where it is kept for the next paths.
+void ReplayStream::replay_in_chirps(const PathsByGrid& by_chirp, const std::vector<int64_t>& by_sample,
+                                    WindowPipeline& out) {
+  std::vector<Work> works;
   for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
-    add_chirps(by_chirp, transmitter, out);
-    add_samples(by_grid[GridIndex::none().place()], transmitter, out);
+    append_chirps(by_chirp, transmitter, works);
+    append_samples(by_sample, transmitter, works);
+    const bool keeps_samples =
+        by_sample.empty() || kept_samples_[transmitter]->num_bytes() * num_transmitters_ <= kKeptSamples;
+    if (keeps_poses_ && keeps_samples) continue;
+    replay_all(works, out);
+    works.clear();
+    if (!keeps_poses_) kept_chirps_[transmitter].reset();
+    if (!keeps_samples) kept_samples_[transmitter].reset();
   }
+  replay_all(works, out);
 }
 
-// Sends on those paths whose amplitudes the polynomial did not follow, but whose logarithms it does. Returns the others, in
-// their order.
-std::vector<UnfollowedPath> ReplayStream::without_turning(std::vector<UnfollowedPath> left, GridIndex polynomial,
-                                                          WindowPipeline& out) const {
-  std::vector<int64_t> may_turn;
-  for (const UnfollowedPath& path : left) {
-    const bool lacks_amplitude_alone = path.order_for_length == 0.0 && !path.is_negligible && !path.is_turned;
-    if (lacks_amplitude_alone && replayer_.can_turn(path.path)) may_turn.push_back(path.path);
-  }
-  if (may_turn.empty()) return left;
-  Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
-  extent.has_logarithms = true;
-  const Replay replay = [&](auto part, auto, auto& some) { return replayer_.turning(part, polynomial, some); };
-  const std::vector<UnfollowedPath> unfollowed = run_blocks(may_turn, extent, replay, out);
-  // Both lists are in the order of `left`.
-  auto tried = may_turn.begin();
-  auto failed = unfollowed.begin();
-  std::vector<UnfollowedPath> rest;
-  for (const UnfollowedPath& path : left) {
-    const bool was_tried = tried != may_turn.end() && *tried == path.path;
-    const bool has_failed = failed != unfollowed.end() && failed->path == path.path;
-    if (was_tried) ++tried;
-    if (has_failed) ++failed;
-    if (!was_tried || has_failed) rest.push_back(path);
-  }
-  return rest;
-}
-
-// Holds only the scene as posed at the chirps of one transmitter.
-void ReplayStream::add_chirps(const PathsByGrid& by_grid, int transmitter, WindowPipeline& out) {
-  std::vector<int64_t> paths;
-  for (const std::vector<int64_t>& of_grid : by_grid) paths.insert(paths.end(), of_grid.begin(), of_grid.end());
-  if (paths.empty()) return;
+void ReplayStream::append_chirps(const PathsByGrid& by_grid, int transmitter, std::vector<Work>& works) {
+  std::vector<int64_t> all;
+  for (const std::vector<int64_t>& of_grid : by_grid) all.insert(all.end(), of_grid.begin(), of_grid.end());
+  if (all.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
-  std::unique_ptr<PartlyPosedGrid>& kept = kept_chirps_[transmitter];
-  const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), paths, kept);
+  const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), all, kept_chirps_[transmitter]);
   for (const GridIndex polynomial : replayer_.grids().polynomials()) {
-    run_blocks(by_grid[polynomial.place()], extent,
-               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
+    const std::vector<int64_t>& paths = by_grid[polynomial.place()];
+    if (paths.empty()) continue;
+    const Replay replay = [this, polynomial, &chirps](auto part, auto joined, auto&) {
+      return replayer_.by_chirp(part, polynomial, chirps, joined);
+    };
+    works.push_back({extent, replay, polynomial, paths});
   }
-  if (!keeps_poses_) kept.reset();
+}
+
+// Appends the paths that no polynomial follows.
+void ReplayStream::append_samples(const std::vector<int64_t>& paths, int transmitter, std::vector<Work>& works) {
+  if (paths.empty()) return;
+  const int num_receivers = num_channels() / num_transmitters_;
+  const Extent extent{transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()};
+  const PosedGrid& samples = posed(replayer_.grids().samples(transmitter), paths, kept_samples_[transmitter]);
+  const Replay replay = [this, &samples](auto part, auto, auto&) { return replayer_.exact(part, samples); };
+  works.push_back({extent, replay, GridIndex::none(), paths});
 }
 
 // Poses what the paths touch, beside what the grid had.
@@ -198,49 +250,30 @@ const PosedGrid& ReplayStream::posed(const TimeGrid& grid, std::span<const int64
   return kept->with(replayer_.meshes_of(paths));
 }
 
-// Replays the paths that no polynomial follows.
-void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) {
-  if (paths.empty()) return;
-  const int num_receivers = num_channels() / num_transmitters_;
-  std::unique_ptr<PartlyPosedGrid>& kept = kept_samples_[transmitter];
-  const PosedGrid& samples = posed(replayer_.grids().samples(transmitter), paths, kept);
-  run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()},
-             [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
-  if (!keeps_poses_ || kept->num_bytes() * num_transmitters_ > kKeptSamples) kept.reset();
+// Replays flight by flight, and adds the paths that a replay left to those of its work.
+void ReplayStream::replay_all(std::vector<Work>& works, WindowPipeline& out) const {
+  std::vector<PathsInFlight> lists;
+  for (const Work& work : works) lists.push_back({std::ssize(work.paths), work.extent.num_channels, work.extent.num_rows});
+  for (const Flight& flight : plan_flights(lists)) out.beside([&] { return replay_flight(works, flight); });
 }
 
-// Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
-std::vector<UnfollowedPath> ReplayStream::run_blocks(const std::vector<int64_t>& paths, const Extent& extent,
-                                                     const Replay& replay, WindowPipeline& out) const {
-  const int64_t size = block_size(extent.num_channels, extent.num_rows), num_paths = std::ssize(paths);
-  std::vector<UnfollowedPath> all_left;
-  const int64_t in_flight = size * blocks_in_flight(extent.num_rows);
-  for (int64_t begin = 0; begin < num_paths; begin += in_flight) {
-    const int64_t count = std::min(in_flight, num_paths - begin);
-    const std::span<const int64_t> some(paths.data() + begin, static_cast<size_t>(count));
-    out.beside([&](Window& window) {
-      const std::vector<UnfollowedPath> left = replay_window(some, size, extent, replay, window);
-      all_left.insert(all_left.end(), left.begin(), left.end());
-    });
-  }
-  return all_left;
-}
-
-// Replays a window of blocks. Returns the paths that are left.
-std::vector<UnfollowedPath> ReplayStream::replay_window(std::span<const int64_t> paths, int64_t block_size,
-                                                        const Extent& extent, const Replay& replay, Window& window) const {
-  window.first_channel = extent.first_channel;
-  window.num_channels = static_cast<size_t>(extent.num_channels);
-  window.blocks.resize(num_chunks(std::ssize(paths), block_size));
-  parallel_for_chunks(std::ssize(paths), block_size, [&](int64_t begin, int64_t end) {
+std::vector<ReplayStream::Window> ReplayStream::replay_flight(std::vector<Work>& works, const Flight& flight) const {
+  std::vector<Block> blocks(flight.size());
+  parallel_for(std::ssize(flight), [&](int64_t i) {
     if (job_) job_->throw_if_cancelled();
-    const int64_t block = begin / block_size;
-    window.blocks[block] = run_block(paths.subspan(begin, end - begin), block, extent, replay);
+    const auto& [list, begin, end] = flight[i];
+    const std::span<const int64_t> paths(works[list].paths);
+    blocks[i] = run_block(paths.subspan(begin, end - begin), i, works[list].extent, works[list].replay);
   });
   if (watcher_) watcher_->end_blocks();
-  std::vector<UnfollowedPath> all_left;
-  for (const Block& block : window.blocks) all_left.insert(all_left.end(), block.left.begin(), block.left.end());
-  return all_left;
+  std::vector<Window> windows;
+  for (size_t i = 0; i < flight.size(); ++i) {
+    Work& work = works[flight[i].list];
+    work.left.insert(work.left.end(), blocks[i].left.begin(), blocks[i].left.end());
+    if (i == 0 || flight[i].list != flight[i - 1].list) windows.push_back({work.extent, {}});
+    windows.back().blocks.push_back(std::move(blocks[i]));
+  }
+  return windows;
 }
 
 bool ReplayStream::is_watched(const Extent& extent) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "echopath/replay/replay.h"
+#include "echopath/sim/stream/flights.h"
 #include "echopath/sim/stream/paths_by_grid.h"
 
 namespace echopath {
@@ -16,7 +17,7 @@ class PathWatcher {
  public:
   virtual ~PathWatcher() = default;
   virtual bool watches(int channel) const = 0;
-  // Receives one of the blocks in flight; `block` is below ReplayStream::kBlocksInFlight. Many threads call it at a time,
+  // Receives one of the blocks in flight; `block` is below kBlocksInFlight. Many threads call it at a time,
   // each with a block of its own.
   virtual void see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) = 0;
   // Ends a group of blocks: the stream calls it once see() has had all blocks in flight.
@@ -26,8 +27,6 @@ class PathWatcher {
 // Replays paths and sends their echoes to a sink, many blocks at a time. Blocks and their order depend on the paths alone.
 class ReplayStream {
  public:
-  static constexpr int64_t kBlocksInFlight = 32;  // at most; fixed: results must not depend on the number of threads
-
   // Tells which paths the echoes of some blocks belong to.
   struct EchoPaths {
     std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those joined in it
@@ -67,17 +66,6 @@ class ReplayStream {
  private:
   using Replay = std::function<std::vector<Echoes>(std::span<const int64_t> paths, std::span<const uint8_t> joined,
                                                    std::vector<UnfollowedPath>& left)>;
-  struct Block;
-  struct Window;
-  class WindowPipeline;
-  void run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink);
-  void add_still(const std::vector<int64_t>& paths, WindowPipeline& out);
-  void add_moving(const PathGrids& grids, PathsByGrid by_grid, WindowPipeline& out);
-  std::vector<UnfollowedPath> without_turning(std::vector<UnfollowedPath> left, GridIndex polynomial,
-                                              WindowPipeline& out) const;
-  const PosedGrid& posed(const TimeGrid& grid, std::span<const int64_t> paths, std::unique_ptr<PartlyPosedGrid>& kept) const;
-  void add_chirps(const PathsByGrid& by_grid, int transmitter, WindowPipeline& out);
-  void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out);
   // Describes the channels that `replay` makes echoes of, the number of rows, whether it joins paths itself on request, and
   // whether echoes hold logarithms, which cannot be joined.
   struct Extent {
@@ -85,10 +73,21 @@ class ReplayStream {
     int64_t num_rows;
     bool joins = false, has_logarithms = false;
   };
-  std::vector<UnfollowedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
-                                         WindowPipeline& out) const;
-  std::vector<UnfollowedPath> replay_window(std::span<const int64_t> paths, int64_t block_size, const Extent& extent,
-                                            const Replay& replay, Window& window) const;
+  struct Block;
+  struct Work;
+  struct Window;
+  class WindowPipeline;
+  void run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink);
+  void replay_polynomials(const PathGrids& grids, PathsByGrid& by_grid, PathsByGrid& by_chirp, WindowPipeline& out);
+  std::vector<Work> still_works(std::vector<int64_t>& paths);
+  void append_polynomials(PathsByGrid& by_grid, std::vector<Work>& works);
+  void replay_turning(std::vector<Work>& works, WindowPipeline& out) const;
+  void replay_in_chirps(const PathsByGrid& by_chirp, const std::vector<int64_t>& by_sample, WindowPipeline& out);
+  void append_chirps(const PathsByGrid& by_grid, int transmitter, std::vector<Work>& works);
+  void append_samples(const std::vector<int64_t>& paths, int transmitter, std::vector<Work>& works);
+  const PosedGrid& posed(const TimeGrid& grid, std::span<const int64_t> paths, std::unique_ptr<PartlyPosedGrid>& kept) const;
+  void replay_all(std::vector<Work>& works, WindowPipeline& out) const;
+  std::vector<Window> replay_flight(std::vector<Work>& works, const Flight& flight) const;
   bool is_watched(const Extent& extent) const;
   Block run_block(std::span<const int64_t> paths, size_t index, const Extent& extent, const Replay& replay) const;
 

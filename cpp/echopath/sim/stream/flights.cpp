@@ -1,0 +1,71 @@
+#include "echopath/sim/stream/flights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/threads/parallel.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kEchoesInFlight = 1 << 18;  // paths x channels; as many are handed over meanwhile
+constexpr int64_t kNodesOfAPath = 16;         // with more nodes per path, fewer echoes are in flight
+// The values of a block at its nodes stay in the second-level cache. No power of two: rows of nodes would share the sets of
+// the first.
+constexpr int64_t kLargestBlock = 1000;
+
+// Echoes with nodes in every chirp are replayed few at a time, and the next take over their memory: a page that is touched
+// for the first time costs as much as a path does at all its nodes.
+constexpr int64_t kNodesOfChirps = 128;
+constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
+constexpr int64_t kMinBlock = 64;            // fills the registers with vectors of joined echoes
+
+constexpr int64_t kBlocksOfChirps = 16;  // in flight: 32, with their tiles, left the cache that all cores share
+
+int64_t blocks_in_flight(const PathsInFlight& list) {
+  return list.num_rows > kNodesOfChirps ? kBlocksOfChirps : kBlocksInFlight;
+}
+
+// Returns the number of paths that a block has at most.
+int64_t largest_block(const PathsInFlight& list) {
+  const int64_t values = list.num_channels * num_chunks(list.num_rows, kNodesOfAPath), blocks = blocks_in_flight(list);
+  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (blocks * values), 1, kLargestBlock);
+  if (list.num_rows <= kNodesOfChirps) return most;
+  return std::min(most, std::max(kMinBlock, kValuesInFlight / (blocks * list.num_channels * list.num_rows)));
+}
+
+// Returns the size of blocks, as a share of the largest, at which they fill as many flights as they take anyway. The last
+// block of each list may be smaller.
+double even_share(std::span<const PathsInFlight> lists) {
+  double filled = 0.0, last_blocks = 0.0;  // flights
+  for (const PathsInFlight& list : lists) {
+    const auto blocks = static_cast<double>(blocks_in_flight(list));
+    filled += static_cast<double>(list.num_paths) / (blocks * static_cast<double>(largest_block(list)));
+    last_blocks += 1.0 / blocks;
+  }
+  return filled / (std::ceil(filled + last_blocks) - last_blocks);
+}
+
+}  // namespace
+
+std::vector<Flight> plan_flights(std::span<const PathsInFlight> lists) {
+  std::vector<Flight> flights;
+  const double share = lists.empty() ? 1.0 : even_share(lists);
+  int64_t room = 0;  // in units of the smallest share of a flight that a block may take
+  for (size_t i = 0; i < lists.size(); ++i) {
+    const int64_t most = largest_block(lists[i]), of_block = kBlocksInFlight / blocks_in_flight(lists[i]);
+    const auto even = static_cast<int64_t>(std::ceil(share * static_cast<double>(most)));
+    const int64_t size = std::clamp(even, std::min(kMinBlock, most), most);
+    for (int64_t begin = 0; begin < lists[i].num_paths; begin += size) {
+      if (room < of_block) {
+        flights.emplace_back();
+        room = kBlocksInFlight;
+      }
+      flights.back().push_back({i, begin, std::min(begin + size, lists[i].num_paths)});
+      room -= of_block;
+    }
+  }
+  return flights;
+}
+
+}  // namespace echopath

@@ -126,6 +126,13 @@ void Tracer::aim_at_points(const TraceSettings& settings, Job* job) {
       find_surface_scatterers(*empty_.scene, geometry_, plan_, {settings.seed, sbr_.frequency, sbr_.transmitter}, job);
 }
 
+PlaneImages Tracer::plane_images() const {
+  const auto first = [&](const std::vector<Antenna>& antennas) {
+    return posed_antennas(antennas, world_from_radar_, origin_).front();
+  };
+  return {*empty_.scene, geometry_, sbr_, first(empty_.radar.transmitters), first(empty_.radar.receivers)};
+}
+
 void Tracer::pose_edges() {
   if (!empty_.frame.edges) return;
   edges_ = posed_edges(*empty_.scene, pose_, origin_);

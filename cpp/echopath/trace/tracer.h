@@ -34,7 +34,7 @@ class Tracer {
   // Returns the paths that need no rays: over flagged mirrors alone, and those of edges where they are asked for.
   std::vector<PathBlock> find_paths_without_rays(Job* job) const;
   // Returns what finds the paths over other planes, from the blocks that it is given.
-  PlaneImages plane_images() const { return {*empty_.scene, geometry_, sbr_}; }
+  PlaneImages plane_images() const;  // the tracer must outlive them
   // Returns what finds which planes light which, from the blocks that it is given, where edges are asked for.
   LitPlanes lit_planes() const;
   // Returns the paths of edges over these planes; none where edges are not asked for.

@@ -87,17 +87,17 @@ class Renewer {
     if (found) shares.push_back({index, found->share});
   }
 
-  const Vec3& start_of(const LocalPath& path) const {
-    return (path.is_reversed ? scene_at_.receivers : scene_at_.transmitters).front().position;
+  const PosedAntenna& start_of(const LocalPath& path) const {
+    return (path.is_reversed ? scene_at_.receivers : scene_at_.transmitters).front();
   }
-  const Vec3& end_of(const LocalPath& path) const {
-    return (path.is_reversed ? scene_at_.transmitters : scene_at_.receivers).front().position;
+  const PosedAntenna& end_of(const LocalPath& path) const {
+    return (path.is_reversed ? scene_at_.transmitters : scene_at_.receivers).front();
   }
 
   // Takes Newton steps from the recorded points of reflection to Fermat's.
   Outcome find_reflections(const LocalPath& path, Scratch& scratch) const {
     for (int step = 0; step < kMaxNewtonSteps; ++step) {
-      if (!scratch.slide.solve(path, scratch.posed.data(), start_of(path))) return Outcome::kLost;
+      if (!scratch.slide.solve(path, scratch.posed.data(), start_of(path).position)) return Outcome::kLost;
       const double phase = wavenumber_ * std::abs(scratch.slide.excess());
       if (phase < (step == 0 ? kStaysPut : kConverged)) return step == 0 ? Outcome::kKept : Outcome::kMoved;
       for (size_t i = 0; i < scratch.slide.size(); ++i) {
@@ -125,11 +125,11 @@ class Renewer {
   bool is_blocked(const LocalPath& path, const PosedHit* hits) const {
     LegTester tester(geometry_, path, hits);
     if (path.first_material < 0) {
-      tester.test_images(start_of(path), end_of(path));
+      tester.test_images(start_of(path).position, end_of(path).position);
     } else {
-      tester.test_start(start_of(path));
+      tester.test_start(start_of(path).position);
       tester.test_inner();
-      tester.test_end(end_of(path));
+      tester.test_end(end_of(path).position);
     }
     const LegShadows& shadows = tester.shadows();
     return shadows.blocked != 0 || shadows.is_end_blocked || shadows.off_mirror != 0;

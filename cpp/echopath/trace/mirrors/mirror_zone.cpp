@@ -163,16 +163,31 @@ double excess_over_square(const MirrorView& view, const Vec3& shift) {
   return excess / (0.5 * (shift.squaredNorm() - slant * slant) * (1.0 / view.before + 1.0 / view.behind));
 }
 
+// Returns the field with which the antennas light and hear a place that is `shift` (m) beside the point of reflection, over
+// that of the point; at most 1 by either antenna.
+std::complex<double> light_beside(const UnfoldedAntennas& antennas, const Vec3& shift) {
+  std::complex<double> light = 1.0;
+  for (const UnfoldedAntenna& antenna : antennas) {
+    const AntennaGain here = antenna.toward(Vec3::Zero()), there = antenna.toward(shift);
+    if (there.power < here.power) light *= std::sqrt(there.power / here.power);
+    light *= std::polar(1.0, there.phase - here.phase);
+  }
+  return light;
+}
+
 // Holds the edges of a mirror about a point of it.
 class EdgesAround {
  public:
-  EdgesAround(const SurfaceAround& mirror, const MirrorView& view, double wavelength, const Plane* next) {
+  EdgesAround(const SurfaceAround& mirror, const MirrorView& view, double wavelength, const UnfoldedAntennas& antennas,
+              const Plane* next) {
     const std::array<ZoneAxis, 2> axes = zone_axes(view, wavelength);
     for (int k = 0; k < kDirections; ++k) {
       const double angle = kHalfCell * (2 * k + 1);
       const Vec3 half = std::cos(angle) * axes[0].half * axes[0].along + std::sin(angle) * axes[1].half * axes[1].along;
       closeness_[k] = closeness_of_edge(mirror, view.point.position, half, next);
-      if (closeness_[k] > 0.0) turn_[k] = kPi * excess_over_square(view, half / closeness_[k]);
+      if (closeness_[k] == 0.0) continue;
+      turn_[k] = kPi * excess_over_square(view, half / closeness_[k]);
+      light_[k] = light_beside(antennas, half / closeness_[k]);
     }
   }
 
@@ -181,7 +196,7 @@ class EdgesAround {
     std::complex<double> sum = 0.0;
     for (int k = 0; k < kDirections; ++k) {
       if (closeness_[k] == 0.0) continue;
-      for (const int side : {1, -1}) sum += field_of_half_cell(edge_beside(k, side), turn_[k]);
+      for (const int side : {1, -1}) sum += light_[k] * field_of_half_cell(edge_beside(k, side), turn_[k]);
     }
     return sum / (2.0 * kDirections);
   }
@@ -243,6 +258,7 @@ class EdgesAround {
   static constexpr double kMostSteps = 255.0;
 
   std::array<double, kDirections> closeness_, turn_;
+  std::array<std::complex<double>, kDirections> light_;
 };
 
 }  // namespace
@@ -287,11 +303,11 @@ double widest_crack(const MirrorView& view, double wavelength) {
 }
 
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          int64_t& num_queries, const Plane* next) {
+                                          const UnfoldedAntennas& antennas, int64_t& num_queries, const Plane* next) {
   const double gap = geometry.plane_tolerance(wavelength);
   const SurfaceAround mirror(geometry, view.point, gap, num_queries, Extent::kPlane, next, widest_crack(view, wavelength));
   if (mirror.holds_circle(ample_squared(view, wavelength, kFaded))) return 1.0;
-  return 1.0 - EdgesAround(mirror, view, wavelength, next).lost_field();
+  return 1.0 - EdgesAround(mirror, view, wavelength, antennas, next).lost_field();
 }
 
 // Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.

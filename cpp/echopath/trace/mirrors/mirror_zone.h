@@ -4,6 +4,7 @@
 #include <array>
 #include <complex>
 
+#include "echopath/posed/posed_antenna.h"
 #include "echopath/trace/geometry/surface_extent.h"
 
 namespace echopath {
@@ -15,6 +16,17 @@ struct MirrorView {
   Vec3 arrival;
   double before, behind;
 };
+
+// Describes an antenna at an end of a path as a bounce sees it: behind all planes between both.
+struct UnfoldedAntenna {
+  const PosedAntenna& antenna;
+  Vec3 place;              // m, of its image, relative to the point of the bounce
+  Mat3 antenna_from_here;  // takes directions at the bounce to those at the antenna, both in world axes
+
+  // Returns its gain toward a place that is `shift` (m) beside the point.
+  AntennaGain toward(const Vec3& shift) const { return antenna.toward(antenna_from_here * (shift - place).normalized()); }
+};
+using UnfoldedAntennas = std::array<UnfoldedAntenna, 2>;  // where the wave comes from, and where it goes
 
 // Describes one of the two axes of the zone, in the plane of incidence and across it.
 struct ZoneAxis {
@@ -61,12 +73,13 @@ double widest_crack(const MirrorView& view, double wavelength);
 // followed, straight or round. Where the mirror ends at the inside of a corner of 90, 60 or 45 degrees it has no edge, and
 // of a wave that goes on to a plane that it has a corner with (`next`, which may be null) that plane has it. Where the
 // mirror bends by however little, it has one: the plane behind has echoes of its own, by its image or by rays, with which
-// those of this plane add up. Edges fade between 8 and 16 half zones, so that closed forms of geometrical optics hold
-// beyond. Of the endless mirror's field it is right to 1.6 % in polygons of up to 8 sides, to 7 % in those of more and in
-// disks, and to 5 % beside bends and corners, where geometrical optics is wrong by up to all of it. This is valid where no
-// line from the point meets the edge twice.
+// those of this plane add up. An edge counts by the field with which the antennas light and hear it, over that of the point,
+// by as much as the point at most: a narrow beam that ends before the edge has none. Edges fade between 8 and 16 half zones,
+// so that closed forms of geometrical optics hold beyond. Of the endless mirror's field it is right to 1.6 % in polygons of
+// up to 8 sides, to 7 % in those of more and in disks, and to 5 % beside bends and corners, where geometrical optics is
+// wrong by up to all of it. This is valid where no line from the point meets the edge twice.
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          int64_t& num_queries, const Plane* next);
+                                          const UnfoldedAntennas& antennas, int64_t& num_queries, const Plane* next);
 
 // Returns the field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
 std::complex<double> field_beside_edge(double within);

@@ -12,7 +12,7 @@ void PlaneBounces::add(const Hit& hit, const Vec3& point, const Vec3& normal) {
   RayHit bounce;
   bounce.hit = hit;
   bounce.position = point;
-  bounce.normal = lit_normal(point - (points_.empty() ? from_ : points_.back().position), normal);
+  bounce.normal = lit_normal(point - (points_.empty() ? from_.position : points_.back().position), normal);
   bounce.curvature = Mat3::Zero();
   points_.push_back(bounce);
   beside_.push_back(bounce);
@@ -51,7 +51,7 @@ bool PlaneBounces::reaches_plane(size_t bounce, size_t other, double wavelength,
 }
 
 MirrorView PlaneBounces::view(size_t bounce) const {
-  Vec3 last = from_, leg = Vec3::Zero();
+  Vec3 last = from_.position, leg = Vec3::Zero();
   const auto length_to = [&](const Vec3& point) {
     leg = point - last;
     last = point;
@@ -61,8 +61,19 @@ MirrorView PlaneBounces::view(size_t bounce) const {
   for (size_t k = 0; k <= bounce; ++k) before += length_to(points_[k].position);
   const Vec3 arrival = leg.normalized();
   for (size_t k = bounce + 1; k < points_.size(); ++k) behind += length_to(points_[k].position);
-  behind += length_to(to_);
+  behind += length_to(to_.position);
   return {beside_[bounce], arrival, before, behind};
+}
+
+UnfoldedAntennas PlaneBounces::antennas_of(size_t bounce, const MirrorView& view) const {
+  const auto mirrored = [&](size_t k) {
+    return Mat3(Mat3::Identity() - 2.0 * points_[k].normal * points_[k].normal.transpose());
+  };
+  Mat3 to_first = Mat3::Identity(), to_last = Mat3::Identity();
+  for (size_t k = bounce; k-- > 0;) to_first = mirrored(k) * to_first;
+  for (size_t k = bounce + 1; k < points_.size(); ++k) to_last = mirrored(k) * to_last;
+  return {UnfoldedAntenna{from_, -view.before * view.arrival, to_first},
+          UnfoldedAntenna{to_, view.behind * (mirrored(bounce) * view.arrival), to_last}};
 }
 
 std::complex<double> PlaneBounces::field_beside_edges(double wavelength, int64_t& num_queries) const {
@@ -71,7 +82,8 @@ std::complex<double> PlaneBounces::field_beside_edges(double wavelength, int64_t
     Plane next;
     const bool is_last = k + 1 == points_.size();
     if (!is_last) next = {points_[k + 1].position, points_[k + 1].normal};
-    field *= field_of_flat_mirror(geometry_, view(k), wavelength, num_queries, is_last ? nullptr : &next);
+    const MirrorView seen = view(k);
+    field *= field_of_flat_mirror(geometry_, seen, wavelength, antennas_of(k, seen), num_queries, is_last ? nullptr : &next);
   }
   return field;
 }

@@ -11,13 +11,16 @@ namespace echopath {
 // surfaces are looked at from beside it, by some spacings of single precision, in which rays know where the edge is.
 class PlaneBounces {
  public:
-  // The geometry must outlive it.
-  PlaneBounces(const EmbreeScene& geometry, const Vec3& from, const Vec3& to) : geometry_(geometry), from_(from), to_(to) {}
+  // The geometry and the patterns of the antennas must outlive it.
+  PlaneBounces(const EmbreeScene& geometry, const PosedAntenna& from, const PosedAntenna& to)
+      : geometry_(geometry), from_(from), to_(to) {}
   // `normal` is that of the plane, unit, on either side.
   void add(const Hit& hit, const Vec3& point, const Vec3& normal);
   size_t size() const { return points_.size(); }
   // Returns a bounce as the wave sees it that comes from one antenna and goes to the other. It refers to the bounce.
   MirrorView view(size_t bounce) const;
+  // Returns the antennas behind the planes on the ways to a bounce, of which `view` is the view.
+  UnfoldedAntennas antennas_of(size_t bounce, const MirrorView& view) const;
   // Returns the field of the path over that of endless planes (field_of_flat_mirror); e^{+jwt}.
   std::complex<double> field_beside_edges(double wavelength, int64_t& num_queries) const;
   // Returns whether the planes of a bounce and of the next one meet in a corner without a crack, as far as a few rays can
@@ -29,7 +32,7 @@ class PlaneBounces {
   void move_off_edges();
 
   const EmbreeScene& geometry_;
-  Vec3 from_, to_;
+  PosedAntenna from_, to_;
   std::vector<RayHit> points_;
   std::vector<RayHit> beside_;  // the same, moved off the other planes at an edge
 };

@@ -109,9 +109,14 @@ bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
 
 }  // namespace
 
-PlaneImages::PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings)
-    : scene_(scene), geometry_(geometry), settings_(settings), wavelength_(kSpeedOfLight / settings.frequency),
-      tolerance_(geometry.plane_tolerance(wavelength_)) {}
+PlaneImages::PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings,
+                         PosedAntenna transmitter, PosedAntenna receiver)
+    : scene_(scene), geometry_(geometry), settings_(settings), transmitter_(std::move(transmitter)),
+      receiver_(std::move(receiver)), wavelength_(kSpeedOfLight / settings.frequency),
+      tolerance_(geometry.plane_tolerance(wavelength_)) {
+  transmitter_.position = settings.transmitter;
+  receiver_.position = settings.receiver;
+}
 
 void PlaneImages::add_chains(const PathBlock& block) {
   const size_t first = facets_.size();
@@ -222,7 +227,7 @@ void PlaneImages::try_order(const std::vector<int>& sequence, PathBlock& block) 
   std::optional<ImagePath> path = images.path_over(sequence);
   block.statistics.num_queries += images.num_queries();
   if (!path) return;
-  PlaneBounces bounces(geometry_, settings_.transmitter, settings_.receiver);
+  PlaneBounces bounces(geometry_, transmitter_, receiver_);
   for (size_t k = 0; k < sequence.size(); ++k) bounces.add(path->hits[k], path->points[k], planes_[sequence[k]].normal);
   const std::optional<std::complex<double>> share = field_beside_edges(bounces, block.statistics.num_queries);
   if (!share) return;

@@ -27,8 +27,10 @@ namespace echopath {
 
 class PlaneImages {
  public:
-  // All must outlive it.
-  PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings);
+  // All must outlive it but the antennas, whose patterns must: of those, beams count at the edges of planes, and the places
+  // are those of the settings.
+  PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings, PosedAntenna transmitter,
+              PosedAntenna receiver);
   // Takes the chains that the rays of a block found.
   void add_chains(const PathBlock& block);
   // Finds the paths over these chains, each once, and writes them to a block. Raises Cancelled when the job is cancelled.
@@ -57,6 +59,7 @@ class PlaneImages {
   const Scene& scene_;
   const EmbreeScene& geometry_;
   const SbrSettings& settings_;
+  PosedAntenna transmitter_, receiver_;
   double wavelength_;                 // m
   double tolerance_;                  // m: surfaces that stray no farther from a plane are parts of it
   std::vector<TriangleName> facets_;  // of all rays with chains, which the chains of a ray share

@@ -227,8 +227,8 @@ void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vect
 void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
   if (path.first_material < 0) return;
   scratch.cosines.assign(2 * path.count, 0.0);
-  for_antennas_in_turn(path, [&](const Vec3& start, const Vec3& end) {
-    fill_cosines(path, scratch.hits.data(), start, end, scratch.cosines);
+  for_antennas_in_turn(path, [&](const PosedAntenna& start, const PosedAntenna& end) {
+    fill_cosines(path, scratch.hits.data(), start.position, end.position, scratch.cosines);
     for (size_t k = 0; k < scratch.cosines.size(); ++k) {
       const double before = scratch.reference[k], now = scratch.cosines[k];
       state.cosine_change = std::max(state.cosine_change, std::abs(now - before));
@@ -241,7 +241,7 @@ void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, Pat
 void FrameProbe::check_edges(const LocalPath& path, const PosedHit* hits, PathState& state) const {
   const std::complex<double> recorded = share_of_endless(path.flags);
   bool is_next_own = true;  // the trace's antennas come first
-  for_antennas_in_turn(path, [&](const Vec3& start, const Vec3& end) {
+  for_antennas_in_turn(path, [&](const PosedAntenna& start, const PosedAntenna& end) {
     const bool is_own = std::exchange(is_next_own, false);
     const auto found = find_edge_share(geometry_, path, hits, start, end, kTwoPi / wavenumber_);
     if (!found) return;

@@ -74,8 +74,7 @@ class FrameProbe {
   void for_antennas_in_turn(const LocalPath& path, Visit visit) const {
     const size_t num_pairs = std::max(starts(path).size(), ends(path).size());
     for (size_t i = 0; i < num_pairs; ++i)
-      visit(starts(path)[std::min(i, starts(path).size() - 1)].position,
-            ends(path)[std::min(i, ends(path).size() - 1)].position);
+      visit(starts(path)[std::min(i, starts(path).size() - 1)], ends(path)[std::min(i, ends(path).size() - 1)]);
   }
   const std::vector<PosedAntenna>& starts(const LocalPath& path) const {
     return path.is_reversed ? rim_.receivers : rim_.transmitters;

@@ -12,9 +12,9 @@ bool is_over_unflagged_planes(const LocalPath& path, const PathPreparer& prepare
 }
 
 std::optional<EdgeShare> find_edge_share(const EmbreeScene& geometry, const LocalPath& path, const PosedHit* hits,
-                                         const Vec3& start, const Vec3& end, double wavelength) {
+                                         const PosedAntenna& start, const PosedAntenna& end, double wavelength) {
   LegTester tester(geometry, path, hits);
-  tester.test_images(start, end);
+  tester.test_images(start.position, end.position);
   if (!tester.meets_all_images()) return std::nullopt;
   PlaneBounces bounces(geometry, start, end);
   for (int k = 0; k < path.count; ++k) bounces.add(tester.image_hit(k), tester.image_point(k), hits[k].normal);

@@ -19,6 +19,6 @@ struct EdgeShare {
 // Finds that for a path between two antennas; finds nothing where the path is not there. `hits` are its hits as they are
 // posed, in the order of the trace. wavelength: m.
 std::optional<EdgeShare> find_edge_share(const EmbreeScene& geometry, const LocalPath& path, const PosedHit* hits,
-                                         const Vec3& start, const Vec3& end, double wavelength);
+                                         const PosedAntenna& start, const PosedAntenna& end, double wavelength);
 
 }  // namespace echopath

@@ -25,8 +25,8 @@ PAGES = sorted((DOCS / "how_do_i").rglob("*.md"))
 TRAINING = EXAMPLES / "training"  # needs PyTorch, and takes minutes: no part of the gallery
 SCRIPTS = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent != TRAINING)
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
-TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories",
-                                         "ego_motion", "live_scene")),
+TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "liquid_level", "foreign_scene", "car_with_speed",
+                                         "trajectories", "ego_motion", "live_scene")),
          *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr")),
          *(f"results/{name}" for name in ("angle_map", "spectrogram", "breath_and_heartbeat", "arms_only", "rcs_over_angle",
                                           "polarimetry", "label_masks", "detections", "truth_and_tracks",
@@ -123,6 +123,24 @@ def test_the_page_on_breathing_finds_the_way_of_the_chest():
     chest = 4e-3 * np.sin(2.0 * np.pi * 0.25 * time) + 0.2e-3 * np.sin(2.0 * np.pi * 1.2 * time)
     assert np.std(names["way"] - chest) < 0.15e-3
     assert names["ranges"][names["cell"]] == pytest.approx(1.88, abs=0.05)  # 12 cm before the middle of the body
+
+
+def test_the_page_on_liquids_has_the_echoes_of_images():
+    """Of the oil, of it and the roof, and of the water through the oil: Fresnel's coefficients, and lengths of light."""
+    names = {"np": np, "ep": ep}
+    exec(compile(code_of(DOCS / "how_do_i" / "scenes" / "liquid_level.md"), "a_page", "exec"), names)
+    air_oil, oil_water = ((np.sqrt(one) - np.sqrt(other)) / (np.sqrt(one) + np.sqrt(other))
+                          for one, other in ((1.0, 2.2), (2.2, 12 - 18j)))
+    horn = 2.0 * 1138.0 * ep.speed_of_light / 78e9 / (8.0 * np.pi)
+    in_oil = names["below"]
+    for paths, share, spread, seen, tolerance_db in (
+            (names["paths"].select("T 'oil' R"), air_oil, 1.9, 1.9, 0.01),
+            (names["paths"].select("T 'oil' 'roof' 'oil' R"), air_oil**2, 3.9, 3.9, 0.01),
+            (in_oil, (1.0 - air_oil**2) * oil_water, 1.9 + 0.06 / np.sqrt(2.2), 1.9 + 0.06 * np.sqrt(2.2), 0.3)):
+        echo = np.sqrt(1e-3) * horn * abs(share) / spread
+        assert 20.0 * np.log10(abs(paths.amplitude.sum()) / echo) == pytest.approx(0.0, abs=tolerance_db)
+        last_layer = ep.speed_of_light / 78e9 / 4.0 if paths is in_oil else 0.0
+        assert paths.lengths([0.0], 0, 0)[0, 0] / 2.0 == pytest.approx(seen + last_layer, abs=1e-4)
 
 
 def with_little_work(text: str) -> str:

@@ -18,6 +18,9 @@ from .rules import Case, rule
 
 VALID_FOCK = 2.0     # cosine at the point that mirrors over the width of the shadow's edge
 MOST_AT_CORNER = 4   # bounces whose orders are told apart from images (trace/mirrors/plane_images.cpp)
+TOLD_CHANGE_DB = 0.5  # of what a sheet passes or reflects over the band, from which on it is told
+MOST_CHANGE_DB = 40.0  # that is told as a number
+MOST_FREQUENCIES = 257
 ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/scatter/lobe_probabilities.h)
 
 
@@ -120,7 +123,36 @@ def _passed_power(case: Case, sheets) -> str:
     frequency = case.radar.waveform.start_frequency
     shares = [sheet_coefficients(one, frequency=frequency, incidence=0.0).passed_power()[0] for one in materials]
     levels = ", ".join(f"{10.0 * math.log10(max(share, 1e-30)):.1f} dB" for share in shares)
-    return f"at normal incidence the power that passes is {levels}"
+    return f"at normal incidence the power that passes is {levels}{_change_over_band(case, materials)}"
+
+
+def _change_over_band(case: Case, materials) -> str:
+    """By how much sheets pass and reflect otherwise over the band than at its start, which is taken for all of it."""
+    changes = np.array([_changes_db(material, case.radar.waveform) for material in materials]).max(axis=0)
+    if changes.max() < TOLD_CHANGE_DB:
+        return ""
+    passed, reflected = (f"{change:.1f} dB" if change < MOST_CHANGE_DB else f"more than {MOST_CHANGE_DB:.0f} dB"
+                         for change in changes)
+    return (f", taken from the start of the chirp, from which over the band it differs by up to {passed}, and the power that is "
+            f"reflected by {reflected}")
+
+
+def _changes_db(material, waveform) -> tuple[float, float]:
+    """Largest change in dB of the power that a sheet passes and of that which it reflects, at normal incidence."""
+    ways = sum(layer.thickness * abs(layer.permittivity) ** 0.5 for layer in material.layers)  # m, of light
+    ripples = 2.0 * ways * waveform.bandwidth / speed_of_light
+    count = int(min(MOST_FREQUENCIES, 9.0 + 8.0 * ripples))
+    frequencies = waveform.start_frequency + np.linspace(0.0, waveform.bandwidth, count)
+    sheets = [sheet_coefficients(material, frequency=float(one), incidence=0.0) for one in frequencies]
+    passed = np.array([one.passed_power()[0] for one in sheets])
+    reflected = np.array([abs(one.te_reflection[0]) ** 2 for one in sheets])
+    return _largest_change_db(passed), _largest_change_db(reflected)
+
+
+def _largest_change_db(powers: np.ndarray) -> float:
+    """From the first of them."""
+    levels = 10.0 * np.log10(np.maximum(powers, 1e-30))
+    return float(np.max(np.abs(levels - levels[0])))
 
 
 def _found_passes(paths) -> str:

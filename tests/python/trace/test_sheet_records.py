@@ -1,5 +1,6 @@
 """Records of paths through sheets: expressions, tables, files, live scenes, labels and effects."""
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -138,6 +139,36 @@ def test_one_trace_serves_a_frame_behind_a_pane_at_rest():
     scene = make_scene(ball_motion=ep.LinearMotion(velocity=(-1, 0, 0)))
     paths = ep.trace(scene, make_radar(), num_rays=4000)
     assert ep.validity(paths, make_radar()).shares.new_surface < 0.01
+
+
+def airy_powers(frequency, permittivity, thickness):
+    """Shares of the power that a slab in air passes and reflects at normal incidence: Airy's formulas."""
+    index = np.sqrt(permittivity)
+    face, turn = (1.0 - index) / (1.0 + index), np.exp(-4j * np.pi * frequency / ep.speed_of_light * index * thickness)
+    whole = 1.0 - face**2 * turn
+    return abs((1.0 - face**2) / whole) ** 2 * abs(turn), abs(face * (1.0 - turn) / whole) ** 2
+
+
+@pytest.mark.parametrize(("permittivity", "thickness"), [(2.2 - 0.01j, 0.01), (6.3 - 0.3j, 0.012), (2.0 - 0.002j, 0.3)])
+def test_effects_tell_how_much_a_sheet_changes_over_the_band(permittivity, thickness):
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="sheet", material=ep.Material(layers=[ep.Layer(thickness, permittivity)]))
+    waveform = ep.ChirpSequence(start_frequency=78e9, bandwidth=4e9)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((3, 0, 0))], receivers=[ep.Antenna((3, 0, 0))])
+    (effect,) = (one for one in ep.effects(scene, radar) if one.name == "transmission through sheets")
+    powers = np.array([airy_powers(one, permittivity, thickness) for one in np.linspace(78e9, 82e9, 20_001)])
+    passed, reflected = np.abs(10.0 * np.log10(powers / powers[0])).max(axis=0)
+    told = [float(one) for one in re.findall(r"by (?:up to |more than )?([0-9.]+) dB", effect.reason)]
+    assert told[0] == pytest.approx(passed, abs=0.1)
+    assert told[1] == pytest.approx(min(reflected, 40.0), rel=0.15)
+
+
+def test_effects_say_nothing_of_sheets_that_are_alike_over_the_band():
+    radar = make_radar()
+    (effect,) = (one for one in ep.effects(make_scene(), radar) if one.name == "transmission through sheets")
+    powers = np.array([airy_powers(one, 6.3 - 0.3j, 0.004) for one in radar.waveform.start_frequency
+                       + np.linspace(0.0, radar.waveform.bandwidth, 101)])
+    assert (np.abs(10.0 * np.log10(powers / powers[0])).max() < 0.5) == ("over the band" not in effect.reason)
 
 
 def test_effects_name_sheets_and_what_passes():

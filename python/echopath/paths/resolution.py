@@ -21,6 +21,7 @@ MOST_TIMES = 100.0      # of the rays: what needs more is not a matter of rays
 UNSEEN_HITS = 3.0       # rays that may have met what none has met (95 % limit of a Poisson count)
 UNMET_DIRECTIONS = 512  # on each object: what is seen of it in slivers counts, too
 FAINT = 0.01            # of the upper end of an interval
+MOST_PRINTED = 12       # of a list of echoes, the strongest of objects first
 SURROUNDINGS = "the surroundings"  # what belongs to no object
 
 
@@ -87,6 +88,14 @@ class Unresolved:
         return f"Unresolved({self})"
 
 
+class UnresolvedList(list):
+    """A list of Unresolved that prints no more than its first ones: a closed room has thousands."""
+
+    def __repr__(self) -> str:
+        more = [f"and {len(self) - MOST_PRINTED} more"] if len(self) > MOST_PRINTED else []
+        return f"[{', '.join([*map(repr, self[:MOST_PRINTED]), *more])}]"
+
+
 def interval_of(power) -> Interval:
     """Of an ep.ReceivedPower, in W."""
     return Interval(power.power, power.low, power.high)
@@ -122,10 +131,10 @@ def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: floa
     paths: of a trace; objects: as in `families`
     least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
     progress: callable (stage, fraction), True for bars, or None
-    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar
-    that no ray has met is among them, with what three rays might have brought back from it as its upper end; so is one whose
-    paths a selection or a file leaves out. Raises ValueError for bad names and for globs that take no mesh,
-    KeyboardInterrupt on Ctrl-C.
+    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first; of many it prints the first. An
+    object in sight of the radar that no ray has met is among them, with what three rays might have brought back from it
+    as its upper end; so is one whose paths a selection or a file leaves out. Raises ValueError for bad names and for
+    globs that take no mesh, KeyboardInterrupt on Ctrl-C.
     """
     families = families_of(paths, objects)
     powers = mean_powers(paths, families, {}, progress).of_families
@@ -145,8 +154,8 @@ def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, pro
                         interval_of(power), _advice(paths, families, family, power, planes)) for family, power in in_doubt]
     met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
     found += _unseen(paths, objects, [name for name in families.objects if name not in met], progress)
-    return sorted((one for one in found if one.interval.high > least_power),
-                  key=lambda one: (bool(one.via), -one.interval.power, -one.interval.high))
+    return UnresolvedList(sorted((one for one in found if one.interval.high > least_power),
+                                 key=lambda one: (bool(one.via), -one.interval.power, -one.interval.high)))
 
 
 # --- advice ---

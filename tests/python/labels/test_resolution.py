@@ -161,6 +161,23 @@ def test_a_name_for_a_power_that_the_rays_know_is_not_given():
     assert ep.unresolved(paths) == []
 
 
+def test_of_many_unresolved_echoes_the_first_are_printed():
+    """A closed metal room in which a rough thing stands has ghosts over each wall, and over each pair of them."""
+    corners = np.array([[x, y, z] for x in (0.0, 3.0) for y in (0.0, 2.0) for z in (0.0, 1.5)])
+    scene = ep.Scene()
+    for name, quad in (("floor", (0, 2, 6, 4)), ("roof", (1, 3, 7, 5)), ("left", (2, 3, 7, 6)), ("right", (0, 1, 5, 4)),
+                       ("front", (4, 5, 7, 6)), ("back", (0, 1, 3, 2))):
+        scene.add(ep.Mesh(corners[list(quad)], [(0, 1, 2), (0, 2, 3)]), name=name, material="metal")
+    rough = ep.Material(permittivity=2 - 0.2j, scattering=0.6)
+    scene.add(ep.actors.plate(0.3, 0.3), name="thing", material=rough, position=(2, 1, 0.7))
+    radar = ep.Radar(ep.ChirpSequence(num_chirps=1), transmitters=[ep.Antenna((0.5, 0.9, 0.6))],
+                     receivers=[ep.Antenna((0.5, 0.91, 0.6))])
+    found = ep.unresolved(ep.trace(scene, radar, num_rays=2000, max_bounces=4))
+    assert len(found) > 100
+    assert repr(found).count("Unresolved(") == 12 and repr(found).endswith(f"and {len(found) - 12} more]")
+    assert repr(found[:2]) == f"[{found[0]!r}, {found[1]!r}]"
+
+
 # --- what carries it ---
 
 @pytest.fixture(scope="module")

@@ -2802,7 +2802,7 @@ class ValidityShares:
     @property
     def turned(self) -> float:
         """
-        share: a cosine of incidence or departure changes its sign or by more than a factor of two
+        share: a cosine of incidence or departure changes its sign or by more than a factor of two, or an image's coefficient by more than 0.3
         """
 class ObjectValidity(ValidityShares):
     """
@@ -3014,12 +3014,12 @@ class Validity:
     @property
     def turned(self) -> numpy.typing.NDArray[numpy.uint8]:
         """
-        [P] 1: a cosine changes too much
+        [P] 1: a cosine or a coefficient changes too much
         """
     @property
     def turned_share(self) -> float:
         """
-        share of the power of surfaces that turn to or away from the rays
+        share of the power of surfaces that turn to or away from the rays, or reflect otherwise
         """
     @property
     def warnings(self) -> list[str]:

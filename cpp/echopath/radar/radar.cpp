@@ -93,7 +93,8 @@ double power_of(double base, double exponent) {
 
 void ChirpSequence::validate() const {
   require_positive(start_frequency, "start_frequency");
-  require_positive(bandwidth, "bandwidth");
+  require(std::isfinite(bandwidth) && bandwidth > 0.0, "bandwidth", "must be finite and positive, for chirps go up",
+          bandwidth);
   require(num_samples >= 1, "num_samples", "must be at least 1", num_samples);
   require_positive(sampling_rate, "sampling_rate");
   require(num_chirps >= 1, "num_chirps", "must be at least 1", num_chirps);
@@ -103,7 +104,8 @@ void ChirpSequence::validate() const {
           chirp_interval);
   validate_list(extra_idle, "extra_idle", -std::numeric_limits<double>::min(), "must be finite and not negative");
   validate_list(frequency_steps, "frequency_steps", -start_frequency, "must be finite and leave a positive start_frequency");
-  validate_list(bandwidth_steps, "bandwidth_steps", -bandwidth, "must be finite and leave a positive bandwidth");
+  validate_list(bandwidth_steps, "bandwidth_steps", -bandwidth,
+                "must be finite and leave a positive bandwidth, for chirps go up");
 }
 
 double ChirpSequence::wavelength() const { return kSpeedOfLight / centre_frequency(); }

@@ -32,6 +32,7 @@ class ValidityCheck {
     report_.num_paths = paths.num_paths();
     report_.times = check_.times().times;
     report_.has_array = check_.has_array();
+    report_.is_still = !check_.anything_moves();
     report_.specular = settings.specular;
     report_.cell_noise = noise_power_in_cell(radar);
   }

@@ -25,7 +25,8 @@ struct ValidityShares {
   double slid = 0.0;          // phase error of points of reflection above kPhaseLimit
   double left = 0.0;          // points of reflection that leave the surface around their hit
   double blocked = 0.0;       // something comes in the way of a leg
-  double turned = 0.0;        // a cosine of incidence or departure changes its sign or by more than a factor of two
+  double turned = 0.0;        // a cosine of incidence or departure changes its sign or by more than a factor of two, or an
+                              // image's coefficient of reflection by more than kEdgeLimit
   double beside_edges = 0.0;  // what edges of planes leave of images over them changes by more than kEdgeLimit
   double new_surface = 0.0;   // of what is seen at the times of the check: power from surface that was hidden from the trace
 };
@@ -73,6 +74,7 @@ struct Validity {
   int64_t num_paths = 0;
   std::vector<double> times;  // s, of the check
   bool has_array = false;     // some antenna stands elsewhere than those of the trace
+  bool is_still = false;      // neither the scene nor the radar moves
   SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;
   // These are errors of phase in rad: the rms weighted by power; the largest over the paths that carry any power; the

@@ -52,6 +52,15 @@ std::string parts_of_frame(const Validity& report) {
   return "each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
 }
 
+// Returns whether what does not hold is due to the array alone.
+bool is_by_array(const Validity& report) { return report.has_array && report.is_still; }
+
+constexpr const char* kTooWide = "parts of the array by themselves: it is too wide for one trace.";
+
+std::string less_at_once(const Validity& report) {
+  return is_by_array(report) ? std::string("Trace ") + kTooWide : "Trace shorter frames.";
+}
+
 std::string slide_warning(const Validity& report) {
   const std::string found = percent(report.shares.slid) + " of the power is off by more than " + radians(kPhaseLimit) +
                             " of phase (at most " + radians(report.largest_phase_error) +
@@ -60,12 +69,11 @@ std::string slide_warning(const Validity& report) {
       report.specular == SpecularPoints::kMaterial && report.stepped_phase_error < 0.5 * report.largest_phase_error;
   const std::string step = "replay=\"fermat\" leaves at most " + radians(report.stepped_phase_error) + "; or trace ";
   const std::string lead = found + (helps ? step : "Trace ");
-  if (report.motion_phase_error <= kPhaseLimit)
-    return lead + "parts of the array by themselves: it is too wide for one trace.";
+  if (report.motion_phase_error <= kPhaseLimit) return lead + kTooWide;
   return lead + parts_of_frame(report);
 }
 
-std::string advice(const Validity& report) { return "Trace " + parts_of_frame(report); }
+std::string advice(const Validity& report) { return "Trace " + (is_by_array(report) ? kTooWide : parts_of_frame(report)); }
 
 std::string missing_warning(const ObjectValidity& object, const Validity& report) {
   const std::string margin = with_digits(2, 10.0 * std::log10(object.seen_power / report.cell_noise));
@@ -173,15 +181,16 @@ std::vector<std::string> Validity::warnings() const {
   if (shares.slid > kValidityLimit) out.push_back(slide_warning(*this));
   if (shares.left > kValidityLimit) {
     out.push_back(percent(shares.left) + " of the power is reflected at points that leave the surface around them " +
-                  where(*this) + ", over an edge or a crease. Trace shorter frames.");
+                  where(*this) + ", over an edge or a crease. " + less_at_once(*this));
   }
   if (shares.blocked > kValidityLimit) {
-    out.push_back("Something comes in the way of " + percent(shares.blocked) + " of the power " + where(*this) +
-                  ". Trace shorter frames." + most_of(*this, &ValidityShares::blocked));
+    out.push_back("Something comes in the way of " + percent(shares.blocked) + " of the power " + where(*this) + ". " +
+                  less_at_once(*this) + most_of(*this, &ValidityShares::blocked));
   }
   if (shares.turned > kValidityLimit) {
-    out.push_back(percent(shares.turned) + " of the power comes from surfaces that turn to or away from the rays within "
-                                           "the frame. Trace shorter frames.");
+    out.push_back(percent(shares.turned) +
+                  " of the power comes from surfaces that turn to or away from the rays, or reflect otherwise, " +
+                  where(*this) + ". " + less_at_once(*this));
   }
   if (shares.beside_edges > kValidityLimit) {
     out.push_back("Edges of planes leave another share of " + percent(shares.beside_edges) + " of the power " +

@@ -60,7 +60,8 @@ void bind_shares(py::module_& m) {
       attribute("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit"),
       attribute("blocked", &ValidityShares::blocked, "share: something comes in the way"),
       attribute("turned", &ValidityShares::turned,
-                "share: a cosine of incidence or departure changes its sign or by more than a factor of two"),
+                "share: a cosine of incidence or departure changes its sign or by more than a factor of two, "
+                "or an image's coefficient by more than 0.3"),
       attribute("beside_edges", &ValidityShares::beside_edges,
                 "share: what edges of unmarked planes leave of images over them changes by more than 0.3 of the field"),
       attribute("new_surface", &ValidityShares::new_surface,
@@ -140,7 +141,7 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
       .def_property_readonly("left_share", share(&ValidityShares::left),
                              "share of the power whose points of reflection leave the surface around their hit")
       .def_property_readonly("turned_share", share(&ValidityShares::turned),
-                             "share of the power of surfaces that turn to or away from the rays")
+                             "share of the power of surfaces that turn to or away from the rays, or reflect otherwise")
       .def_property_readonly(
           "beside_edges_share", share(&ValidityShares::beside_edges),
           "share of the power of images of which edges of unmarked planes leave another share of the field")
@@ -174,7 +175,8 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
                              "[P] bit k: something comes in the way of the leg that arrives at hit k")
       .def_property_readonly("receiver_blocked", array_column(&ValidityArrays::receiver_blocked),
                              "[P] 1: something comes in the way of the leg to the receiver")
-      .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
+      .def_property_readonly("turned", array_column(&ValidityArrays::turned),
+                             "[P] 1: a cosine or a coefficient changes too much")
       .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
                              "[P] largest of a cosine, linear")
       .def_property_readonly("edge_change", array_column(&ValidityArrays::edge_change),

@@ -15,12 +15,12 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
 
     Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two
     for each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points
-    of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines, what edges of
-    unmarked planes leave of images over them; and traces the scene at these times for surface that was hidden from the trace.
-    Exact parts of the replay (single bounces, images in mirrors) have no phase error. Of paths that end in a rough surface at
-    most 16384 of each object and number of bounces are looked at. What more than 256 times would have to follow is a warning.
-    Where the report asks for parts of the frame by themselves, `retrace` of `synthesize` and `simulate` does so, in as many
-    stretches with keyframes=0.
+    of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines, coefficients of
+    images, what edges of unmarked planes leave of images over them; and traces the scene at these times for surface that was
+    hidden from the trace. Exact parts of the replay (single bounces, images in mirrors) have no phase error. Of paths that
+    end in a rough surface at most 16384 of each object and number of bounces are looked at. What more than 256 times would
+    have to follow is a warning. Where the report asks for parts of the frame by themselves, `retrace` of `synthesize` and
+    `simulate` does so, in as many stretches with keyframes=0.
     paths: of a trace, all or a selection of them, which asks about these alone
     radar: another waveform, array or motion than that of the trace, or None
     replay: of the replay that is to be certified, as in `synthesize`

@@ -29,3 +29,44 @@ def test_every_channel_of_a_wide_array_has_the_echo_of_each_chirp(width, side):
         assert some.num_paths > 0
         found, expected = ep.synthesize(some, radar), ep.synthesize(some, radar, evaluate="chirps")
         assert np.abs(found - expected).max() < RELATIVE * np.abs(expected).max()
+
+
+def near_bumper(distance, material):
+    """What `validity` says of a plane before a transmitter and receivers 4 mm and 10 cm beside it, which stand still."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="bumper", material=material, position=(distance, 0.0, 0.0))
+    radar = build_radar([(0.0, 0.0, 0.0)], [(0.0, 0.004, 0.0), (0.0, 0.1, 0.0)], num_samples=32, num_chirps=4)
+    paths = ep.trace(scene, radar, num_rays=20_000, max_bounces=1)
+    assert paths.num_paths == 1
+    return ep.validity(paths), paths
+
+
+SLAB, THICKNESS = 2.6 - 0.02j, 2.5e-3  # m
+
+
+def slab_reflection(frequency, incidence):
+    """Airy's sum over the bounces in a slab, of a field across the plane of incidence."""
+    across, within = np.cos(incidence), np.sqrt(SLAB - np.sin(incidence) ** 2)
+    face = (across - within) / (across + within)
+    turn = np.exp(-4j * np.pi * frequency / ep.speed_of_light * THICKNESS * within)
+    return abs(face * (1.0 - turn) / (1.0 - face**2 * turn))
+
+
+def test_validity_tells_where_an_array_near_a_sheet_has_one_coefficient_for_all_of_it():
+    """The record keeps that between the mean antennas: at the far receiver the bumper reflects otherwise."""
+    report, paths = near_bumper(0.03, ep.Material(layers=[ep.Layer(THICKNESS, SLAB)]))
+    frequency = paths.radar.waveform.start_frequency
+    kept, true = (slab_reflection(frequency, np.arctan2(aside / 2.0, 0.03)) for aside in (0.052, 0.1))
+    for receiver, aside in enumerate((0.004, 0.1)):
+        length = np.hypot(0.06, aside)
+        endless = ep.speed_of_light / frequency * np.sqrt(paths.radar.transmit_power) / (4.0 * np.pi * length)
+        assert abs(paths.amplitudes([0.0], 0, receiver)[0, 0]) / endless == pytest.approx(kept, rel=1e-3)
+    assert abs(kept - true) > 0.3 * max(kept, true)
+    assert report.turned_share == pytest.approx(1.0) and not report.ok
+    (warning,) = report.warnings
+    assert "reflect otherwise" in warning and "parts of the array by themselves" in warning
+
+
+@pytest.mark.parametrize(("distance", "material"), [(3.0, ep.Material(layers=[ep.Layer(THICKNESS, SLAB)])), (0.03, "metal")])
+def test_validity_is_content_with_a_far_sheet_and_with_near_metal(distance, material):
+    assert near_bumper(distance, material)[0].ok

@@ -69,6 +69,12 @@ def test_bad_waveform_names_the_field(field, value):
         reference(**{field: value})
 
 
+def test_falling_chirps_are_refused_by_the_reason():
+    for wrong in ({"bandwidth": -250e6}, {"bandwidth_steps": (0.0, -2e9)}):
+        with pytest.raises(ValueError, match="chirps go up"):
+            ep.ChirpSequence(**wrong)
+
+
 def test_bad_radar_names_the_field():
     one = [ep.Antenna()]
     with pytest.raises(ValueError, match="^transmitters: "):

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
+#include "echopath/em/surface/surface_response.h"
 #include "echopath/validity/array_corners.h"
 #include "echopath/validity/legs/edge_share.h"
 
@@ -15,6 +16,8 @@ constexpr double kConfirmed = 0.03;  // rad: a step beyond the triangles around 
 constexpr double kMostRest = 1.0;    // rad: a step that leaves more has not come near the point of reflection
 constexpr double kTurned = 2.0;      // factor
 constexpr double kOnePlace = 1e-9;   // m
+constexpr double kSameCosine = 1e-3;
+constexpr double kOtherField = 0.3;  // of the larger of two coefficients, as kEdgeLimit of fields
 
 // Returns the bits of hits in the order of the record.
 uint64_t recorded_order(const LocalPath& path, uint64_t bits) {
@@ -93,6 +96,34 @@ void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start
     previous = k;
   }
   set_departure(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
+}
+
+// Writes the cosines of incidence of a wave that meets all hits of a path as images, in those places of [2 * hits].
+void fill_image_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
+                        std::vector<double>& out) {
+  Vec3 image = end;
+  for (int k = path.count; k-- > 0;) image -= 2.0 * (image - hits[k].point).dot(hits[k].normal) * hits[k].normal;
+  Vec3 way = (image - start).normalized();
+  for (int k = 0; k < path.count; ++k) {
+    const double along = way.dot(hits[k].normal);
+    out[2 * k] = std::min(1.0, std::abs(along));
+    way -= 2.0 * along * hits[k].normal;
+  }
+}
+
+// Returns by how much the coefficients of both modes differ between two cosines of incidence, over the larger of them.
+double coefficient_change(const Material& material, double frequency, double before, double now) {
+  if (material.conductor || std::abs(now - before) < kSameCosine) return 0.0;
+  double change = 0.0, sizes[2] = {};
+  for (const PolarizationMode mode : {PolarizationMode::kTe, PolarizationMode::kTm}) {
+    const std::complex<double> there = respond(material, frequency, before, mode).gamma;
+    const std::complex<double> here = respond(material, frequency, now, mode).gamma;
+    change += std::norm(here - there);
+    sizes[0] += std::norm(there);
+    sizes[1] += std::norm(here);
+  }
+  const double largest = std::max(sizes[0], sizes[1]);
+  return largest > 0.0 ? std::sqrt(change / largest) : 0.0;
 }
 
 }  // namespace
@@ -218,14 +249,15 @@ LegShadows FrameProbe::shadows_of(const LocalPath& path, const PosedHit* hits, L
 
 void FrameProbe::cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const {
   out.assign(2 * path.count, 0.0);
-  if (path.first_material < 0) return;
+  const bool has_images_alone = path.first_material < 0;
   pose_hits(path, rim_, scratch.hits.data());
-  fill_cosines(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
+  const auto fill = has_images_alone ? fill_image_cosines : fill_cosines;
+  fill(path, scratch.hits.data(), starts(path).front().position, ends(path).front().position, out);
 }
 
 // The cosines at an end change with its own antenna only.
 void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
-  if (path.first_material < 0) return;
+  if (path.first_material < 0) return check_coefficients(path, scratch, state);
   scratch.cosines.assign(2 * path.count, 0.0);
   for_antennas_in_turn(path, [&](const PosedAntenna& start, const PosedAntenna& end) {
     fill_cosines(path, scratch.hits.data(), start.position, end.position, scratch.cosines);
@@ -233,6 +265,20 @@ void FrameProbe::check_cosines(const LocalPath& path, ProbeScratch& scratch, Pat
       const double before = scratch.reference[k], now = scratch.cosines[k];
       state.cosine_change = std::max(state.cosine_change, std::abs(now - before));
       if (before != 0 && !(now / before > 1.0 / kTurned && now / before < kTurned)) state.is_turned = true;
+    }
+  });
+}
+
+// A record keeps the coefficients of its own antennas at the trace time.
+void FrameProbe::check_coefficients(const LocalPath& path, ProbeScratch& scratch, PathState& state) const {
+  const double frequency = wavenumber_ * kSpeedOfLight / kTwoPi;
+  scratch.cosines.assign(2 * path.count, 0.0);
+  for_antennas_in_turn(path, [&](const PosedAntenna& start, const PosedAntenna& end) {
+    fill_image_cosines(path, scratch.hits.data(), start.position, end.position, scratch.cosines);
+    for (int k = 0; k < path.count; ++k) {
+      const Material& material = *preparer_.paths().scene->node_of(path.hits[k].mesh_id).material;
+      const double before = scratch.reference[2 * k], now = scratch.cosines[2 * k];
+      if (coefficient_change(material, frequency, before, now) > kOtherField) state.is_turned = true;
     }
   });
 }

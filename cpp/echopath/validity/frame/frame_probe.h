@@ -25,7 +25,7 @@ struct PathState {
   uint64_t left = 0;     // bit per hit: its point of reflection leaves the surface or is lost, for some antenna
   uint64_t blocked = 0;  // bit per hit: something blocks the leg that arrives there, for some antenna
   bool is_receiver_blocked = false;
-  bool is_turned = false;      // some cosine changes by more than a factor of two, or its sign
+  bool is_turned = false;      // some cosine changes by more than a factor of two, or its sign, or an image's coefficient
   double cosine_change = 0.0;  // largest change of a cosine of incidence or departure
   // Of an image over unmarked planes these are the field that edges leave for the trace's antennas, over that of the record;
   // the largest change of it for some antenna, over the larger of both; and EdgeShare::slide at most.
@@ -53,7 +53,8 @@ class FrameProbe {
              const SurfaceWalk& walk, double wavenumber)
       : preparer_(preparer), pose_(pose), rim_(rim), geometry_(geometry), walk_(walk), wavenumber_(wavenumber) {}
 
-  // Writes the signed cosines of incidence and departure [2 * hits], 0 at images, for the trace's antennas.
+  // Writes the signed cosines of incidence and departure [2 * hits] for the trace's antennas. At images they are 0, but
+  // those of incidence where all hits are images.
   void cosines(const LocalPath& path, ProbeScratch& scratch, std::vector<double>& out) const;
   // Checks a path. scratch.reference holds the cosines at the trace time; `known` is used with this probe alone.
   // Thread-safe.
@@ -68,6 +69,7 @@ class FrameProbe {
   LegShadows shadows_of_images(const LocalPath& path, const PosedHit* hits) const;
   LegShadows shadows_of(const LocalPath& path, const PosedHit* hits, LegMemo& known) const;
   void check_cosines(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
+  void check_coefficients(const LocalPath& path, ProbeScratch& scratch, PathState& state) const;
   void check_edges(const LocalPath& path, const PosedHit* hits, PathState& state) const;
   // Calls `visit` with the ends of a path at each of its antennas: both go from rim to rim by turns.
   template <class Visit>

@@ -309,3 +309,35 @@ def test_in_a_corner_that_is_not_square_the_other_order_is_another_image():
     for angle, left in ((0.5 * np.pi, 0.0), (1.6, 1.0)):
         paths = ep.trace(corner_of(angle), array, num_rays=2000).select("T 'left' 'right' R")
         assert ep.validity(paths).left_share == pytest.approx(left, abs=SUMS), angle
+
+
+def test_over_two_square_corners_either_bounce_may_come_first():
+    """From wall to wall of a metal room at rest, over floor and roof: past the middle of the room the wave meets the other of
+    both planes at each corner first, with the image, length and field of the other order."""
+    low, high = np.array([-3.0, -0.7, 0.0]), np.array([5.0, 0.7, 1.15])
+    room = {}
+    for name, axis, at in (("floor", 2, low), ("roof", 2, high), ("right", 1, low), ("left", 1, high)):
+        one, other = (k for k in range(3) if k != axis)
+        corners = np.tile(np.where(np.arange(3) == axis, at, low), (4, 1))
+        corners[1:3, one], corners[2:, other] = high[one], high[other]
+        room[name] = corners
+    scene = ep.Scene()
+    for name, corners in room.items():
+        scene.add(ep.Mesh(corners, [(0, 1, 2), (0, 2, 3)]), name=name, material=shapes.METAL)
+    radar = build_radar([(0.9, 0.0, 1.1), (0.9, 0.03, 1.1)], [(0.92, -0.03, 1.1), (0.92, 0.02, 1.1)], num_samples=64)
+    order = ["floor", "right", "roof", "floor", "left"]
+    either = "T ('floor' 'right' | 'right' 'floor') 'roof' ('floor' 'left' | 'left' 'floor') R"
+    paths = ep.trace(scene, radar, num_rays=50_000, max_bounces=5).select(either)
+    assert paths.num_paths == 1
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    for tx, rx in np.ndindex(2, 2):
+        image = np.array(radar.transmitters[tx].position, float)
+        for name in order:
+            axis = 2 if name in ("floor", "roof") else 1
+            image[axis] = 2.0 * room[name][0, axis] - image[axis]
+        length = np.linalg.norm(image - radar.receivers[rx].position)
+        assert paths.lengths([0.0], tx, rx)[0, 0] == pytest.approx(length, abs=1e-9)
+        field = wavelength * np.sqrt(radar.transmit_power) / (4.0 * np.pi * length)
+        assert abs(paths.amplitudes([0.0], tx, rx)[0, 0]) == pytest.approx(field, rel=1e-3)
+    report = ep.validity(paths)
+    assert report.ok and report.left_share == 0.0

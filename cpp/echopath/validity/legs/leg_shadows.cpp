@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace echopath {
@@ -12,7 +13,23 @@ constexpr double kSamePlace = 1e-6;         // m: bounces at an edge where two m
 constexpr double kOnMirrorAbsolute = 1e-3;  // m: how far before its place a leg may meet another mirror's edge
 constexpr double kOnMirrorRelative = 1e-5;
 constexpr double kOneImage = 2e-5;  // m: images as near to each other are one; .03 rad at 77 GHz
-constexpr int kMostInTurn = 4;      // mirrors of a chain that are tried in other orders
+constexpr int kMostInTurn = 4;      // mirrors of a chain that are tried in all other orders
+constexpr int kMostSwapped = 10;    // of a longer chain, of which neighbours are swapped
+constexpr double kSquare = 1e-4;    // cosine
+
+// Swaps neighbours in `order`, from a place on, in all ways in which each is swapped once at most and is square to the
+// other, until `try_order` returns true; returns whether it did. The order is then that one, else as it was.
+template <class Try>
+bool swap_neighbours(std::span<const PosedHit> mirrors, std::vector<int>& order, size_t from, bool is_changed,
+                     Try& try_order) {
+  if (from + 1 >= order.size()) return is_changed && try_order();
+  if (swap_neighbours(mirrors, order, from + 1, is_changed, try_order)) return true;
+  if (std::abs(mirrors[from].normal.dot(mirrors[from + 1].normal)) > kSquare) return false;
+  std::swap(order[from], order[from + 1]);
+  if (swap_neighbours(mirrors, order, from + 2, true, try_order)) return true;
+  std::swap(order[from], order[from + 1]);
+  return false;
+}
 
 }  // namespace
 
@@ -116,7 +133,7 @@ void LegTester::test(const End& from, int first, int last, const End& to) {
 // Mirrors that are square to each other have one image in whatever order, so beyond the edge where they meet a wave of the
 // same length takes them in another one. Tests the legs of that, and returns whether there is one.
 bool LegTester::test_in_another_order(const End& from, int first, int last, const End& to) {
-  if (last - first < 2 || last - first > kMostInTurn) return false;
+  if (last - first < 2 || last - first > kMostSwapped) return false;
   const Vec3 image = image_over(chain_of(hits_, first, last), from.point);
   std::vector<int> order(static_cast<size_t>(last - first));
   std::iota(order.begin(), order.end(), first);
@@ -124,19 +141,23 @@ bool LegTester::test_in_another_order(const End& from, int first, int last, cons
   std::vector<LocalHit> local(path_.hits, path_.hits + path_.count);
   LocalPath path = path_;
   path.hits = local.data();
-  while (std::ranges::next_permutation(order).found) {
+  const auto try_order = [&] {
     for (size_t k = 0; k < order.size(); ++k) {
       posed[static_cast<size_t>(first) + k] = hits_[order[k]];
       local[static_cast<size_t>(first) + k] = path_.hits[order[k]];
     }
     const std::span<const PosedHit> mirrors = chain_of(posed.data(), first, last);
-    if ((image_over(mirrors, from.point) - image).norm() > kOneImage) continue;
+    if ((image_over(mirrors, from.point) - image).norm() > kOneImage) return false;
     LegTester other(geometry_, path, posed.data());
-    if (find_reflections(mirrors, from.point, to.point, other.image_points_ + first, kSamePlace)) continue;
+    if (find_reflections(mirrors, from.point, to.point, other.image_points_ + first, kSamePlace)) return false;
     other.test_legs(from, first, last, to);
-    if (other.shadows_.off_mirror != 0) continue;
+    if (other.shadows_.off_mirror != 0) return false;
     shadows_.add(other.shadows_);
     return true;
+  };
+  if (last - first > kMostInTurn) return swap_neighbours(chain_of(hits_, first, last), order, 0, false, try_order);
+  while (std::ranges::next_permutation(order).found) {
+    if (try_order()) return true;
   }
   return false;
 }

@@ -102,6 +102,7 @@ class Live:
         self._changes = Changes()
         self._scene, self._radar = EditedScene(scene, self._changes), radar
         self._busy = threading.Lock()  # held while a signal is brought up to date
+        self._busy_thread: int | None = None  # which one holds it
         self._selections = parts
         self._full = self._kept(num_rays)
         self._quick: KeptSignal | None = None
@@ -170,12 +171,13 @@ class Live:
         """The view of the scene as it is now.
 
         progress: callable (stage, fraction), True for bars, or None; what it raises ends the update and is raised here
-        Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then. Warns as `trace`
-        of the scene, and of rays, mirrors and objects that are left out where all rays are shot; as `simulate` where nothing is
-        heard; and (RuntimeWarning) of rain, other radars and faults of the receiver, which views do not have.
+        Raises ValueError as `trace` does, and RuntimeError where a progress callable of this Live asks for it. Nothing is lost
+        then: the next update shows what the scene is by then. Warns as `trace` of the scene, and of rays, mirrors and objects
+        that are left out where all rays are shot; as `simulate` where nothing is heard; and (RuntimeWarning) of rain, other
+        radars and faults of the receiver, which views do not have.
         """
         seen = self._snapshot()
-        with self._busy:
+        with self._alone():
             return self._view_of(self._full, seen, is_preview=False, progress=progress)
 
     @checked(self=anything, num_rays=count(1, MOST_RAYS))
@@ -186,7 +188,7 @@ class Live:
         progress: as in `update`
         """
         seen = self._snapshot()
-        with self._busy:
+        with self._alone():
             if self._quick is None or self._quick.num_rays != num_rays:
                 self._quick = self._kept(int(num_rays))
             return self._view_of(self._quick, seen, is_preview=True, progress=progress)
@@ -198,7 +200,7 @@ class Live:
         preview: of the last `preview` instead, which has fewer rays; progress: as in `update`
         Raises ValueError before the first update or preview.
         """
-        with self._busy:
+        with self._alone():
             kept = self._quick if preview else self._full
             if kept is None:
                 raise ValueError("preview: no preview was made yet")
@@ -221,6 +223,18 @@ class Live:
 
     def _kept(self, num_rays: int) -> KeptSignal:
         return KeptSignal(num_rays, self._trace, self._signal, self._selections)
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Waits until no other thread brings a signal up to date. Raises RuntimeError where this thread is at it."""
+        if self._busy_thread == threading.get_ident():
+            raise RuntimeError("Live: a progress callable must not ask for views or paths of the Live whose view is being made")
+        with self._busy:
+            self._busy_thread = threading.get_ident()
+            try:
+                yield
+            finally:
+                self._busy_thread = None
 
     def _snapshot(self) -> _Seen:
         """What is to be seen now. It is taken before `_busy`, which a change that is being made may wait for."""

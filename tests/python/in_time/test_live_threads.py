@@ -124,3 +124,18 @@ def test_a_view_from_within_a_change_does_not_wait_for_one_from_outside(look):
     assert live.scene["plate"].position[0] == pytest.approx(5.0 + 10 * STEP[0])
     fresh = ep.Live(live.scene, live.radar, num_rays=500).update()
     assert fresh.cube.any() and np.abs(live.update().cube - fresh.cube).max() <= 1e-12 * np.abs(fresh.cube).max()
+
+
+@pytest.mark.parametrize("ask", [ep.Live.update, ep.Live.paths, lambda live: live.preview(num_rays=200)],
+                         ids=["update", "paths", "preview"])
+def test_a_progress_callable_that_asks_for_another_view_is_refused(ask):
+    """It would wait for the view that it is called by."""
+    live = small_live()
+    for make in (live.update, lambda progress: live.preview(num_rays=100, progress=progress)):
+
+        def refused(make=make):
+            with pytest.raises(RuntimeError, match="must not ask for views or paths of the Live"):
+                make(progress=lambda stage, fraction: ask(live))
+
+        run_together(refused)
+        assert np.array_equal(live.update().cube, small_live().update().cube)

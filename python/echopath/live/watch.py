@@ -62,8 +62,10 @@ class Watch:
     def wait(self, timeout: float | None = None) -> bool:
         """Waits until the full view of the latest change was shown. timeout: s, None: for ever. Returns whether it was.
 
-        Raises what ended the watch.
+        Raises what ended the watch, and RuntimeError in `show`, which it would wait for.
         """
+        if threading.current_thread() is self._thread and self._error is None:
+            raise RuntimeError("wait: must not be called by what shows the views of this watch")
         with self._shown_one:
             done = self._shown_one.wait_for(
                 lambda: self._error is not None or self._stopping or self._shown == self._changes.number, timeout)

@@ -48,6 +48,22 @@ def test_a_watch_that_its_view_leaves_is_told(live):
     assert repr(watch) == "Watch(ended by SystemExit('closed'), nothing shown in full)"
 
 
+def test_what_shows_a_view_cannot_wait_for_it(live):
+    """It would wait for itself."""
+    made = threading.Event()
+
+    def show(view):
+        made.wait(LONG)
+        watch.wait(LONG)
+
+    watch = live.watch(show)
+    made.set()
+    with pytest.raises(RuntimeError, match="^wait: must not be called by what shows"):
+        watch.wait(LONG)
+    with pytest.raises(RuntimeError, match="^wait: must not be called by what shows"):
+        watch.stop()
+
+
 def test_a_watch_shows_what_is_edited_directly(live):
     shown = Shown()
     with live.watch(shown) as watch:

@@ -4,6 +4,7 @@
 
 #include "call/errors.h"
 #include "call/leaving.h"
+#include "call/unmade.h"
 
 namespace echopath::bindings {
 
@@ -22,4 +23,5 @@ PYBIND11_MODULE(_core, m) {
 #define X(module) bindings::bind_##module(m);
   ECHOPATH_BIND_MODULES
 #undef X
+  bindings::refuse_unmade(m);
 }

@@ -26,9 +26,9 @@ TEST(Cfar, EachCellHasAsManyTrainingCellsInsideTheMapAndBeyondTheGuard) {
       int64_t inner = 0;
       for (const CellSpan& span : inner_spans(w, r, num_ranges)) {
         inner += span.count;
-        if (span.count == 0) continue;
         EXPECT_GE(span.first, 0);
         EXPECT_LE(span.first + span.count, num_ranges);
+        if (span.count == 0) continue;
         EXPECT_TRUE(span.first + span.count <= r - w.guard_range || span.first > r + w.guard_range);
       }
       EXPECT_EQ(inner, 2 * w.training_range);

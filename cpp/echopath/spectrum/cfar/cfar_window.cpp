@@ -35,7 +35,9 @@ std::array<CellSpan, 2> inner_spans(const CfarWindow& window, int64_t range, int
   const int64_t room_left = std::max<int64_t>(0, range - guard);
   const int64_t room_right = std::max<int64_t>(0, num_ranges - 1 - range - guard);
   const int64_t left = std::min(room_left, std::max(training, 2 * training - room_right));
-  return {{{range - guard - left, left}, {range + guard + 1, 2 * training - left}}};
+  // Spans of no cells stand on the axis, too.
+  return {
+      {{std::max<int64_t>(0, range - guard - left), left}, {std::min(range + guard + 1, num_ranges), 2 * training - left}}};
 }
 
 CellSpan outer_span(const CfarWindow& window, int64_t range, int64_t num_ranges) {

@@ -18,7 +18,7 @@ ReceivedPower power_of(const Paths& paths, int tx, int rx, const py::object& pro
   return run_job("received power", progress, [&](Job& job) { return received_power(paths, &job, {tx, rx}); });
 }
 
-using Groups = py::array_t<uint32_t, py::array::c_style | py::array::forcecast>;
+using Groups = py::array_t<uint32_t, kAsVector>;
 
 Sorting as_sorting(const Groups& groups, size_t num_groups) {
   return {{groups.data(), static_cast<size_t>(groups.size())}, num_groups};

@@ -47,10 +47,8 @@ struct PassRows {
     constexpr const char* kRule = "must be an array [N] of (mesh_id, triangle_id, u, v, leg) as Paths.passes has it";
     const StructuredArray<PassRow> rows = structured_array<PassRow>(value, argument, kRule);
     Value passes;
-    for (py::ssize_t i = 0; i < rows.size(); ++i) {
-      const PassRow& row = rows.data()[i];
-      passes.push_back({{row.mesh_id, row.triangle_id, row.u, row.v}, row.leg});
-    }
+    // NumPy takes structs for aligned at any address: they are copied before they are read.
+    for (const PassRow& row : vector_of(rows)) passes.push_back({{row.mesh_id, row.triangle_id, row.u, row.v}, row.leg});
     return passes;
   }
 };

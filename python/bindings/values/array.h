@@ -27,8 +27,11 @@ using Shape = std::vector<py::ssize_t>;
 using IndexTriple = std::array<uint32_t, 3>;
 using IndexPair = std::array<int64_t, 2>;
 
-// `value` as a contiguous array of T with that shape. T: double takes real numbers, std::complex<double> real and complex
-// ones, an integer type integers within its range, bool only bool. Lists and tuples of numbers will do.
+// Of arrays whose memory is read as that of a vector: numbers of NumPy may stand at any address, as in the midst of a file.
+constexpr int kAsVector = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+
+// `value` as a contiguous and aligned array of T with that shape. T: double takes real numbers, std::complex<double> real
+// and complex ones, an integer type integers within its range, bool only bool. Lists and tuples of numbers will do.
 template <class T>
 py::array_t<T, py::array::c_style> checked_array(py::handle value, std::string_view argument, std::string_view shape);
 
@@ -130,7 +133,7 @@ void require_range(const py::array& array, std::string_view argument, int64_t lo
 
 template <class T>
 py::array_t<T, py::array::c_style> checked_array(py::handle value, std::string_view argument, std::string_view shape) {
-  using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+  using Array = py::array_t<T, kAsVector>;
   py::array array;
   if constexpr (std::is_same_v<T, bool>) {
     array = detail::array_of_kind(value, argument, shape, "b", "bool");

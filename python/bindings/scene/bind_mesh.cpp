@@ -160,9 +160,9 @@ std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double uni
 }
 
 // (edge, radius, curved_area, area), or None.
-std::optional<std::array<double, 4>> tessellation_of_mesh(const std::shared_ptr<Mesh>& mesh) {
+std::optional<std::array<double, 4>> tessellation_of_mesh(const Mesh& mesh) {
   const WithoutGil released;
-  const std::optional<Tessellation> found = tessellation_of(*mesh);
+  const std::optional<Tessellation> found = tessellation_of(mesh);
   if (!found) return std::nullopt;
   return std::array<double, 4>{found->edge, found->radius, found->curved_area, found->area};
 }

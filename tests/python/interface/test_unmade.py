@@ -31,3 +31,8 @@ def test_a_class_that_reads_itself_before_it_is_made_is_told_so():
 def test_calls_refuse_objects_that_are_not_made():
     with pytest.raises(TypeError, match="not made yet"):
         ep.Mesh.__new__(ep.Mesh) == ep.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+
+
+def test_a_mesh_that_is_none_is_refused():
+    with pytest.raises(TypeError, match="tessellation"):
+        _core.tessellation(None)

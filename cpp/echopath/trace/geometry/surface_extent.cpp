@@ -123,7 +123,8 @@ double SurfaceAround::end_before(double beyond, const Vec3& along) const {
     known = std::max(next, known + step);
     if (known >= beyond) return beyond;
     if (beyond - known < 4.0 * gap_) continue;
-    const double middle = 0.5 * (known + beyond), end = end_of_triangle_at(along, middle);
+    // A leap no longer than the way so far overlooks no gap that is wider than it, behind which another body may stand.
+    const double middle = std::min(0.5 * (known + beyond), 2.0 * known), end = end_of_triangle_at(along, middle);
     if (end < 0) beyond = middle;
     else known = std::max(end, middle);
     if (known >= beyond) return beyond;

@@ -64,6 +64,14 @@ struct LitSurface {
   }
 };
 
+// Parts of a distance at which a surface is looked for: one beyond a gap, such as the next house in a row, is another.
+constexpr std::array kParts = {0.125, 0.25, 0.5, 1.0};
+
+// Returns whether the surface is there at all parts of the distance (m).
+bool goes_on(const SurfaceAround& surface, const Vec3& along, double distance) {
+  return std::ranges::all_of(kParts, [&](double part) { return surface.reaches(along, part * distance); });
+}
+
 class AxisCover {
  public:
   // All must outlive it.
@@ -100,7 +108,7 @@ class AxisCover {
   bool is_ample(double ample, const std::array<Vec3, 2>& ways) {
     double width = 0.0;
     for (const Vec3& way : ways) width += mirror_.distance_to_rim(way);
-    return width >= ample || mirror_.is_at(ways[0], ample) || mirror_.is_at(ways[1], ample);
+    return width >= ample || goes_on(mirror_, ways[0], ample) || goes_on(mirror_, ways[1], ample);
   }
 
   // Returns whether the wall at an end rises to where the waves between the antennas, unfolded, and the zone beyond the wall
@@ -137,8 +145,7 @@ class AxisCover {
 double closeness_of_edge(const SurfaceAround& mirror, const Vec3& point, const Vec3& half, const Plane* next) {
   const double length = half.norm();
   const Vec3 along = half / length;
-  // A surface beyond a gap, such as the next house in a row, is not the mirror's.
-  for (const double part : {0.125, 0.25, 0.5, 1.0}) {
+  for (const double part : kParts) {
     const double reach = part * kFaded * length;
     if (mirror.reaches(along, reach)) continue;
     const SurfaceEnd end = mirror.find_end(along, reach);

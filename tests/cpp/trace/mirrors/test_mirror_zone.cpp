@@ -73,6 +73,23 @@ TEST(MirrorZone, PlatesThatAbutAreOneSurface) {
   EXPECT_TRUE(plates.reaches(Vec3::UnitX(), 1.69));
 }
 
+// The flanks of two cars in a row, each in two halves: where the point's own triangle ends makes no difference.
+TEST(MirrorZone, ASurfaceEndsBeforeAGapHoweverItIsCut) {
+  for (const double x : {-0.9, -0.7, -0.5, -0.3, 0.1, 0.5, 0.9}) {
+    for (const double y : {-0.45, 0.05, 0.35}) {
+      Plates plates;
+      plates.add("first half", Vec3(-1, -0.5, 0), Vec3(0.8, 0, 0), Vec3(0, 1, 0));
+      plates.add("second half", Vec3(-0.2, -0.5, 0), Vec3(1.2, 0, 0), Vec3(0, 1, 0));
+      plates.add("next", Vec3(4, -0.5, 0), Vec3(20, 0, 0), Vec3(0, 1, 0));
+      plates.look_at(x, y);
+      EXPECT_NEAR(plates.end(Vec3::UnitX()).distance, 1 - x, kRounding) << x << ' ' << y;
+      EXPECT_NEAR(plates.end_of_plane(Vec3::UnitX()).distance, 1 - x, kRounding) << x << ' ' << y;
+      // At a grazing incidence of .02 rad the zone is 2 sqrt(.004 m 5 m)/.02 long, and narrower than the plates.
+      EXPECT_NEAR(plates.cover(10, 10, Vec3(1, 0, -0.02).normalized()).share, 0.02 / std::sqrt(0.02), 1e-3) << x << ' ' << y;
+    }
+  }
+}
+
 TEST(MirrorZone, AStepEndsASurface) {
   Plates plates;
   plates.add("plate", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));

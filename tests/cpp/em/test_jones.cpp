@@ -38,10 +38,16 @@ Case random_case(std::mt19937& random) {
 
 std::complex<double> dot(const Vec3& a, const FieldVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
+// Along the axes of the direction at the trace.
+Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction, const Vec3& at_trace) {
   const auto unpacked = [](const Vec3& v) { return VectorOf<double>{v[0], v[1], v[2]}; };
-  const TransverseOf<double> found = transverse_of<ScalarMath>(unpacked(polarization), unpacked(direction));
+  const VectorOf<double> line = unpacked(direction);
+  const TransverseOf<double> found =
+      transverse_of<ScalarMath>(unpacked(polarization), line, axes_across<ScalarMath>(unpacked(at_trace)));
   return {found.horizontal, found.vertical};
+}
+Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
+  return transverse_components(polarization, direction, direction);
 }
 
 TEST(Jones, ConductorIsItsPhysicalOptics) {
@@ -168,6 +174,22 @@ TEST(Jones, ComponentsOfTheOppositeDirectionDifferInOneSign) {
     EXPECT_NEAR(found[0], across.normalized().dot(there.horizontal), 1e3 * kRounding);  // of vectors that may all but meet
     EXPECT_NEAR(found[1], across.normalized().dot(there.vertical), 1e3 * kRounding);
     EXPECT_EQ(transverse_components(at.out, -direction), Eigen::Vector2d(-found[0], found[1]));
+  }
+}
+
+// The least rotation from one direction to another turns about the normal of their plane, about z as elsewhere.
+TEST(Jones, AxesAreCarriedByTheLeastRotation) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 100; ++i) {
+    const Case at = random_case(random);
+    const Vec3 traced = i < 50 ? at.direction : Vec3(0.01 * at.direction - Vec3::UnitZ()).normalized();
+    const Vec3 direction = (traced + 0.02 * at.normal).normalized();
+    const TransverseBasis basis = transverse_basis(traced);
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(traced, direction);
+    const Vec3 across = (at.out - at.out.dot(direction) * direction).normalized();
+    const Eigen::Vector2d found = transverse_components(at.out, direction, traced);
+    EXPECT_NEAR(found[0], across.dot(turn * basis.horizontal), 1e3 * kRounding);
+    EXPECT_NEAR(found[1], across.dot(turn * basis.vertical), 1e3 * kRounding);
   }
 }
 

@@ -38,11 +38,27 @@ Line line_over(const PosedHit* hits, const Vec3& from, int first, int last, cons
   return {line.norm(), departure, arrival};
 }
 
-// The horizontal and vertical components of a polarisation, scaled to length 1; zero along the direction.
-Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
-  const TransverseBasis across = transverse_basis(direction);
-  const Eigen::Vector2d found(polarization.dot(across.horizontal), polarization.dot(across.vertical));
+// The horizontal and vertical components of a polarisation, scaled to length 1; zero along the direction. The axes are those
+// of the direction at the trace, after the least rotation to this direction.
+Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction, const Vec3& at_trace) {
+  const TransverseBasis across = transverse_basis(at_trace);
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(at_trace, direction);
+  const Eigen::Vector2d found(polarization.dot(turn * across.horizontal), polarization.dot(turn * across.vertical));
   return found.norm() > 1e-9 ? Eigen::Vector2d(found.normalized()) : Eigen::Vector2d::Zero();
+}
+
+struct Directions {
+  Vec3 departure, arrival;  // of travel at both ends, unit
+};
+// The directions at the trace, between the mean antennas; `hits` stand as they did then.
+Directions directions_at_trace(const LocalPath& path, const PosedHit* hits, const Vec3& receiver) {
+  const Vec3 ends[] = {Vec3::Zero(), receiver};
+  const Vec3 &start = ends[path.is_reversed], &end = ends[!path.is_reversed];
+  const bool has_points = path.last_material >= 0;
+  const int first = has_points ? path.first_material : path.count, last = has_points ? path.last_material + 1 : 0;
+  const Vec3 first_point = has_points ? hits[first].point : end, last_point = has_points ? hits[last - 1].point : start;
+  return {line_over(hits, start, 0, first, first_point).departure,
+          line_over(hits, last_point, last, path.count, end).arrival};
 }
 
 std::complex<double> polarized(const JonesMatrix& j, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
@@ -194,6 +210,13 @@ std::vector<PathValue> PathByPath::operator()(int64_t index) const {
   std::vector<PosedHit> recorded(static_cast<size_t>(path.count));
   for (int k = 0; k < path.count; ++k)
     pose_hit(path.hits[k], scene_, k == path.last_material, recorded[static_cast<size_t>(k)]);
+  std::vector<PosedHit> traced(recorded.size());
+  pose_hits(path, preparer_.at_trace(), traced.data());
+  const Directions at_trace = directions_at_trace(path, traced.data(), paths_.frame.receiver - paths_.frame.transmitter);
+  // Echoes between upright antennas are those of the vertical components, whatever the directions.
+  const auto is_vertical = [](const PosedAntenna& antenna) { return antenna.polarization == Vec3::UnitZ(); };
+  const bool is_upright =
+      std::ranges::all_of(scene_.transmitters, is_vertical) && std::ranges::all_of(scene_.receivers, is_vertical);
   const Cell cell = path.last_material < 0 ? Cell{} : cell_of(path, p);
   std::vector<PathValue> values;
   for (const PosedAntenna& transmitter : scene_.transmitters) {
@@ -209,8 +232,10 @@ std::vector<PathValue> PathByPath::operator()(int64_t index) const {
       PathValue value{walk.length(), bare, std::abs(bare)};
       if (!paths_.jones.empty()) {
         const JonesMatrix& matrix = paths_.jones[p];
-        value.amplitude *= polarized(matrix, transverse_components(start.polarization, walk.departure()),
-                                     transverse_components(end.polarization, walk.arrival()));
+        const Directions own{walk.departure(), walk.arrival()};
+        const Directions& of_axes = is_upright && path.last_material >= 0 ? own : at_trace;
+        value.amplitude *= polarized(matrix, transverse_components(start.polarization, own.departure, of_axes.departure),
+                                     transverse_components(end.polarization, own.arrival, of_axes.arrival));
         value.largest *= largest_factor(matrix);
       }
       values.push_back(value);

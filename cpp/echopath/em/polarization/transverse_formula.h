@@ -6,30 +6,52 @@
 
 namespace echopath {
 
+inline constexpr double kLeastSineSquared = 1e-18;  // squared sines of angles below count as 0
+
 template <class Real>
 struct TransverseOf {
   Real horizontal, vertical;
 };
 
-// Returns the components along the axes of transverse_basis, scaled to length 1. `line` points along the direction and may
-// have any length. Gain patterns hold the nulls of antennas, so that an isotropic one has none along its polarisation
-// either: there its field points up, or along x of the world where the direction is that of z, the same for waves of both
-// senses.
+// Holds the axes of transverse_basis and their direction, unit vectors. `unseen` are the components of the field that an
+// antenna without a null has along its polarisation: it points up, or along x of the world where the direction is that of z,
+// the same for waves of both senses.
+template <class Real>
+struct AxesAcross {
+  VectorOf<Real> direction, horizontal, vertical;
+  TransverseOf<Real> unseen;
+};
+
+// `line` points along the direction and may have any length.
 template <class Math, class Real>
-ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& line) {
-  constexpr double kLeast = 1e-18;  // squares of sines below count as 0
+ECHOPATH_INLINE AxesAcross<Real> axes_across(const VectorOf<Real>& line) {
   const Real level = line.x * line.x + line.y * line.y, square = level + line.z * line.z;
-  const auto is_along_z = level <= kLeast * square;
-  const Real off_axis = Math::root(square) * (polarization.y * line.x - polarization.x * line.y);
-  const Real upward = polarization.z * level - line.z * (polarization.x * line.x + polarization.y * line.y);
-  const Real horizontal = is_along_z ? (line.z < 0.0 ? -polarization.x : polarization.x) : off_axis;
-  const Real vertical = is_along_z ? polarization.y : upward;
+  const auto is_along_z = level <= kLeastSineSquared * square;
   const Real one = Real{} + 1.0, none = Real{};
-  const Real length_squared = horizontal * horizontal + vertical * vertical, scale = is_along_z ? one : level * square;
-  const auto is_across = length_squared > kLeast * scale;
+  const Real inverse = 1.0 / Math::root(is_along_z ? one : level);
+  const Real sense = line.z < 0.0 ? -one : one;
+  const VectorOf<Real> direction = (1.0 / Math::root(square)) * line;
+  const VectorOf<Real> horizontal{is_along_z ? sense : -inverse * line.y, is_along_z ? none : inverse * line.x, none};
+  return {direction, horizontal, cross(direction, horizontal), {is_along_z ? sense : none, is_along_z ? none : one}};
+}
+
+// Returns the components of a polarisation across a direction (unit), scaled to length 1, along the axes of another one
+// after the least rotation from that to this. So the components of antennas that see a path under slightly different
+// directions belong to the same axes, wherever these point. The axes of transverse_basis at the direction itself turn about
+// it all the faster the nearer it is to z, where they have no limit.
+template <class Math, class Real>
+ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& direction,
+                                                 const AxesAcross<Real>& axes) {
+  const VectorOf<Real> across = polarization - dot(polarization, direction) * direction;
+  constexpr double kLeast = 1e-12;  // toward the opposite direction no rotation is the least
+  const Real one = Real{} + 1.0, least = Real{} + kLeast;
+  const Real turn = dot(across, axes.direction) / Math::larger(1.0 + dot(direction, axes.direction), least);
+  const Real horizontal = dot(across, axes.horizontal) - turn * dot(direction, axes.horizontal);
+  const Real vertical = dot(across, axes.vertical) - turn * dot(direction, axes.vertical);
+  const Real length_squared = horizontal * horizontal + vertical * vertical;
+  const auto is_across = length_squared > kLeastSineSquared;
   const Real inverse = 1.0 / Math::root(is_across ? length_squared : one);
-  const Real horizontal_alone = is_along_z ? (line.z < 0.0 ? -one : one) : none, vertical_alone = is_along_z ? none : one;
-  return {is_across ? inverse * horizontal : horizontal_alone, is_across ? inverse * vertical : vertical_alone};
+  return {is_across ? inverse * horizontal : axes.unseen.horizontal, is_across ? inverse * vertical : axes.unseen.vertical};
 }
 
 }  // namespace echopath

@@ -87,6 +87,28 @@ void PosedPoints::pose_stretched(const LocalHit& hit, const PathPreparer& prepar
   pad(rows, point, PointToPose::kNumRows);
 }
 
+Vec3 mean_antenna_at_trace(const Paths& paths, bool of_receivers) {
+  return of_receivers ? Vec3(paths.frame.receiver - paths.frame.transmitter) : Vec3(Vec3::Zero());
+}
+
+AxesAcross<double> ImageAtTrace::axes_toward(const Vec3& point, const Vec3& antenna) const {
+  const Vec3 line = linear.transpose() * (point - of(antenna));
+  return axes_across<ScalarMath>(VectorOf<double>{line.x(), line.y(), line.z()});
+}
+
+std::vector<ImageAtTrace> images_at_trace(const SharedLegPlan& plan, const PathPreparer& preparer) {
+  std::vector<ImageAtTrace> images(1);
+  std::deque<std::array<Vec3, 3>> normals;
+  for (size_t image = 1; image < plan.images.size(); ++image) {
+    const ImageAtTrace& parent = images[plan.images[image].parent];
+    PosedHit mirror;
+    pose_hit(preparer.hit(plan.mirrors[plan.images[image].mirror], normals), preparer.at_trace(), false, mirror);
+    const Mat3 linear = reflection(mirror.normal) * parent.linear;
+    images.push_back({linear, mirror.image(parent.translation)});
+  }
+  return images;
+}
+
 void LegTable::resize(size_t num_legs, size_t num_nodes, bool with_phases, bool with_components) {
   has_phases = with_phases;
   has_components = with_components;
@@ -215,10 +237,23 @@ void SharedLegTables::find(const SharedLegPlan& plan, const PathPreparer& prepar
   has_phases = any_phase(images[0]) || any_phase(images[1]);
   has_polarizations = needs_polarizations(preparer.paths(), nodes);
   const bool of_mirrors = !preparer.paths().jones.empty() && !plan.mirror_paths.empty();
-  if (has_polarizations || of_mirrors) find_axes(plan, mirrors, axes);
+  if (has_polarizations || of_mirrors) {
+    find_axes(plan, mirrors, axes);
+    traced_images = images_at_trace(plan, preparer);
+  }
+  if (has_polarizations) find_leg_axes(plan, preparer.paths());
   inner.find(plan, points);
   sliding.find(plan, preparer, nodes, stride);
   measure_legs(plan, nodes);
+}
+
+void SharedLegTables::find_leg_axes(const SharedLegPlan& plan, const Paths& paths) {
+  const Vec3 antenna[] = {mean_antenna_at_trace(paths, false), mean_antenna_at_trace(paths, true)};
+  leg_axes.resize(plan.legs.size());
+  for (size_t id = 0; id < plan.legs.size(); ++id) {
+    const SharedLegPlan::Leg& leg = plan.legs[id];
+    leg_axes[id] = traced_images[leg.image].axes_toward(points.traced[leg.point].position, antenna[leg.of_receivers]);
+  }
 }
 
 void SharedLegTables::measure_legs(const SharedLegPlan& plan, const PosedNodes& nodes) {
@@ -227,7 +262,8 @@ void SharedLegTables::measure_legs(const SharedLegPlan& plan, const PosedNodes& 
   for (size_t id = 0; id < plan.legs.size(); ++id) {
     const auto& [image, point, of_receivers] = plan.legs[id];
     for (size_t antenna = 0; antenna < images[of_receivers].num_antennas; ++antenna) {
-      measure({of_receivers, image, antenna}, points.rows.row(point, 0), nodes, id * stride + antenna, legs);
+      measure({of_receivers, image, antenna, axes_of(static_cast<uint32_t>(id))}, points.rows.row(point, 0), nodes,
+              id * stride + antenna, legs);
     }
   }
   sliding.legs.resize(plan.sliding.size() * stride, num_nodes, has_phases, has_polarizations);
@@ -235,8 +271,8 @@ void SharedLegTables::measure_legs(const SharedLegPlan& plan, const PosedNodes& 
     if (chain.slide == SharedLegPlan::kNone) continue;
     for (size_t antenna = 0; antenna < images[chain.is_reversed].num_antennas; ++antenna) {
       const size_t entry = chain.slide * stride + antenna;
-      measure({chain.is_reversed, plan.legs[chain.start].image, antenna}, sliding.points.row(entry, 0), nodes, entry,
-              sliding.legs);
+      measure({chain.is_reversed, plan.legs[chain.start].image, antenna, axes_of(chain.start)}, sliding.points.row(entry, 0),
+              nodes, entry, sliding.legs);
     }
   }
 }
@@ -249,8 +285,9 @@ void SharedLegTables::measure(const ImageOfAntenna& from, const double* point, c
   if (!to.has_components) return;
   const double* own = nodes.polarizations[from.of_receivers].row(from.antenna, 0);
   shared_leg_kernels(axes.stride())
-      .find_components({seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, to.components.row(leg, 0)},
-                       axes.stride());
+      .find_components(
+          {seen.rows.row(entry, 0), axes.row(from.image, 0), own, point, *from.recorded, to.components.row(leg, 0)},
+          axes.stride());
 }
 
 size_t SharedLegTables::num_bytes() const {

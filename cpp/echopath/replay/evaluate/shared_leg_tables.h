@@ -49,6 +49,20 @@ struct AntennaImages {
   void finish(size_t entry, const double* point, double* out, double* phase) const;
 };
 
+// Returns where the mean antenna of an end was at the trace, in m relative to the origin of posed scenes.
+Vec3 mean_antenna_at_trace(const Paths& paths, bool of_receivers);
+
+// Maps an antenna to an image of it, as the mirrors stood at the trace.
+struct ImageAtTrace {
+  Mat3 linear = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();  // m
+
+  Vec3 of(const Vec3& antenna) const { return linear * antenna + translation; }
+  // Returns the axes at the antenna across the line from its image to a point.
+  AxesAcross<double> axes_toward(const Vec3& point, const Vec3& antenna) const;
+};
+std::vector<ImageAtTrace> images_at_trace(const SharedLegPlan& plan, const PathPreparer& preparer);
+
 // Holds the legs from images of antennas to points.
 struct LegTable {
   NodeRows rows;        // [leg], LegToMeasure::Row
@@ -91,20 +105,24 @@ LocalPath path_of(const SharedLegPlan::Inner& inner);
 struct SharedLegTables {
   PosedPoints points;
   NodeRows mirrors;
-  AntennaImages images[2];  // of transmitters, of receivers
-  NodeRows axes;            // [image], ComponentsToFind::AxisRow, where polarisations are asked for
-  size_t stride = 0;        // number of antennas of the end that has more
-  LegTable legs;            // of leg * stride + antenna
+  AntennaImages images[2];                   // of transmitters, of receivers
+  NodeRows axes;                             // [image], ComponentsToFind::AxisRow, where polarisations are asked for
+  std::vector<ImageAtTrace> traced_images;   // [image], likewise
+  std::vector<AxesAcross<double>> leg_axes;  // [leg] those of the matrices of its paths, where legs have components
+  size_t stride = 0;                         // number of antennas of the end that has more
+  LegTable legs;                             // of leg * stride + antenna
   InnerPartTable inner;
   SlidingParts sliding;
   bool has_phases = false, has_polarizations = false;
 
   void find(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes);
-  // Measures the leg from an image of an antenna to a point (PointToPose::Row).
+  // Measures the leg from an image of an antenna to a point (PointToPose::Row). Where it has components, `recorded` are the
+  // axes of the matrix.
   struct ImageOfAntenna {
     bool of_receivers;
     uint32_t image;
     size_t antenna;
+    const AxesAcross<double>* recorded;
   };
   void measure(const ImageOfAntenna& from, const double* point, const PosedNodes& nodes, size_t leg, LegTable& to) const;
   // Returns whether polarisations must be evaluated at all nodes, because they differ from path to path or from node to node
@@ -115,6 +133,8 @@ struct SharedLegTables {
   size_t num_bytes() const;  // of what is kept for the next block
 
  private:
+  void find_leg_axes(const SharedLegPlan& plan, const Paths& paths);
+  const AxesAcross<double>* axes_of(uint32_t leg) const { return has_polarizations ? &leg_axes[leg] : nullptr; }
   void measure_legs(const SharedLegPlan& plan, const PosedNodes& nodes);
 };
 

@@ -192,6 +192,14 @@ void SharedLegEvaluation::turn_phase(const MeasuredLeg& start, const MeasuredLeg
   }
 }
 
+// Returns the axes of the matrix of a path over flagged mirrors alone, at the transmitter and at the receiver.
+std::array<AxesAcross<double>, 2> SharedLegEvaluation::axes_at_ends(const SharedLegPlan::MirrorPath& path) const {
+  if (paths_->jones.empty()) return {};
+  const Vec3 transmitter = mean_antenna_at_trace(*paths_, false), receiver = mean_antenna_at_trace(*paths_, true);
+  const ImageAtTrace& image = tables_.traced_images[path.image];
+  return {image.axes_toward(receiver, transmitter), ImageAtTrace().axes_toward(image.of(transmitter), receiver)};
+}
+
 // Each end sees the other over the mirrors: one leg leads from the transmitter's image to the receiver, and one back.
 void SharedLegEvaluation::evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes,
                                            const ChannelSpan& channels, double scale) {
@@ -200,10 +208,11 @@ void SharedLegEvaluation::evaluate_mirrors(const SharedLegPlan::MirrorPath& path
   mirror_legs_.resize(2, nodes.size(), tables_.has_phases, !paths_->jones.empty());
   const MeasuredLeg start{mirror_legs_, 0}, back{mirror_legs_, 1};
   const ComplexOf<double> weight{scale * path.weight.real(), scale * path.weight.imag()};
+  const std::array<AxesAcross<double>, 2> recorded = axes_at_ends(path);
   for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
     const size_t of_all = channels.first + channel;
-    const SharedLegTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_},
-                                                    {true, 0, of_all % num_receivers_}};
+    const SharedLegTables::ImageOfAntenna ends[] = {{false, path.image, of_all / num_receivers_, &recorded[0]},
+                                                    {true, 0, of_all % num_receivers_, &recorded[1]}};
     for (const size_t end : {0, 1}) {
       const SharedLegTables::ImageOfAntenna& other = ends[1 - end];
       const AntennaImages& images = tables_.images[other.of_receivers];

@@ -109,6 +109,7 @@ class SharedLegEvaluation {
   void turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
+  std::array<AxesAcross<double>, 2> axes_at_ends(const SharedLegPlan::MirrorPath& path) const;
   void evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
                         double scale);
   bool turns(uint32_t leg) const;

@@ -70,11 +70,13 @@ void SingleBounceEvaluation::begin(const PathPreparer& preparer, const PosedNode
     axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
     axes = axes_.row(0, 0);
   }
+  const Vec3 recorded_transmitter = mean_antenna_at_trace(preparer.paths(), false),
+             recorded_receiver = mean_antenna_at_trace(preparer.paths(), true);
   work_ = {&slots_,
            false,
            {antennas_[0].data(), antennas_[1].data()},
            {antennas_[0].size(), antennas_[1].size()},
-           is_monostatic(nodes),
+           is_monostatic(nodes) && (!axes || recorded_receiver == recorded_transmitter),
            channels.first,
            channels.nodes.size(),
            num_nodes,
@@ -82,6 +84,8 @@ void SingleBounceEvaluation::begin(const PathPreparer& preparer, const PosedNode
            radio.filter(),
            kNoFacets,
            axes,
+           {{recorded_transmitter.x(), recorded_transmitter.y(), recorded_transmitter.z()},
+            {recorded_receiver.x(), recorded_receiver.y(), recorded_receiver.z()}},
            legs_.data(),
            out_.data(),
            turned_,

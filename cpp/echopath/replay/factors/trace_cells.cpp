@@ -18,14 +18,7 @@ PlacedCell place(const LaunchCell& cell, const CellTangents& tangents, const Pos
 }  // namespace
 
 TraceCells::TraceCells(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedPoints& points)
-    : plan_(plan), preparer_(preparer), points_(points), origin_{Vec3::Zero()} {
-  std::deque<std::array<Vec3, 3>> normals;
-  for (size_t image = 1; image < plan.images.size(); ++image) {
-    PosedHit mirror;
-    pose_hit(preparer.hit(plan.mirrors[plan.images[image].mirror], normals), preparer.at_trace(), false, mirror);
-    origin_.push_back(mirror.image(origin_[plan.images[image].parent]));
-  }
-}
+    : plan_(plan), preparer_(preparer), points_(points), images_(images_at_trace(plan, preparer)) {}
 
 double TraceCells::density_of(const SharedLegPlan::ChainPath& chain) const {
   const Paths& paths = preparer_.paths();
@@ -44,7 +37,8 @@ bool TraceCells::has_cell(const SharedLegPlan::ChainPath& chain) const {
 
 TraceCells::Arrival TraceCells::arrival_of(const SharedLegPlan::ChainPath& chain) const {
   const SharedLegPlan::Leg& start = plan_.legs[chain.start];
-  const Vec3 line = points_.traced[start.point].position - origin_[start.image];
+  const Vec3 transmitter = mean_antenna_at_trace(preparer_.paths(), false);
+  const Vec3 line = points_.traced[start.point].position - images_[start.image].of(transmitter);
   const double length = line.norm();
   if (chain.inner == SharedLegPlan::kNone) return {length, line / length};
   const SharedLegPlan::Inner& inner = plan_.inner[chain.inner];

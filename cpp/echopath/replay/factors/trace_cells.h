@@ -38,7 +38,7 @@ class TraceCells {
   const SharedLegPlan& plan_;
   const PathPreparer& preparer_;
   const PosedPoints& points_;
-  std::vector<Vec3> origin_;  // [image] of the mean transmitter at the trace, m
+  std::vector<ImageAtTrace> images_;  // [image]
 };
 
 }  // namespace echopath

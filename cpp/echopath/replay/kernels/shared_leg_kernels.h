@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "echopath/base/lanes/scalar_math.h"
+#include "echopath/em/polarization/transverse_formula.h"
 #include "echopath/replay/kernels/cell_formula.h"
 
 namespace echopath {
@@ -76,12 +77,13 @@ struct AmplitudeToBound {
 };
 
 // Describes the polarisation of an antenna across a leg, as the wave departs: its horizontal and vertical components at the
-// antenna. For a wave that arrives over the same leg the horizontal component changes its sign.
+// antenna (transverse_of). For a wave that arrives over the same leg the horizontal component changes its sign.
 struct ComponentsToFind {
   enum AxisRow { kAxes, kNumAxisRows = 9 };  // of the world as they look over the mirrors of the image, one by one; unit
   enum PolarizationRow { kNumPolarizationRows = 3 };  // of the antenna, in the world
   enum Row { kHorizontal, kVertical, kNumRows };
   const double *image, *axes, *polarization, *point;
+  AxesAcross<double> recorded;  // at the antenna: those of the matrix of the path
   double* out;
 };
 

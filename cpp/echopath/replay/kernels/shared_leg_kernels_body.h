@@ -208,14 +208,27 @@ void bound(const AmplitudeToBound& work, size_t stride) {
   }
 }
 
+// Gives all lanes the same axes.
+template <class Real>
+ECHOPATH_INLINE AxesAcross<Real> in_lanes(const AxesAcross<double>& axes) {
+  const auto real = [](double x) { return Real{} + x; };
+  const auto vector = [&](const VectorOf<double>& v) { return VectorOf<Real>{real(v.x), real(v.y), real(v.z)}; };
+  return {vector(axes.direction),
+          vector(axes.horizontal),
+          vector(axes.vertical),
+          {real(axes.unseen.horizontal), real(axes.unseen.vertical)}};
+}
+
 template <class Math>
 void find_components(const ComponentsToFind& leg, size_t stride) {
+  const auto recorded = in_lanes<typename Math::Real>(leg.recorded);
   for (size_t node = 0; node < stride; node += Math::kCount) {
     const At<Math> at{node, stride};
     const auto line = at.vector(leg.point, PointToPose::kPosition) - at.vector(leg.image, LegToMeasure::kImagePosition);
     const auto along = [&](int axis) { return dot(at.vector(leg.axes, ComponentsToFind::kAxes + 3 * axis), line); };
+    const auto inverse = 1.0 / Math::root(dot(line, line));
     const VectorOf<typename Math::Real> at_antenna{along(0), along(1), along(2)};
-    const auto found = transverse_of<Math>(at.vector(leg.polarization, 0), at_antenna);
+    const auto found = transverse_of<Math>(at.vector(leg.polarization, 0), inverse * at_antenna, recorded);
     at.set(leg.out, ComponentsToFind::kHorizontal, found.horizontal);
     at.set(leg.out, ComponentsToFind::kVertical, found.vertical);
   }

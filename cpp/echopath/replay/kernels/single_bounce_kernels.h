@@ -66,13 +66,14 @@ struct SingleBouncesToEvaluate {
   size_t first_channel, num_channels;  // [tx * num_rx + rx]
   size_t num_nodes, stride;
   CellFilter filter;
-  double facet_area;    // m^2, of the mesh in hand (PathPreparer::facet_area)
-  const double* axes;   // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
-  double* legs;         // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
-  double* out;          // [channel, node, kNumRows, slot]
-  double* turned;       // [slot] 1 where the point turns its other side to the first antenna of an end on the way
-  double mirror_scale;  // RadioConstants::mirror_scale
-  double* unfiltered;   // [slot] SingleBounceEvaluation::Wanted::unfiltered, between the first antennas at the first node
+  double facet_area;            // m^2, of the mesh in hand (PathPreparer::facet_area)
+  const double* axes;           // polarised: of the world as seen from the mesh (ComponentsToFind::AxisRow); else null
+  double traced_antenna[2][3];  // m, mean transmitter and mean receiver at the trace
+  double* legs;                 // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
+  double* out;                  // [channel, node, kNumRows, slot]
+  double* turned;               // [slot] 1 where the point turns its other side to the first antenna of an end on the way
+  double mirror_scale;          // RadioConstants::mirror_scale
+  double* unfiltered;  // [slot] SingleBounceEvaluation::Wanted::unfiltered, between the first antennas at the first node
 };
 
 struct SingleBounceKernels {

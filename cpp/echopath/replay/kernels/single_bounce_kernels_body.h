@@ -22,9 +22,10 @@ ECHOPATH_INLINE PointLanes points_at(const SingleBounceSlots& slots, size_t slot
           {vector_at(slots.tangent[0], slot), vector_at(slots.tangent[1], slot)}};
 }
 
-// Returns the components (ComponentsToFind) of a leg along `line`.
+// Returns the components (ComponentsToFind) of a leg along `line`, of which `inverse` is one over the length (1/m).
 ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna,
-                                                  size_t node, const VectorOf<Vec>& line) {
+                                                  size_t node, const VectorOf<Vec>& line, Vec inverse,
+                                                  const AxesAcross<Vec>& recorded) {
   const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * paths.stride + node]; };
   const auto along = [&](int axis) {
     const int row = ComponentsToFind::kAxes + 3 * axis;
@@ -32,12 +33,18 @@ ECHOPATH_INLINE TransverseOf<Vec> transverse_over(const SingleBouncesToEvaluate&
   };
   const double* own = antenna.polarization;
   return transverse_of<LaneMath>(VectorOf<Vec>{all(value(own, 0)), all(value(own, 1)), all(value(own, 2))},
-                                 VectorOf<Vec>{along(0), along(1), along(2)});
+                                 inverse * VectorOf<Vec>{along(0), along(1), along(2)}, recorded);
+}
+
+// Returns the axes of the matrices at one end.
+ECHOPATH_INLINE AxesAcross<Vec> recorded_axes(const SingleBouncesToEvaluate& paths, int end, const VectorOf<Vec>& point) {
+  const double* antenna = paths.traced_antenna[end];
+  return axes_across<LaneMath>(VectorOf<Vec>{point.x - antenna[0], point.y - antenna[1], point.z - antenna[2]});
 }
 
 template <bool kIsPolarized>
 ECHOPATH_INLINE void measure_leg(const SingleBouncesToEvaluate& paths, const SingleBounceAntenna& antenna, size_t node,
-                                 const PointLanes& at, double* leg) {
+                                 const PointLanes& at, const AxesAcross<Vec>& recorded, double* leg) {
   const auto value = [&](int row) { return antenna.rows[static_cast<size_t>(row) * paths.stride + node]; };
   const VectorOf<Vec> line{at.point.x - value(LegToMeasure::kImagePosition),
                            at.point.y - value(LegToMeasure::kImagePosition + 1),
@@ -58,7 +65,7 @@ ECHOPATH_INLINE void measure_leg(const SingleBouncesToEvaluate& paths, const Sin
   set(SingleBouncesToEvaluate::kGain, gain);
   set(SingleBouncesToEvaluate::kCosine, cosine);
   if constexpr (kIsPolarized) {
-    const TransverseOf<Vec> found = transverse_over(paths, antenna, node, line);
+    const TransverseOf<Vec> found = transverse_over(paths, antenna, node, line, inverse, recorded);
     set(SingleBouncesToEvaluate::kHorizontal, found.horizontal);
     set(SingleBouncesToEvaluate::kVertical, found.vertical);
   }
@@ -198,11 +205,12 @@ ECHOPATH_INLINE void store_unfiltered(const SingleBouncesToEvaluate& paths, size
 }
 
 template <bool kIsPolarized>
-ECHOPATH_INLINE void measure_legs(const SingleBouncesToEvaluate& paths, size_t node, size_t slot) {
+ECHOPATH_INLINE void measure_legs(const SingleBouncesToEvaluate& paths, size_t node, size_t slot,
+                                  const AxesAcross<Vec>* recorded) {
   const PointLanes at = points_at(*paths.slots, slot);
   for (int end = 0; end < (paths.is_monostatic ? 1 : 2); ++end) {
     for (size_t a = 0; a < paths.num_antennas[end]; ++a) {
-      measure_leg<kIsPolarized>(paths, paths.antennas[end][a], node, at, leg_of(paths, node, end, a, slot));
+      measure_leg<kIsPolarized>(paths, paths.antennas[end][a], node, at, recorded[end], leg_of(paths, node, end, a, slot));
     }
   }
 }
@@ -226,9 +234,13 @@ void evaluate_all(const SingleBouncesToEvaluate& paths) {
   constexpr size_t kTogether = SingleBouncesToEvaluate::kNodesTogether;
   Mask sides[2] = {};
   for (size_t slot = 0; slot < SingleBounceSlots::kSlots; slot += kLanes) {
+    AxesAcross<Vec> recorded[2];
+    if constexpr (kIsPolarized) {
+      for (int end = 0; end < 2; ++end) recorded[end] = recorded_axes(paths, end, vector_at(paths.slots->point, slot));
+    }
     for (size_t first = 0; first < paths.num_nodes; first += kTogether) {
       const size_t end = first + kTogether < paths.num_nodes ? first + kTogether : paths.num_nodes;
-      for (size_t node = first; node < end; ++node) measure_legs<kIsPolarized>(paths, node, slot);
+      for (size_t node = first; node < end; ++node) measure_legs<kIsPolarized>(paths, node, slot, recorded);
       if (first == 0) {
         see_sides(paths, 0, slot, sides);
         store_unfiltered(paths, slot);

@@ -9,6 +9,7 @@ MATRIX_TOLERANCE = 2e-6          # of the field: weights and matrices are kept i
 PLATE_TOLERANCE = 0.002          # of the field: directions vary by as much over a plate of five wavelengths
 PATCH_TOLERANCE = 1e-4           # of the field: likewise over a patch of 0.1 mm
 BALL_TOLERANCE = 0.01            # of the field: what an even mesh and 2^14 rays leave, 0.1 dB
+REVERSAL_TOLERANCE = 0.02        # of the field: what 2^16 rays leave of an echo over two surfaces
 RIGHT_ANGLE_TOLERANCE = 2e-5  # relative: seen .006 rad off the axis, two crossed antennas are 1.8e-5 rad off a right angle
 SPLIT_TOLERANCE = 0.02           # of the power: three standard errors of the mean over the axes of 2e4 hits
 V, H = np.array((0.0, 0, 1)), np.array((0.0, 1, 0))
@@ -164,6 +165,34 @@ def test_a_ball_below_an_array_echoes_as_one_ahead(aside):
             cycles = paths.lengths([paths.frame.trace_time], tx, rx)[0] / WAVELENGTH
             echo = paths.amplitudes([paths.frame.trace_time], tx, rx)[0] @ np.exp(-2j * np.pi * cycles)
             assert abs(abs(echo) / expected - 1.0) < BALL_TOLERANCE
+
+
+@pytest.mark.parametrize("order", ["wall ball", "ball wall"])
+@pytest.mark.parametrize("steep", [0.0, 0.01, 0.2])
+def test_an_echo_over_an_unmarked_plane_does_not_depend_on_where_up_is(order, steep):
+    """One order of the bounces is the reversal of what rays bring in the other, between antennas that stand apart."""
+    towards_ball = unit(np.array((5.0, -1.0, 0.2)))
+    level = echo_over_plane(order, np.eye(3))
+    assert abs(level) > 1e-7
+    for axis in (unit(np.cross(towards_ball, V)), unit(np.cross(towards_ball, H))):
+        turn = turned_to(towards_ball, unit(V + steep * axis))
+        assert abs(echo_over_plane(order, turn) / level - 1.0) < REVERSAL_TOLERANCE
+
+
+def turned_to(first, second):
+    """[3, 3], the least rotation from one unit vector to another."""
+    axis = crossing(np.cross(first, second))
+    return np.eye(3) + axis + axis @ axis / (1 + first @ second)
+
+
+def echo_over_plane(order, turn):
+    """The field over wall and ball of a scene that is turned as a whole, sqrt(W)."""
+    wall = rectangle(turn @ (-2.0, 2, -4), turn @ (12.0, 0, 0), turn @ (0, 0, 8.0)), METAL
+    ball = sphere(turn @ (5.0, -1, 0.2), 0.3, 4), METAL, True
+    radar = radar_between(turn @ (0.0, 0, 0), turn @ (0.1, 0.3, -0.2), turn @ (0.3, -0.4, 1), turn @ (0, 0.8, 0.6))
+    paths = traced(scene_of(wall=wall, ball=ball), radar, num_rays=1 << 16)
+    first, last = order.split()
+    return fields(paths.select(f"T '{first}' '{last}' R")).sum()
 
 
 # --- A target beside a mirror ---

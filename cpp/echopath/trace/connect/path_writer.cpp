@@ -45,6 +45,7 @@ void PathWriter<Weight>::write(Connection& at, const Leg& leg, uint64_t diffuse,
   const std::complex<float> rounded(shares.opposite * weight);
   at.block.add_reversal(hits_over(ray, leg).data(), count, diffuse, rounded, ray.stratum);
   set_columns(at, leg, diffuse);
+  weight_.exchange_antennas(at, leg);
 }
 
 template <class Weight>

@@ -38,6 +38,41 @@ FieldPair scattered_back(const SurfaceHit& surface, const FieldPair& fields, con
   return out_fields;
 }
 
+// Returns the direction in which a wave leaves an antenna that reaches a point over mirrors, given in the order in which it
+// meets them.
+Vec3 departure_over(const std::vector<const Mirror*>& mirrors, const Vec3& antenna, const Vec3& point) {
+  Vec3 image = antenna;
+  for (const Mirror* mirror : mirrors) image = mirror->image(image);
+  Vec3 direction = (point - image).normalized();
+  for (size_t k = mirrors.size(); k-- > 0;) direction = mirrors[k]->mirrored(direction);
+  return direction;
+}
+
+Vec3 facet_point(const EmbreeScene& geometry, const Hit& hit) {
+  const auto [a, b, c] = geometry.corners(hit.mesh_id, hit.triangle_id);
+  return a + hit.u * (b - a) + hit.v * (c - a);
+}
+
+// Returns the components along the axes of `to` of the axes of `from` after the least rotation between both directions.
+Eigen::Matrix2d carried_axes(const Vec3& from, const Vec3& to) {
+  const TransverseBasis before = transverse_basis(from), behind = transverse_basis(to);
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(from, to);
+  Eigen::Matrix<double, 3, 2> carried, axes;
+  carried << turn * before.horizontal, turn * before.vertical;
+  axes << behind.horizontal, behind.vertical;
+  return axes.transpose() * carried;
+}
+
+// Returns a matrix whose axes at both ends were carried.
+JonesMatrix with_carried_axes(const JonesMatrix& matrix, const Eigen::Matrix2d& at_start, const Eigen::Matrix2d& at_end) {
+  Eigen::Matrix2cd entries;
+  for (int i = 0; i < 4; ++i) entries(i / 2, i % 2) = std::complex<double>(matrix[i]);
+  entries = at_end.cast<std::complex<double>>() * entries * at_start.transpose().cast<std::complex<double>>();
+  JonesMatrix out;
+  for (int i = 0; i < 4; ++i) out[i] = std::complex<float>(entries(i / 2, i % 2));
+  return out;
+}
+
 }  // namespace
 
 void JonesWeight::reflect(Ray& ray, const SurfaceHit& surface) const {
@@ -100,6 +135,23 @@ void JonesWeight::set_coherent_matrix(Connection& at, const Leg& leg) const {
 void JonesWeight::set_diffuse_matrix(Connection& at, const Leg& leg) const {
   const FieldPair fields = scattered(at.surface, at.ray.fields, at.ray.direction, leg.to_antenna);
   at.block.set_jones(components(fields, at.axes_of(leg)));
+}
+
+void JonesWeight::exchange_antennas(Connection& at, const Leg& leg) const {
+  const Vec3 &transmitter = context_.settings.transmitter, &receiver = context_.settings.receiver;
+  if (transmitter == receiver) return;
+  std::vector<const Mirror*> mirrors;
+  const auto mirror_at = [&](int hit) { return context_.surfaces.mirror(at.ray.hits[hit]); };
+  while (mirror_at(static_cast<int>(mirrors.size())) >= 0)
+    mirrors.push_back(&context_.mirrors[mirror_at(static_cast<int>(mirrors.size()))]);
+  const Vec3 first = facet_point(context_.geometry, at.ray.hits[mirrors.size()]);
+  const Eigen::Matrix2d at_start =
+      carried_axes(departure_over(mirrors, transmitter, first), departure_over(mirrors, receiver, first));
+  mirrors.clear();
+  for (int k = leg.num_bounces; k-- > 0;) mirrors.push_back(&context_.mirrors[leg.bounces[k].mirror]);
+  const Eigen::Matrix2d at_end =
+      carried_axes(-leg.at_antenna, -departure_over(mirrors, transmitter, at.surface.point.position));
+  at.block.set_jones(with_carried_axes(at.block.jones.back(), at_start, at_end));
 }
 
 // Follows the ray's way from the receiver to the transmitter at the end of `leg`, for the opposite order of its chain.

@@ -34,6 +34,7 @@ class ScalarWeight {
   void set_coherent_matrix(Connection&, const Leg&) const {}
   void set_diffuse_matrix(Connection&, const Leg&) const {}
   void set_reversed_matrix(Connection&, const Leg&) const {}
+  void exchange_antennas(Connection&, const Leg&) const {}
   void add_pair_matrices(Connection&) const {}
 
  private:
@@ -63,6 +64,9 @@ class JonesWeight {
   void set_coherent_matrix(Connection& at, const Leg& leg) const;
   void set_diffuse_matrix(Connection& at, const Leg& leg) const;
   void set_reversed_matrix(Connection& at, const Leg& leg) const;
+  // Carries the axes of the matrix of the last path, which was set over a receive leg, to the directions in which the
+  // reversal leaves the receiver for the first hit and arrives at the transmitter.
+  void exchange_antennas(Connection& at, const Leg& leg) const;
   // Adds the matrices of all pairs of legs; the ray's own way to the hit is the last of those in (jones_pairs.cpp).
   void add_pair_matrices(Connection& at) const;
 

@@ -42,12 +42,14 @@ ECHOPATH_INLINE AxesAcross<Real> axes_across(const VectorOf<Real>& line) {
 template <class Math, class Real>
 ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& direction,
                                                  const AxesAcross<Real>& axes) {
-  const VectorOf<Real> across = polarization - dot(polarization, direction) * direction;
   constexpr double kLeast = 1e-12;  // toward the opposite direction no rotation is the least
   const Real one = Real{} + 1.0, least = Real{} + kLeast;
-  const Real turn = dot(across, axes.direction) / Math::larger(1.0 + dot(direction, axes.direction), least);
-  const Real horizontal = dot(across, axes.horizontal) - turn * dot(direction, axes.horizontal);
-  const Real vertical = dot(across, axes.vertical) - turn * dot(direction, axes.vertical);
+  const auto along_axes = [&](const VectorOf<Real>& v) {
+    return VectorOf<Real>{dot(v, axes.direction), dot(v, axes.horizontal), dot(v, axes.vertical)};
+  };
+  const VectorOf<Real> own = along_axes(polarization), to = along_axes(direction);
+  const Real taken = (dot(own, to) + own.x) / Math::larger(1.0 + to.x, least);
+  const Real horizontal = own.y - taken * to.y, vertical = own.z - taken * to.z;
   const Real length_squared = horizontal * horizontal + vertical * vertical;
   const auto is_across = length_squared > kLeastSineSquared;
   const Real inverse = 1.0 / Math::root(is_across ? length_squared : one);

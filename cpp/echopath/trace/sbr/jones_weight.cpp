@@ -1,4 +1,5 @@
 // Finds the matrices of polarised paths (Paths::jones) along a ray.
+#include <algorithm>
 #include <cmath>
 
 #include "echopath/em/polarization/mirrored_fields.h"
@@ -53,14 +54,17 @@ Vec3 facet_point(const EmbreeScene& geometry, const Hit& hit) {
   return a + hit.u * (b - a) + hit.v * (c - a);
 }
 
-// Returns the components along the axes of `to` of the axes of `from` after the least rotation between both directions.
+// Returns the components along the axes of `to` of the axes of `from` after the least rotation between both directions, of
+// which none is the least between opposite ones.
 Eigen::Matrix2d carried_axes(const Vec3& from, const Vec3& to) {
   const TransverseBasis before = transverse_basis(from), behind = transverse_basis(to);
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(from, to);
-  Eigen::Matrix<double, 3, 2> carried, axes;
-  carried << turn * before.horizontal, turn * before.vertical;
-  axes << behind.horizontal, behind.vertical;
-  return axes.transpose() * carried;
+  const Vec3 both = (from + to) / std::max(1.0 + from.dot(to), 1e-12);
+  const auto carried = [&](const Vec3& axis) { return Vec3(axis - axis.dot(to) * both); };
+  const Vec3 horizontal = carried(before.horizontal), vertical = carried(before.vertical);
+  Eigen::Matrix2d out;
+  out << behind.horizontal.dot(horizontal), behind.horizontal.dot(vertical), behind.vertical.dot(horizontal),
+      behind.vertical.dot(vertical);
+  return out;
 }
 
 // Returns a matrix whose axes at both ends were carried.

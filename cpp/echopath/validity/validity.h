@@ -73,7 +73,7 @@ struct ObjectValidity : ValidityShares {
 struct Validity {
   int64_t num_paths = 0;
   std::vector<double> times;  // s, of the check
-  bool has_array = false;     // some antenna stands elsewhere than those of the trace
+  bool has_array = false;     // some antenna stands elsewhere than those of the trace, or has another beam
   bool is_still = false;      // neither the scene nor the radar moves
   SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;

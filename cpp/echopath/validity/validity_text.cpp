@@ -58,7 +58,8 @@ bool is_by_array(const Validity& report) { return report.has_array && report.is_
 constexpr const char* kTooWide = "parts of the array by themselves: it is too wide for one trace.";
 
 std::string less_at_once(const Validity& report) {
-  return is_by_array(report) ? std::string("Trace ") + kTooWide : "Trace shorter frames.";
+  if (is_by_array(report)) return std::string("Trace ") + kTooWide;
+  return report.has_array ? "Trace shorter frames, or parts of the array by themselves." : "Trace shorter frames.";
 }
 
 std::string slide_warning(const Validity& report) {

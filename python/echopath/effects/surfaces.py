@@ -21,6 +21,8 @@ MOST_AT_CORNER = 4   # bounces whose orders are told apart from images (trace/mi
 TOLD_CHANGE_DB = 0.5  # of what a sheet passes or reflects over the band, from which on it is told
 MOST_CHANGE_DB = 40.0  # that is told as a number
 MOST_FREQUENCIES = 257
+GOLDEN_RATIO = 0.5 * (5.0**0.5 - 1.0)
+LEAST_PASSED = 1e-6  # share of the power, below which a sheet counts as opaque
 ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/scatter/lobe_probabilities.h)
 
 
@@ -142,11 +144,14 @@ def _changes_db(material, waveform) -> tuple[float, float]:
     ways = sum(layer.thickness * abs(layer.permittivity) ** 0.5 for layer in material.layers)  # m, of light
     ripples = 2.0 * ways * waveform.bandwidth / speed_of_light
     count = int(min(MOST_FREQUENCIES, 9.0 + 8.0 * ripples))
-    frequencies = waveform.start_frequency + np.linspace(0.0, waveform.bandwidth, count)
+    # Too few for all ripples are laid at irrational places, which no ripple repeats with.
+    places = np.linspace(0.0, 1.0, count) if count < MOST_FREQUENCIES else np.arange(count) * GOLDEN_RATIO % 1.0
+    frequencies = waveform.start_frequency + waveform.bandwidth * places
     sheets = [sheet_coefficients(material, frequency=float(one), incidence=0.0) for one in frequencies]
     passed = np.array([one.passed_power()[0] for one in sheets])
     reflected = np.array([abs(one.te_reflection[0]) ** 2 for one in sheets])
-    return _largest_change_db(passed), _largest_change_db(reflected)
+    is_opaque = passed.max() < LEAST_PASSED
+    return 0.0 if is_opaque else _largest_change_db(passed), _largest_change_db(reflected)
 
 
 def _largest_change_db(powers: np.ndarray) -> float:

@@ -228,7 +228,8 @@ class Live:
     def _alone(self) -> Iterator[None]:
         """Waits until no other thread brings a signal up to date. Raises RuntimeError where this thread is at it."""
         if self._busy_thread == threading.get_ident():
-            raise RuntimeError("Live: a progress callable must not ask for views or paths of the Live whose view is being made")
+            raise RuntimeError("Live: must not be asked for views or paths by what is called while one of its views is made, "
+                               "as progress is")
         with self._busy:
             self._busy_thread = threading.get_ident()
             try:

@@ -62,9 +62,9 @@ class Watch:
     def wait(self, timeout: float | None = None) -> bool:
         """Waits until the full view of the latest change was shown. timeout: s, None: for ever. Returns whether it was.
 
-        Raises what ended the watch, and RuntimeError in `show`, which it would wait for.
+        Raises what ended the watch, and RuntimeError in `show`, which it would wait for, unless the watch was stopped.
         """
-        if threading.current_thread() is self._thread and self._error is None:
+        if threading.current_thread() is self._thread and self._error is None and not self._stopping:
             raise RuntimeError("wait: must not be called by what shows the views of this watch")
         with self._shown_one:
             done = self._shown_one.wait_for(

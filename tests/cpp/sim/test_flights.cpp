@@ -13,7 +13,7 @@ std::vector<PathsInFlight> random_lists(std::mt19937& random) {
   for (PathsInFlight& list : lists) {
     const int64_t most = random() % 4 == 0 ? 200000 : 300;
     list = {1 + static_cast<int64_t>(random()) % most, 1 + static_cast<int64_t>(random() % 64), 1};
-    if (random() % 2 == 0) list.num_rows = 4 << (random() % 8);
+    if (random() % 2 == 0) list.num_rows = 4 << (random() % 10);
   }
   return lists;
 }
@@ -39,7 +39,8 @@ TEST(Flights, HaveEachPathOfEachListOnceAndInOrder) {
   }
 }
 
-// The header of ReplayStream promises a bound of .2 GiB at 32 nodes a path: a delay and a complex amplitude at each.
+// The header of ReplayStream promises a bound of .2 GiB at 32 nodes a path: a delay and a complex amplitude at each. One path
+// in each of 16 blocks with thousands of values is as much.
 TEST(Flights, HoldABoundedNumberOfBlocksAndValues) {
   std::mt19937 random(2);
   for (int trial = 0; trial < 200; ++trial) {
@@ -49,7 +50,6 @@ TEST(Flights, HoldABoundedNumberOfBlocksAndValues) {
       int64_t bytes = 0;
       for (const BlockInFlight& block : flight) {
         const PathsInFlight& list = lists[block.list];
-        if (list.num_rows > 32) continue;
         EXPECT_LE(block.end - block.begin, 1000);
         bytes += (block.end - block.begin) * list.num_channels * list.num_rows * 24;
       }
@@ -58,18 +58,9 @@ TEST(Flights, HoldABoundedNumberOfBlocksAndValues) {
   }
 }
 
-TEST(Flights, GiveManyThreadsWorkWherePathsAreFew) {
-  const std::vector<PathsInFlight> lists = {{625, 12, 6}, {875, 12, 8}, {1000, 4, 128}};
-  const std::vector<Flight> flights = plan_flights(lists);
-  ASSERT_EQ(flights.size(), 1U);
-  EXPECT_GE(flights[0].size(), 28U);
-}
-
-TEST(Flights, AreFilledEvenly) {
-  const std::vector<PathsInFlight> lists = {{33000, 1, 8}};  // one flight of the largest blocks, and a thousand paths more
-  const std::vector<Flight> flights = plan_flights(lists);
-  ASSERT_EQ(flights.size(), 2U);
-  EXPECT_NEAR(static_cast<double>(flights[0].back().end), 16500.0, 600.0);
+TEST(Flights, AreSharedByShortLists) {
+  const std::vector<PathsInFlight> lists = {{625, 12, 6}, {875, 12, 8}, {1000, 4, 128}, {90, 4, 512}};
+  EXPECT_EQ(plan_flights(lists).size(), 1U);
 }
 
 TEST(Flights, OfNoPathsAreNone) { EXPECT_TRUE(plan_flights({}).empty()); }

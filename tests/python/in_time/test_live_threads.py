@@ -134,7 +134,7 @@ def test_a_progress_callable_that_asks_for_another_view_is_refused(ask):
     for make in (live.update, lambda progress: live.preview(num_rays=100, progress=progress)):
 
         def refused(make=make):
-            with pytest.raises(RuntimeError, match="must not ask for views or paths of the Live"):
+            with pytest.raises(RuntimeError, match="Live: must not be asked for views or paths"):
                 make(progress=lambda stage, fraction: ask(live))
 
         run_together(refused)

@@ -1,7 +1,6 @@
 #include "echopath/sim/stream/flights.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/threads/parallel.h"
 
@@ -23,7 +22,7 @@ constexpr int64_t kMinBlock = 64;            // fills the registers with vectors
 constexpr int64_t kBlocksOfChirps = 16;  // in flight: 32, with their tiles, left the cache that all cores share
 
 int64_t blocks_in_flight(const PathsInFlight& list) {
-  return list.num_rows > kNodesOfChirps ? kBlocksOfChirps : kBlocksInFlight;
+  return list.num_rows > kNodesOfChirps ? kBlocksOfChirps : kMostBlocksOfFlight;
 }
 
 // Returns the number of paths that a block has at most.
@@ -34,32 +33,17 @@ int64_t largest_block(const PathsInFlight& list) {
   return std::min(most, std::max(kMinBlock, kValuesInFlight / (blocks * list.num_channels * list.num_rows)));
 }
 
-// Returns the size of blocks, as a share of the largest, at which they fill as many flights as they take anyway. The last
-// block of each list may be smaller.
-double even_share(std::span<const PathsInFlight> lists) {
-  double filled = 0.0, last_blocks = 0.0;  // flights
-  for (const PathsInFlight& list : lists) {
-    const auto blocks = static_cast<double>(blocks_in_flight(list));
-    filled += static_cast<double>(list.num_paths) / (blocks * static_cast<double>(largest_block(list)));
-    last_blocks += 1.0 / blocks;
-  }
-  return filled / (std::ceil(filled + last_blocks) - last_blocks);
-}
-
 }  // namespace
 
 std::vector<Flight> plan_flights(std::span<const PathsInFlight> lists) {
   std::vector<Flight> flights;
-  const double share = lists.empty() ? 1.0 : even_share(lists);
   int64_t room = 0;  // in units of the smallest share of a flight that a block may take
   for (size_t i = 0; i < lists.size(); ++i) {
-    const int64_t most = largest_block(lists[i]), of_block = kBlocksInFlight / blocks_in_flight(lists[i]);
-    const auto even = static_cast<int64_t>(std::ceil(share * static_cast<double>(most)));
-    const int64_t size = std::clamp(even, std::min(kMinBlock, most), most);
+    const int64_t size = largest_block(lists[i]), of_block = kMostBlocksOfFlight / blocks_in_flight(lists[i]);
     for (int64_t begin = 0; begin < lists[i].num_paths; begin += size) {
       if (room < of_block) {
         flights.emplace_back();
-        room = kBlocksInFlight;
+        room = kMostBlocksOfFlight;
       }
       flights.back().push_back({i, begin, std::min(begin + size, lists[i].num_paths)});
       room -= of_block;

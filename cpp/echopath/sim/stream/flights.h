@@ -1,5 +1,6 @@
 #pragma once
-// Cuts the paths that are to be replayed into blocks, and tells which blocks are replayed at the same time.
+// Cuts the paths that are to be replayed into blocks, and tells which blocks are in flight together: replayed at the same
+// time, on all threads.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,11 +20,11 @@ struct BlockInFlight {
 };
 
 using Flight = std::vector<BlockInFlight>;
-constexpr int64_t kBlocksInFlight = 32;  // at most; fixed: results must not depend on the number of threads
+constexpr int64_t kMostBlocksOfFlight = 32;  // fixed: results must not depend on the number of threads
 
-// Returns the blocks of all lists, in their order, flight by flight. What is in flight at a time is bounded whatever the
-// number of paths, channels and rows. Lists share flights, and where all of them leave the last one part empty, blocks are
-// smaller for it: a thread finds work also where paths are few, as those of a family of echoes are.
+// Returns the blocks of all lists, in their order, flight by flight. The number of values in flight is bounded whatever the
+// number of paths, and that of channels and rows, unless a single path for each block has more. Lists share flights, so that
+// threads find work also where lists are short, as those of a family of echoes are.
 std::vector<Flight> plan_flights(std::span<const PathsInFlight> lists);
 
 }  // namespace echopath

@@ -25,7 +25,7 @@ std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<
 
 // Returns the paths that were left less those that turned, in their order: of those that were `tried`, some `failed`. All
 // three lists are in the same order.
-std::vector<UnfollowedPath> without_turned(const std::vector<UnfollowedPath>& left, const std::vector<int64_t>& tried,
+std::vector<UnfollowedPath> without_turned(const std::vector<UnfollowedPath>& left, std::span<const int64_t> tried,
                                            const std::vector<UnfollowedPath>& failed) {
   std::vector<UnfollowedPath> rest;
   auto next_tried = tried.begin();
@@ -54,8 +54,16 @@ struct ReplayStream::Work {
   Extent extent;
   Replay replay;
   GridIndex polynomial = GridIndex::none();  // that interpolates the paths, which then may be left
-  std::vector<int64_t> paths;
+  std::span<const int64_t> paths;            // which outlive the work, or are its own
   std::vector<UnfollowedPath> left = {};
+  std::vector<int64_t> own = {};
+
+  static Work of_own(const Extent& extent, Replay replay, GridIndex polynomial, std::vector<int64_t> paths) {
+    Work work{extent, std::move(replay), polynomial, {}};
+    work.own = std::move(paths);
+    work.paths = work.own;
+    return work;
+  }
 };
 
 // Holds blocks of one work that were in flight together.
@@ -152,7 +160,7 @@ std::vector<ReplayStream::Work> ReplayStream::still_works(std::vector<int64_t>& 
   if (paths.empty()) return works;
   replayer_.pose_still();
   const Replay replay = [this](auto part, auto, auto&) { return replayer_.still(part); };
-  works.push_back({{0, num_channels(), 1}, replay, GridIndex::none(), std::exchange(paths, {})});
+  works.push_back(Work::of_own({0, num_channels(), 1}, replay, GridIndex::none(), std::exchange(paths, {})));
   return works;
 }
 
@@ -165,7 +173,7 @@ void ReplayStream::append_polynomials(PathsByGrid& by_grid, std::vector<Work>& w
     const Replay replay = [this, polynomial](auto part, auto, auto& left) {
       return replayer_.interpolated(part, polynomial, left);
     };
-    works.push_back({extent, replay, polynomial, std::exchange(paths, {})});
+    works.push_back(Work::of_own(extent, replay, polynomial, std::exchange(paths, {})));
   }
 }
 
@@ -187,7 +195,7 @@ void ReplayStream::replay_turning(std::vector<Work>& works, WindowPipeline& out)
     const Replay replay = [this, polynomial](auto part, auto, auto& some) {
       return replayer_.turning(part, polynomial, some);
     };
-    turning.push_back({extent, replay, polynomial, std::move(may_turn)});
+    turning.push_back(Work::of_own(extent, replay, polynomial, std::move(may_turn)));
     source.push_back(i);
   }
   replay_all(turning, out);
@@ -205,13 +213,13 @@ void ReplayStream::replay_in_chirps(const PathsByGrid& by_chirp, const std::vect
   for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
     append_chirps(by_chirp, transmitter, works);
     append_samples(by_sample, transmitter, works);
-    const bool keeps_samples =
-        by_sample.empty() || kept_samples_[transmitter]->num_bytes() * num_transmitters_ <= kKeptSamples;
-    if (keeps_poses_ && keeps_samples) continue;
+    const std::unique_ptr<PartlyPosedGrid>& samples = kept_samples_[transmitter];
+    const bool keeps_samples = keeps_poses_ && (!samples || samples->num_bytes() * num_transmitters_ <= kKeptSamples);
+    if (keeps_samples) continue;
     replay_all(works, out);
     works.clear();
     if (!keeps_poses_) kept_chirps_[transmitter].reset();
-    if (!keeps_samples) kept_samples_[transmitter].reset();
+    kept_samples_[transmitter].reset();
   }
   replay_all(works, out);
 }
@@ -262,8 +270,8 @@ std::vector<ReplayStream::Window> ReplayStream::replay_flight(std::vector<Work>&
   parallel_for(std::ssize(flight), [&](int64_t i) {
     if (job_) job_->throw_if_cancelled();
     const auto& [list, begin, end] = flight[i];
-    const std::span<const int64_t> paths(works[list].paths);
-    blocks[i] = run_block(paths.subspan(begin, end - begin), i, works[list].extent, works[list].replay);
+    const Work& work = works[list];
+    blocks[i] = run_block(work.paths.subspan(begin, end - begin), i, work.extent, work.replay);
   });
   if (watcher_) watcher_->end_blocks();
   std::vector<Window> windows;

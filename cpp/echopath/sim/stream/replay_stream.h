@@ -17,7 +17,7 @@ class PathWatcher {
  public:
   virtual ~PathWatcher() = default;
   virtual bool watches(int channel) const = 0;
-  // Receives one of the blocks in flight; `block` is below kBlocksInFlight. Many threads call it at a time,
+  // Receives one of the blocks in flight; `block` is below kMostBlocksOfFlight. Many threads call it at a time,
   // each with a block of its own.
   virtual void see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) = 0;
   // Ends a group of blocks: the stream calls it once see() has had all blocks in flight.

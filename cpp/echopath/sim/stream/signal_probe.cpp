@@ -82,7 +82,7 @@ struct PassProbe::ChirpTarget {
   int num_samples = 0;  // that differ; the others repeat them
   SampleSums sample{};  // evenly spaced, from the first of the chirp
   EchoTally tally;
-  std::array<std::optional<EchoTally>, kBlocksInFlight> of_block;
+  std::array<std::optional<EchoTally>, kMostBlocksOfFlight> of_block;
 };
 
 void ProbedChirp::add(const ProbedChirp& other) {

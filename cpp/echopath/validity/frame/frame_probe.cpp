@@ -16,7 +16,7 @@ constexpr double kConfirmed = 0.03;  // rad: a step beyond the triangles around 
 constexpr double kMostRest = 1.0;    // rad: a step that leaves more has not come near the point of reflection
 constexpr double kTurned = 2.0;      // factor
 constexpr double kOnePlace = 1e-9;   // m
-constexpr double kSameCosine = 1e-3;
+constexpr double kSameCosine = 1e-9;
 constexpr double kOtherField = 0.3;  // of the larger of two coefficients, as kEdgeLimit of fields
 
 // Returns the bits of hits in the order of the record.
@@ -71,11 +71,21 @@ LegShadows known_part(const LocalPath& path, const Run& run, LegMemo& known, Fin
   return shifted(known(hits, count, kind_of(path, run), [&] { return shifted(find(), -run.first); }), run.first);
 }
 
+bool have_one_beam(const Antenna& a, const Antenna& b) {
+  return a.pattern.kind == b.pattern.kind && a.pattern.exponent == b.pattern.exponent &&
+         a.pattern.table == b.pattern.table && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
+// Returns the antenna that a trace has, then those at the rim of the array, and one for each other beam.
 std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Antenna>& antennas) {
   std::vector<Antenna> out = {antennas[0]};
   out[0].position = carried;
   if (antennas.size() == 1 && (antennas[0].position - carried).norm() > kOnePlace) out.push_back(antennas[0]);
   for (const int corner : array_corners(antennas)) out.push_back(antennas[corner]);
+  for (const Antenna& antenna : antennas) {
+    const auto is_alike = [&](const Antenna& other) { return have_one_beam(antenna, other); };
+    if (std::none_of(out.begin(), out.end(), is_alike)) out.push_back(antenna);
+  }
   return out;
 }
 

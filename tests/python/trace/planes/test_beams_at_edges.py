@@ -123,3 +123,15 @@ def test_beams_over_two_planes_see_the_edges_of_both_behind_the_other(wall_heigh
     over_both = paths.select("T 'plane 0' 'plane 1' R")
     level = ep.received_power(over_both).power / endless_power(radar, np.linalg.norm(line))
     assert 10.0 * np.log10(level) == pytest.approx(0.0, abs=LEVEL_TOLERANCE_DB)
+
+
+def test_validity_tells_of_arrays_with_unlike_beams():
+    """The first antennas speak for all: the wide beam has a rim that the narrow one does not light."""
+    def of_exponents(*exponents):
+        antennas = [ep.Antenna(pattern=ep.CosinePower(each), pitch=-np.pi / 2) for each in exponents]
+        waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=4e9, num_samples=64, num_chirps=1)
+        return ep.Radar(waveform, transmitters=antennas, receivers=antennas[:1], position=(0, 0, HEIGHT))
+
+    alike, unlike = (ep.validity(traced([disk(0.2)], of_exponents(20.0, other))) for other in (20.0, LEVEL_GAUGE))
+    assert alike.beside_edges_share == 0.0
+    assert unlike.beside_edges_share > 0.9

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <random>
 
-namespace echopath {
-namespace {
+namespace echopath::test_flights {
 
 std::vector<PathsInFlight> random_lists(std::mt19937& random) {
   std::vector<PathsInFlight> lists(1 + random() % 12);
@@ -39,8 +38,7 @@ TEST(Flights, HaveEachPathOfEachListOnceAndInOrder) {
   }
 }
 
-// The header of ReplayStream promises a bound of .2 GiB at 32 nodes a path: a delay and a complex amplitude at each. One path
-// in each of 16 blocks with thousands of values is as much.
+// The header of ReplayStream promises a bound of .2 GiB at 32 nodes a path: a delay and a complex amplitude at each.
 TEST(Flights, HoldABoundedNumberOfBlocksAndValues) {
   std::mt19937 random(2);
   for (int trial = 0; trial < 200; ++trial) {
@@ -65,5 +63,4 @@ TEST(Flights, AreSharedByShortLists) {
 
 TEST(Flights, OfNoPathsAreNone) { EXPECT_TRUE(plan_flights({}).empty()); }
 
-}  // namespace
-}  // namespace echopath
+}  // namespace echopath::test_flights

@@ -135,7 +135,7 @@ void Synthesizer::start_bands() {
   const int num_pieces = (waveform_.num_chirps + kChirpGroup - 1) / kChirpGroup;
   for (int piece = 0; piece < num_pieces; ++piece) {
     bands_.push_back(KeptMemory::of_process().take<RowBands>());
-    bands_.back()->start(channels_.size(), static_cast<size_t>(num_groups_), chirps_of_piece(piece));
+    bands_.back()->start(channels_.size(), static_cast<size_t>(num_groups_), chirps_of_piece(piece), row_size(true) / 2);
   }
 }
 

@@ -47,7 +47,7 @@ TEST(RowBands, RowsThatGrowInTurnHoldWhatWasAddedToThem) {
   std::mt19937_64 random(4);
   RowBands bands;
   for (int round = 0; round < 3; ++round) {  // what an earlier round left must not show
-    bands.start(1, 5, kChirps);
+    bands.start(1, 5, kChirps, kLength);
     std::vector<Dense> expected(5, Dense(2 * kChirps * kLength));
     for (int i = 0; i < 60; ++i) {
       const size_t row = random() % 4;  // the last one stays empty
@@ -59,21 +59,32 @@ TEST(RowBands, RowsThatGrowInTurnHoldWhatWasAddedToThem) {
   }
 }
 
-// Channels of an array need nearly the same cells, so that a row which takes those of the channel before grows but once. The
-// sums are those of rows that do not.
+// Channels of an array need nearly the same cells: rows take those of the channel before, in the second channel one more on
+// either side, so that most never grow. The sums are those of rows that do.
 TEST(RowBands, RowsTakeTheCellsOfTheChannelBefore) {
   RowBands bands;
-  bands.start(2, 1, kChirps);
+  bands.start(3, 1, kChirps, kLength);
   bands.room(0, {10, 12});
   bands.room(0, {8, 20});
-  const TileRows rows = bands.room(1, {15, 16});
-  rows.rows[15] += 3.0;
-  EXPECT_EQ(bands.cells(1, 0).first, 8);
-  EXPECT_EQ(bands.cells(1, 0).count, 12);
-  EXPECT_EQ(bands.room(1, {8, 20}).rows, rows.rows);
-  Dense expected(2 * kChirps * kLength);
-  expected[15] = 3.0;
-  EXPECT_EQ(dense_row(bands, 1), expected);
+  for (const size_t row : {size_t{1}, size_t{2}}) {
+    const TileRows rows = bands.room(row, {15, 16});
+    rows.rows[15] += 3.0;
+    EXPECT_EQ(bands.cells(row, 0).first, 7);
+    EXPECT_EQ(bands.cells(row, 0).count, 14);
+    EXPECT_EQ(bands.room(row, {7, 21}).rows, rows.rows);
+    Dense expected(2 * kChirps * kLength);
+    expected[15] = 3.0;
+    EXPECT_EQ(dense_row(bands, row), expected);
+  }
+}
+
+TEST(RowBands, RowsTakeNoCellsBeyondTheirEnds) {
+  RowBands bands;
+  bands.start(2, 1, kChirps, kLength);
+  bands.room(0, {0, kLength});
+  bands.room(1, {15, 16});
+  EXPECT_EQ(bands.cells(1, 0).first, 0);
+  EXPECT_EQ(bands.cells(1, 0).count, kLength);
 }
 
 // A row larger than what memory is handed out in, between small ones.
@@ -81,7 +92,7 @@ TEST(RowBands, LongRowsHoldWhatWasAddedToThem) {
   constexpr int64_t kLong = 1 << 17;
   RowBands bands;
   for (int round = 0; round < 2; ++round) {
-    bands.start(1, 3, kChirps);
+    bands.start(1, 3, kChirps, kLong);
     bands.room(0, {0, 5}).rows[4] += 1.0;
     bands.room(1, {0, kLong}).rows[kLong - 1] += 2.0;
     bands.room(2, {7, 9}).rows[8] += 3.0;

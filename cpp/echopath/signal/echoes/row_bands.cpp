@@ -11,8 +11,9 @@ constexpr size_t kFirstChunk = size_t{1} << 12, kLargestChunk = size_t{1} << 16;
 
 }  // namespace
 
-void RowBands::start(size_t num_channels, size_t num_groups, int num_chirps) {
+void RowBands::start(size_t num_channels, size_t num_groups, int num_chirps, int64_t row_length) {
   num_groups_ = num_groups;
+  row_length_ = row_length;
   num_parts_ = 2 * num_chirps;
   bands_.assign(num_channels * num_groups, {});
   num_chunks_ = 0;
@@ -39,7 +40,11 @@ TileRows RowBands::room(size_t row, const CellRange& cells) {
 CellRange RowBands::cells_to_come(size_t row, const CellRange& cells) const {
   if (row < num_groups_ || !has(row - num_groups_)) return cells;
   const Band& like = bands_[row - num_groups_];
-  return {std::min(cells.first, like.first), std::max(cells.end, like.first + like.count)};
+  // The first channel knows none before it: the second may need a cell more than it on either side, and later ones what the
+  // second has.
+  const int64_t more = row < 2 * num_groups_ ? 1 : 0;
+  return {std::min(cells.first, std::max<int64_t>(like.first - more, 0)),
+          std::max(cells.end, std::min(like.first + like.count + more, row_length_))};
 }
 
 // Returns room for `count` values, which are not set. Chunks too small for it are passed over.

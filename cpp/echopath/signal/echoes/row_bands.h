@@ -18,8 +18,9 @@ struct RowCells {
 // Holds the rows of a few chirps, which one thread at a time may change.
 class RowBands {
  public:
-  // Forgets all rows but keeps the memory. Rows are numbered from 0 on, those of a channel by group, channel after channel.
-  void start(size_t num_channels, size_t num_groups, int num_chirps);
+  // Forgets all rows but keeps the memory. Rows are numbered from 0 on, those of a channel by group, channel after channel;
+  // each has `row_length` cells.
+  void start(size_t num_channels, size_t num_groups, int num_chirps, int64_t row_length);
 
   bool has(size_t row) const { return bands_[row].count > 0; }
   RowCells cells(size_t row, int chirp) const;
@@ -45,6 +46,7 @@ class RowBands {
   bool grows_in_place(const Band& before, size_t size);
 
   size_t num_groups_ = 0;
+  int64_t row_length_ = 0;
   int64_t num_parts_ = 0;  // of real and imaginary parts
   std::vector<Band> bands_;
   std::vector<Chunk> chunks_;

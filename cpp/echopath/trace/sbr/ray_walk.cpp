@@ -42,7 +42,8 @@ void RayWalk<Weight>::shoot(int64_t begin, int64_t end, PathBlock& block) const 
   block.statistics.num_queries += std::exchange(scratch.legs.search.num_queries, 0);
 }
 
-// Follows a ray from its first hit on. A ray is made only where there is more than a plain hit.
+// Follows a ray from its first hit on. A ray is made only where there is more than a plain hit. A ray that meets no sheets
+// takes the same random numbers among them: where sheets come or go, all others keep their paths.
 template <class Weight>
 void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) const {
   const FirstHits& first = scratch.first;
@@ -50,37 +51,44 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   block.current_ray = half_of_ray(first.ray(lane)) | (first.points ? 0 : place_flags(first.ray(lane)));
   scratch.launch_index = first.index(lane);
   scratch.num_branches = 0;
-  if (context_.geometry.has_sheets()) return shoot_lane_among_sheets(lane, scratch, block);
   RayHit met, met_mirrored;
-  const bool goes_on = first.goes_on[lane] && meets(first.lifted[lane], first.out[lane], met, block);
-  const bool is_split = first.is_split(lane) && meets(first.lifted[lane], first.mirrored[lane], met_mirrored, block);
+  const bool goes_on = first.goes_on[lane] && meets(first.lifted[lane], first.out[lane], Sees::kAll, met, block);
+  const bool is_split =
+      first.is_split(lane) && meets(first.lifted[lane], first.mirrored[lane], Sees::kAll, met_mirrored, block);
   const bool has_plain_hit = has_straight_legs_ && is_plain(first, lane);
   if (has_plain_hit) add_plain_echoes(lane, scratch, block);
   if (has_plain_hit && !goes_on && !is_split) return block.end_ray(&first.hits.met[lane]);
   start(lane, scratch);
   if (!has_plain_hit) connect(scratch, block);
-  const auto go_on = [&] {
-    if (goes_on && travel(first.sample(lane), met, scratch, block)) follow(scratch, block);
+  const auto scatter = [&] {
+    if (goes_on) go_on(first.sample(lane), met, scratch, block);
   };
-  if (!is_split) {
-    go_on();
+  if (is_split) {
+    take_beside(scratch, block, scatter);
+    go_on(first.mirrored_sample(lane), met_mirrored, scratch, block);
   } else {
-    take_beside(scratch, block, go_on);
-    if (travel(first.mirrored_sample(lane), met_mirrored, scratch, block)) follow(scratch, block);
+    scatter();
   }
   block.end_ray(scratch.ray.hits.data());
 }
 
-// Follows the ray that a surface scatters to its end, with random numbers of its own, and goes back to the hit for the one
-// that it mirrors, which keeps its place among its neighbours.
+// Follows the ray that a surface scatters to its end, and goes back to the hit for the one that it mirrors, which keeps its
+// place among its neighbours.
 template <class Weight>
 template <class GoOn>
-void RayWalk<Weight>::take_beside(Scratch& scratch, PathBlock& block, const GoOn& go_on) const {
+void RayWalk<Weight>::take_beside(Scratch& scratch, PathBlock& block, const GoOn& scatter) const {
   orders_.weigh_mirror(scratch.ray, scratch.surface, scratch.legs.search.num_queries);  // once for both
+  branch(scratch, block, scatter);
+}
+
+// Follows a branch of the ray to its end, with random numbers of its own, and goes back to where it left.
+template <class Weight>
+template <class GoOn>
+void RayWalk<Weight>::branch(Scratch& scratch, PathBlock& block, const GoOn& follow_branch) const {
   const Ray ray = scratch.ray;
   const SurfaceHit surface = scratch.surface;
   scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
-  go_on();
+  follow_branch();
   block.end_ray(scratch.ray.hits.data());
   scratch.ray = ray;
   scratch.surface = surface;
@@ -105,22 +113,18 @@ void RayWalk<Weight>::start(int lane, Scratch& scratch) const {
 // Follows a ray from the hit where it is.
 template <class Weight>
 void RayWalk<Weight>::follow(Scratch& scratch, PathBlock& block) const {
-  for (RayHit met;;) {
-    connect(scratch, block);
-    if (scratch.ray.depth == context_.settings.max_bounces) return;
-    ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
-    if (sample.ends) return;
-    if (sample.is_split) {
-      if (meets(sample.from, sample.direction, met, block)) {
-        take_beside(scratch, block, [&] {
-          if (travel(sample, met, scratch, block)) follow(scratch, block);
-        });
-      }
-      sample = scatterer_.mirrored_beside(scratch.ray, scratch.surface, sample);
+  connect(scratch, block);
+  if (scratch.ray.depth == context_.settings.max_bounces) return;
+  ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
+  if (sample.ends) return;
+  RayHit met;
+  if (sample.is_split) {
+    if (meets_next(sample, 0.0, scratch, met, block)) {
+      take_beside(scratch, block, [&] { go_on(sample, met, scratch, block); });
     }
-    if (!meets(sample.from, sample.direction, met, block)) return;
-    if (!travel(sample, met, scratch, block)) return;
+    sample = scatterer_.mirrored_beside(scratch.ray, scratch.surface, sample);
   }
+  if (meets_next(sample, 0.0, scratch, met, block)) go_on(sample, met, scratch, block);
 }
 
 template <class Weight>
@@ -130,18 +134,12 @@ void RayWalk<Weight>::connect(Scratch& scratch, PathBlock& block) const {
 }
 
 template <class Weight>
-bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block, Sees sees,
+bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, Sees sees, RayHit& met, PathBlock& block,
                             double begin) const {
   ++block.statistics.num_queries;
   const EmbreeScene::Verdict verdict = context_.geometry.intersect_from_surface(from, direction, met, sees, begin);
   if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
   return verdict == EmbreeScene::Verdict::kHit;
-}
-
-// Carries the ray from the hit where it is to the one that it meets next.
-template <class Weight>
-bool RayWalk<Weight>::travel(const ScatterSample& sample, const RayHit& met, Scratch& scratch, PathBlock& block) const {
-  return scatterer_.leave(scratch.ray, scratch.surface, sample, scratch.legs) && arrive(met, scratch, block);
 }
 
 template <class Weight>
@@ -156,80 +154,29 @@ bool RayWalk<Weight>::arrive(const RayHit& met, Scratch& scratch, PathBlock& blo
   return true;
 }
 
-// Follows a ray as shoot_lane does, in a scene with sheets. A ray that meets none takes the same random numbers there: where
-// sheets come or go, all others keep their paths.
-template <class Weight>
-void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const {
-  const bool has_plain_hit = has_straight_legs_ && is_plain(scratch.first, lane);
-  if (has_plain_hit) add_plain_echoes(lane, scratch, block);
-  start(lane, scratch);
-  if (!has_plain_hit) connect(scratch, block);
-  const FirstHits& first = scratch.first;
-  const ScatterSample sample = first.sample(lane), mirrored = first.mirrored_sample(lane);
-  RayHit met, met_mirrored;
-  const bool goes_on = first.goes_on[lane] && meets_next(sample, 0.0, scratch, met, block);
-  const bool is_split = first.is_split(lane) && meets_next(mirrored, 0.0, scratch, met_mirrored, block);
-  const auto go_on = [&] {
-    if (goes_on) go_on_among_sheets(sample, met, scratch, block);
-  };
-  if (is_split) {
-    take_beside(scratch, block, go_on);
-    go_on_among_sheets(mirrored, met_mirrored, scratch, block);
-  } else {
-    go_on();
-  }
-  block.end_ray(scratch.ray.hits.data());
-}
-
-template <class Weight>
-void RayWalk<Weight>::follow_among_sheets(Scratch& scratch, PathBlock& block) const {
-  connect(scratch, block);
-  if (scratch.ray.depth == context_.settings.max_bounces) return;
-  ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
-  if (sample.ends) return;
-  RayHit met;
-  if (sample.is_split) {
-    if (meets_next(sample, 0.0, scratch, met, block)) {
-      take_beside(scratch, block, [&] { go_on_among_sheets(sample, met, scratch, block); });
-    }
-    sample = scatterer_.mirrored_beside(scratch.ray, scratch.surface, sample);
-  }
-  if (meets_next(sample, 0.0, scratch, met, block)) go_on_among_sheets(sample, met, scratch, block);
-}
-
 // Has the ray reflected at each sheet on its way, of which `met` may be the first, and carries it on behind the last one.
 template <class Weight>
-void RayWalk<Weight>::go_on_among_sheets(const ScatterSample& sample, RayHit met, Scratch& scratch, PathBlock& block) const {
+void RayWalk<Weight>::go_on(const ScatterSample& sample, RayHit& met, Scratch& scratch, PathBlock& block) const {
   if (!scatterer_.leave(scratch.ray, scratch.surface, sample, scratch.legs)) return;
   while (context_.geometry.is_sheet(met.hit.mesh_id)) {
-    reflect_at_sheet(met, scratch, block);
+    branch(scratch, block, [&] {
+      ++scratch.ray.num_splits;
+      if (arrive(met, scratch, block)) follow(scratch, block);
+    });
     ++scratch.ray.num_splits;
     if (!meets_next(sample, context_.geometry.behind(met.distance, met.reported), scratch, met, block)) return;
   }
-  if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
+  if (arrive(met, scratch, block)) follow(scratch, block);
 }
 
 // Finds what the ray meets next: at sheets only while it may still split.
 template <class Weight>
 bool RayWalk<Weight>::meets_next(const ScatterSample& sample, double begin, Scratch& scratch, RayHit& met,
                                  PathBlock& block) const {
-  if (!meets(sample.from, sample.direction, met, block, Sees::kAll, begin)) return false;
+  if (!meets(sample.from, sample.direction, Sees::kAll, met, block, begin)) return false;
   if (scratch.ray.num_splits < kMostSplits || !context_.geometry.is_sheet(met.hit.mesh_id)) return true;
   ++block.statistics.num_unsplit_rays;
-  return meets(sample.from, sample.direction, met, block, Sees::kOpaque, begin);
-}
-
-// Follows the ray that is reflected at a sheet, with random numbers of its own, and takes the other one up again.
-template <class Weight>
-void RayWalk<Weight>::reflect_at_sheet(const RayHit& met, Scratch& scratch, PathBlock& block) const {
-  const Ray ray = scratch.ray;
-  const SurfaceHit surface = scratch.surface;
-  scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
-  ++scratch.ray.num_splits;
-  if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
-  block.end_ray(scratch.ray.hits.data());
-  scratch.ray = ray;
-  scratch.surface = surface;
+  return meets(sample.from, sample.direction, Sees::kOpaque, met, block, begin);
 }
 
 template class RayWalk<ScalarWeight>;

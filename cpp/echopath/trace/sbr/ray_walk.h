@@ -30,18 +30,15 @@ class RayWalk {
   void add_plain_echoes(int lane, const Scratch& scratch, PathBlock& block) const;
   void start(int lane, Scratch& scratch) const;
   template <class GoOn>
-  void take_beside(Scratch& scratch, PathBlock& block, const GoOn& go_on) const;
+  void take_beside(Scratch& scratch, PathBlock& block, const GoOn& scatter) const;
+  template <class GoOn>
+  void branch(Scratch& scratch, PathBlock& block, const GoOn& follow_branch) const;
   void follow(Scratch& scratch, PathBlock& block) const;
   void connect(Scratch& scratch, PathBlock& block) const;
-  bool meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block, Sees sees = Sees::kOpaque,
-             double begin = 0.0) const;
-  bool travel(const ScatterSample& sample, const RayHit& met, Scratch& scratch, PathBlock& block) const;
+  bool meets(const Vec3& from, const Vec3& direction, Sees sees, RayHit& met, PathBlock& block, double begin = 0.0) const;
   bool arrive(const RayHit& met, Scratch& scratch, PathBlock& block) const;
-  void shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const;
-  void follow_among_sheets(Scratch& scratch, PathBlock& block) const;
-  void go_on_among_sheets(const ScatterSample& sample, RayHit met, Scratch& scratch, PathBlock& block) const;
+  void go_on(const ScatterSample& sample, RayHit& met, Scratch& scratch, PathBlock& block) const;
   bool meets_next(const ScatterSample& sample, double begin, Scratch& scratch, RayHit& met, PathBlock& block) const;
-  void reflect_at_sheet(const RayHit& met, Scratch& scratch, PathBlock& block) const;
 
   const RayContext& context_;
   const PacketFront& front_;

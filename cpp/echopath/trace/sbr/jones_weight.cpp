@@ -1,8 +1,9 @@
 // Finds the matrices of polarised paths (Paths::jones) along a ray.
-#include <algorithm>
 #include <cmath>
 
 #include "echopath/em/polarization/mirrored_fields.h"
+#include "echopath/em/polarization/transverse_formula.h"
+#include "echopath/record/hit_points.h"
 #include "echopath/trace/sbr/weight.h"
 
 namespace echopath {
@@ -39,32 +40,13 @@ FieldPair scattered_back(const SurfaceHit& surface, const FieldPair& fields, con
   return out_fields;
 }
 
-// Returns the direction in which a wave leaves an antenna that reaches a point over mirrors, given in the order in which it
-// meets them.
-Vec3 departure_over(const std::vector<const Mirror*>& mirrors, const Vec3& antenna, const Vec3& point) {
-  Vec3 image = antenna;
-  for (const Mirror* mirror : mirrors) image = mirror->image(image);
-  Vec3 direction = (point - image).normalized();
-  for (size_t k = mirrors.size(); k-- > 0;) direction = mirrors[k]->mirrored(direction);
-  return direction;
-}
-
-Vec3 facet_point(const EmbreeScene& geometry, const Hit& hit) {
-  const auto [a, b, c] = geometry.corners(hit.mesh_id, hit.triangle_id);
-  return a + hit.u * (b - a) + hit.v * (c - a);
-}
-
-// Returns the components along the axes of `to` of the axes of `from` after the least rotation between both directions, of
-// which none is the least between opposite ones.
+// Returns the components along the axes of `to` of the axes of `from` after the least rotation between both directions.
 Eigen::Matrix2d carried_axes(const Vec3& from, const Vec3& to) {
-  const TransverseBasis before = transverse_basis(from), behind = transverse_basis(to);
-  const Vec3 both = (from + to) / std::max(1.0 + from.dot(to), 1e-12);
-  const auto carried = [&](const Vec3& axis) { return Vec3(axis - axis.dot(to) * both); };
-  const Vec3 horizontal = carried(before.horizontal), vertical = carried(before.vertical);
-  Eigen::Matrix2d out;
-  out << behind.horizontal.dot(horizontal), behind.horizontal.dot(vertical), behind.vertical.dot(horizontal),
-      behind.vertical.dot(vertical);
-  return out;
+  const AxesAcross<double> behind = axes_across<ScalarMath>(unpacked(to));
+  const auto [horizontal, vertical] = basis_across(unpacked(from));
+  const TransverseOf<double> of_horizontal = transverse_of<ScalarMath>(horizontal, unpacked(from), behind);
+  const TransverseOf<double> of_vertical = transverse_of<ScalarMath>(vertical, unpacked(from), behind);
+  return Eigen::Matrix2d{{of_horizontal.horizontal, of_vertical.horizontal}, {of_horizontal.vertical, of_vertical.vertical}};
 }
 
 // Returns a matrix whose axes at both ends were carried.
@@ -144,17 +126,19 @@ void JonesWeight::set_diffuse_matrix(Connection& at, const Leg& leg) const {
 void JonesWeight::exchange_antennas(Connection& at, const Leg& leg) const {
   const Vec3 &transmitter = context_.settings.transmitter, &receiver = context_.settings.receiver;
   if (transmitter == receiver) return;
-  std::vector<const Mirror*> mirrors;
-  const auto mirror_at = [&](int hit) { return context_.surfaces.mirror(at.ray.hits[hit]); };
-  while (mirror_at(static_cast<int>(mirrors.size())) >= 0)
-    mirrors.push_back(&context_.mirrors[mirror_at(static_cast<int>(mirrors.size()))]);
-  const Vec3 first = facet_point(context_.geometry, at.ray.hits[mirrors.size()]);
-  const Eigen::Matrix2d at_start =
-      carried_axes(departure_over(mirrors, transmitter, first), departure_over(mirrors, receiver, first));
+  std::vector<int> mirrors;
+  // Returns the direction in which a wave leaves an antenna that reaches a point over the mirrors.
+  const auto departure = [&](const Vec3& antenna, const Vec3& point) {
+    const auto chain = chain_of(context_.mirrors, mirrors);
+    return mirrored_over_reversed(chain, (point - image_over(chain, antenna)).normalized());
+  };
+  const Hit* hit = at.ray.hits.data();
+  for (; context_.surfaces.mirror(*hit) >= 0; ++hit) mirrors.push_back(context_.surfaces.mirror(*hit));
+  const Vec3 first = hit_point(context_.geometry.corners(hit->mesh_id, hit->triangle_id), *hit);
+  const Eigen::Matrix2d at_start = carried_axes(departure(transmitter, first), departure(receiver, first));
   mirrors.clear();
-  for (int k = leg.num_bounces; k-- > 0;) mirrors.push_back(&context_.mirrors[leg.bounces[k].mirror]);
-  const Eigen::Matrix2d at_end =
-      carried_axes(-leg.at_antenna, -departure_over(mirrors, transmitter, at.surface.point.position));
+  for (int k = leg.num_bounces; k-- > 0;) mirrors.push_back(leg.bounces[k].mirror);
+  const Eigen::Matrix2d at_end = carried_axes(-leg.at_antenna, -departure(transmitter, at.surface.point.position));
   at.block.set_jones(with_carried_axes(at.block.jones.back(), at_start, at_end));
 }
 

@@ -117,7 +117,7 @@ class AxisCover {
     const MirrorView& view = lit_.view;
     const Vec3 &normal = view.point.normal, foot = view.point.position + end.distance * way;
     const double beyond = (kAmple * axis_.half - end.distance) * std::abs(way.dot(end.wall));  // m, behind the wall
-    const Vec3 departure = view.arrival - 2.0 * view.arrival.dot(normal) * normal;
+    const Vec3 departure = mirrored(view.arrival, normal);
     double height = 0.0;
     for (const Vec3& antenna : {Vec3(-view.before * view.arrival), Vec3(view.behind * departure)}) {
       const double apart = end.wall.dot(view.point.position + antenna - foot);
@@ -160,7 +160,7 @@ double closeness_of_edge(const SurfaceAround& mirror, const Vec3& point, const V
 // of the shift gives.
 double excess_over_square(const MirrorView& view, const Vec3& shift) {
   const Vec3& normal = view.point.normal;
-  const Vec3 departure = view.arrival - 2.0 * view.arrival.dot(normal) * normal;
+  const Vec3 departure = mirrored(view.arrival, normal);
   const auto longer = [&](double length, double tilt) {
     const double square = shift.squaredNorm() + 2.0 * length * tilt;
     return square / (std::sqrt(length * length + square) + length) - tilt;

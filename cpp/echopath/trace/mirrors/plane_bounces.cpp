@@ -66,14 +66,11 @@ MirrorView PlaneBounces::view(size_t bounce) const {
 }
 
 UnfoldedAntennas PlaneBounces::antennas_of(size_t bounce, const MirrorView& view) const {
-  const auto mirrored = [&](size_t k) {
-    return Mat3(Mat3::Identity() - 2.0 * points_[k].normal * points_[k].normal.transpose());
-  };
   Mat3 to_first = Mat3::Identity(), to_last = Mat3::Identity();
-  for (size_t k = bounce; k-- > 0;) to_first = mirrored(k) * to_first;
-  for (size_t k = bounce + 1; k < points_.size(); ++k) to_last = mirrored(k) * to_last;
+  for (size_t k = bounce; k-- > 0;) to_first = reflection(points_[k].normal) * to_first;
+  for (size_t k = bounce + 1; k < points_.size(); ++k) to_last = reflection(points_[k].normal) * to_last;
   return {UnfoldedAntenna{from_, -view.before * view.arrival, to_first},
-          UnfoldedAntenna{to_, view.behind * (mirrored(bounce) * view.arrival), to_last}};
+          UnfoldedAntenna{to_, view.behind * mirrored(view.arrival, points_[bounce].normal), to_last}};
 }
 
 std::complex<double> PlaneBounces::field_beside_edges(double wavelength, int64_t& num_queries) const {

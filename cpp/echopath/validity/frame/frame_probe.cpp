@@ -111,13 +111,10 @@ void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start
 // Writes the cosines of incidence of a wave that meets all hits of a path as images, in those places of [2 * hits].
 void fill_image_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
                         std::vector<double>& out) {
-  Vec3 image = end;
-  for (int k = path.count; k-- > 0;) image -= 2.0 * (image - hits[k].point).dot(hits[k].normal) * hits[k].normal;
-  Vec3 way = (image - start).normalized();
+  Vec3 way = (image_over_reversed(chain_of(hits, 0, path.count), end) - start).normalized();
   for (int k = 0; k < path.count; ++k) {
-    const double along = way.dot(hits[k].normal);
-    out[2 * k] = std::min(1.0, std::abs(along));
-    way -= 2.0 * along * hits[k].normal;
+    out[2 * k] = std::min(1.0, std::abs(way.dot(hits[k].normal)));
+    way = hits[k].mirrored(way);
   }
 }
 

@@ -31,11 +31,6 @@ ValidityPtr check_validity(const Paths& paths, const Radar* radar, const std::st
   });
 }
 
-template <class T>
-auto array_column(std::vector<T> ValidityArrays::* field) {
-  return [field](const py::object& self) { return numpy_view(self.cast<const Validity&>().arrays.*field, self); };
-}
-
 auto share(double ValidityShares::* field) {
   return [field](const Validity& self) { return self.shares.*field; };
 }
@@ -98,30 +93,37 @@ void bind_objects(py::module_& m) {
 
 // A column of what was found of each path.
 template <class T>
-auto found(const char* name, std::vector<T> ValidityArrays::* column) {
-  return field(name, [column](auto& self) -> auto& { return self.arrays.*column; });
+auto found(const char* name, std::vector<T> ValidityArrays::* column, const char* doc) {
+  return array_attribute(name, [column](auto& self) -> auto& { return self.arrays.*column; }, doc);
 }
 
 void def_validity_travel(py::class_<Validity, ValidityPtr>& bound) {
-  def_travel(bound, attribute("num_paths", &Validity::num_paths, "P, their number"),
-             attribute("times", &Validity::times, "[T] s, of the check"), field("has_array", &Validity::has_array),
-             attribute("shares", &Validity::shares, "ValidityShares of all paths"),
-             attribute("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power"),
-             attribute("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas"),
-             attribute("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas"),
-             attribute("stepped_phase_error", &Validity::stepped_phase_error,
-                       "rad, largest that a Newton step to the moved points of reflection leaves"),
-             attribute("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear"),
-             attribute("largest_edge_change", &Validity::largest_edge_change,
-                       "largest change of what edges of unmarked planes leave of a field, over the larger of both"),
-             field("edge_slide", &Validity::edge_slide), field("objects", &Validity::objects),
-             field("cell_noise", &Validity::cell_noise), field("specular", &Validity::specular, kSpecularPoints),
-             found("path_power", &ValidityArrays::power), found("path_phase_error", &ValidityArrays::phase_error),
-             found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error),
-             found("path_left", &ValidityArrays::left), found("path_blocked", &ValidityArrays::blocked),
-             found("path_receiver_blocked", &ValidityArrays::receiver_blocked),
-             found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change),
-             found("path_edge_change", &ValidityArrays::edge_change));
+  def_travel(
+      bound, attribute("num_paths", &Validity::num_paths, "P, their number"),
+      attribute("times", &Validity::times, "[T] s, of the check"), field("has_array", &Validity::has_array),
+      attribute("shares", &Validity::shares, "ValidityShares of all paths"),
+      attribute("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power"),
+      attribute("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas"),
+      attribute("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas"),
+      attribute("stepped_phase_error", &Validity::stepped_phase_error,
+                "rad, largest that a Newton step to the moved points of reflection leaves"),
+      attribute("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear"),
+      attribute("largest_edge_change", &Validity::largest_edge_change,
+                "largest change of what edges of unmarked planes leave of a field, over the larger of both"),
+      field("edge_slide", &Validity::edge_slide), field("objects", &Validity::objects),
+      field("cell_noise", &Validity::cell_noise), field("specular", &Validity::specular, kSpecularPoints),
+      found("power", &ValidityArrays::power, "[P] W"),
+      found("phase_error", &ValidityArrays::phase_error,
+            "[P] rad, largest where no point of reflection has left its surface"),
+      found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error, "[P] rad, what a Newton step leaves"),
+      found("left", &ValidityArrays::left, "[P] bit k: the point of reflection of hit k leaves the surface around it"),
+      found("blocked", &ValidityArrays::blocked, "[P] bit k: something comes in the way of the leg that arrives at hit k"),
+      found("receiver_blocked", &ValidityArrays::receiver_blocked,
+            "[P] 1: something comes in the way of the leg to the receiver"),
+      found("turned", &ValidityArrays::turned, "[P] 1: a cosine or a coefficient changes too much"),
+      found("cosine_change", &ValidityArrays::cosine_change, "[P] largest of a cosine, linear"),
+      found("edge_change", &ValidityArrays::edge_change,
+            "[P] largest of what edges leave of an image's field, over the larger of both"));
 }
 
 void bind_report(py::module_& m) {
@@ -164,23 +166,6 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
             return out;
           },
           "{name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength")
-      .def_property_readonly("power", array_column(&ValidityArrays::power), "[P] W")
-      .def_property_readonly("phase_error", array_column(&ValidityArrays::phase_error),
-                             "[P] rad, largest where no point of reflection has left its surface")
-      .def_property_readonly("path_stepped_phase_error", array_column(&ValidityArrays::stepped_phase_error),
-                             "[P] rad, what a Newton step leaves")
-      .def_property_readonly("left", array_column(&ValidityArrays::left),
-                             "[P] bit k: the point of reflection of hit k leaves the surface around it")
-      .def_property_readonly("blocked", array_column(&ValidityArrays::blocked),
-                             "[P] bit k: something comes in the way of the leg that arrives at hit k")
-      .def_property_readonly("receiver_blocked", array_column(&ValidityArrays::receiver_blocked),
-                             "[P] 1: something comes in the way of the leg to the receiver")
-      .def_property_readonly("turned", array_column(&ValidityArrays::turned),
-                             "[P] 1: a cosine or a coefficient changes too much")
-      .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
-                             "[P] largest of a cosine, linear")
-      .def_property_readonly("edge_change", array_column(&ValidityArrays::edge_change),
-                             "[P] largest of what edges leave of an image's field, over the larger of both")
       .def("__str__", &Validity::text)
       .def("__repr__", &repr_of);
   define(bound, "_repr_html_", from_package("presentation.notebook", "validity_html"), "A table for notebooks.");

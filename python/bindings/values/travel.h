@@ -134,16 +134,22 @@ Attribute<Member> attribute(const char* name, Member member, const char* doc) {
 }
 
 // The same of a vector that is shown as a view (array.h).
-template <class Member>
-struct ArrayAttribute : Field<Member> {
+template <class Access>
+struct ArrayAttribute : Field<Access> {
   const char* doc;
 
-  void show(auto& bound) const { bound.def_property_readonly(this->name, view_of(this->access), doc); }
+  template <class Type, class... Options>
+  void show(py::class_<Type, Options...>& bound) const {
+    const auto view = [access = this->access](const py::object& self) {
+      return numpy_view(std::invoke(access, self.cast<const Type&>()), self);
+    };
+    bound.def_property_readonly(this->name, view, doc);
+  }
 };
 
-template <class Member>
-ArrayAttribute<Member> array_attribute(const char* name, Member member, const char* doc) {
-  return {{name, member}, doc};
+template <class Access>
+ArrayAttribute<Access> array_attribute(const char* name, Access access, const char* doc) {
+  return {{name, std::move(access)}, doc};
 }
 
 // A field that is an enum, by its name; `names` is a Choice (choice.h).

@@ -128,11 +128,12 @@ class _Columns:
         return _core.range_doppler(make(shape), one, window, zero_pad)
 
     def noise(self, column, window, zero_pad) -> float:
-        """Mean in W of a column of noise."""
+        """Mean in W of a column of noise, of which a channel of a code has less than a radar of that channel alone."""
         one = _of_channels(self.radar_of_column, self._first)
         spectrum = self.one_map(lambda shape: _core.add_noise(np.zeros(shape), one, seed=_NOISE_SEED, start_time=0.0), window,
                                 zero_pad)
-        return float(np.mean(column(spectrum)))
+        share = _core.cell_noise_power(self.radar_of_column, window) / _core.cell_noise_power(one, window)
+        return share * float(np.mean(column(spectrum)))
 
 
 def _of_channels(radar, burst: Burst):

@@ -47,6 +47,15 @@ def test_noise_has_the_power_that_is_told():
         assert found.power.mean() / found.noise_power == pytest.approx(1.0, abs=0.1)  # of 31 x 32 cells of a few ranges
 
 
+def test_the_noise_of_a_channel_of_signs_is_what_their_sum_leaves():
+    radar = build_radar(((0, 0, 0), (0, 0.01, 0)), num_chirps=256, multiplexing="bpm")
+    received = ep.add_noise(np.zeros((1, 1, 512, 64)), radar, seed=3, start_time=0.0)
+    cube = ep.demultiplex(received, radar)
+    for channel in (None, (1, 0)):
+        found = ep.range_time(cube, radar, channel=channel)
+        assert found.power.mean() / found.noise_power == pytest.approx(1.0, abs=0.1)  # of 256 x 64 cells
+
+
 def test_the_gate_takes_the_ranges_in_it():
     radar = build_radar(num_chirps=64)
     ranges = ep.range_doppler(random_cube(radar), radar).range

@@ -11,7 +11,7 @@ namespace {
 using testing::Complex;
 using testing::kDegree;
 const double kHalf = 0.5 * testing::wavelength();
-// The search ends with steps of the grid times 0.35^9, at most a few degrees.
+// The search ends with steps of the grid times 0.225^7, of at most a few degrees.
 constexpr double kFine = 1e-5;
 constexpr double kPower = 1e-6;           // relative: second order in kFine, and the table of offsets
 constexpr double kBesideEachOther = 0.2;  // of powers of 1 and 4, near nulls of each other
@@ -47,6 +47,22 @@ TEST(EstimateAngles, AWaveIsFoundBetweenTheStepsOfTheGrid) {
       const Vec3 middle(0.05, 0.25 * 7 * kHalf, 0.5 * (1.0 + 2.5 * kHalf));
       EXPECT_NEAR((found.points[0] - middle - map.range[2] * direction(left, up)).norm(), 0.0, kFine * map.range[2]);
     }
+  }
+}
+
+// One of three transmitters stands higher, as on boards of known sensors: beams lie aslant to azimuth and elevation.
+TEST(EstimateAngles, AWaveIsFoundByBeamsThatLieAslant) {
+  const Radar radar =
+      testing::radar_with({{0, 0, 0}, {0, 4.0 * kHalf, kHalf}, {0, 8.0 * kHalf, 0}}, testing::line(4, Vec3(0, kHalf, 0)));
+  for (int i = 0; i < 40; ++i) {
+    const double left = 0.8 * std::sin(2.0 * i), up = 0.5 * std::sin(3.7 * i);
+    RangeDoppler map = testing::empty_map(radar);
+    testing::add_wave(map, radar, direction(left, up), 1.0, 3, 2);
+    const AngleEstimates found = estimate_angles(map, radar, {{3, 2}}, search_grid(radar));
+    ASSERT_EQ(found.cell.size(), 1u);
+    EXPECT_NEAR(found.azimuth[0], left, kFine);
+    EXPECT_NEAR(found.elevation[0], up, kFine);
+    EXPECT_NEAR(found.power[0], 1.0, kPower);
   }
 }
 

@@ -13,8 +13,11 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxPeaks = 64;
-constexpr int kRefinements = 10;     // rounds; each narrows the stencil
-constexpr double kNarrowing = 0.35;  // factor of the stencil per round: 3e-5 of a step of the grid at the end
+constexpr int kNarrowings = 7;        // of the stencil, each behind a round that has not left its middle
+constexpr double kNarrowing = 0.225;  // factor of each: 3e-5 of a step of the grid at the end
+constexpr double kMiddle = 0.5;       // of the stencil
+constexpr int kMaxRounds = 100;       // beams that are longer than wide aslant take more than one for a stencil
+constexpr double kApart = 0.01;       // of a step of the grid, within which two tops of the grid have led to one peak
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -57,9 +60,13 @@ class PeakSearch {
       if (is_top(power, d)) tops.push_back(d);
     }
     std::ranges::stable_sort(tops, [&](int64_t a, int64_t b) { return power[a] > power[b]; });
-    tops.resize(std::min<size_t>(tops.size(), options_.max_peaks));
     std::vector<Peak> found;
-    for (const int64_t d : tops) found.push_back(refined(beam, d, power[d]));
+    for (size_t i = 0; i < tops.size() && std::ssize(found) < options_.max_peaks; ++i) {
+      const Peak peak = refined(beam, tops[i], power[tops[i]]);
+      const Eigen::Array2d apart = kApart * steps(tops[i]);
+      const auto is_peak = [&](const Peak& other) { return is_within(peak, other, apart); };
+      if (std::ranges::none_of(found, is_peak)) found.push_back(peak);
+    }
     return strongest(std::move(found));
   }
 
@@ -76,18 +83,31 @@ class PeakSearch {
     return true;
   }
 
-  // Climbs along azimuth and elevation in turn, and then along both at once: aslant, a beam is longer across them.
+  // Climbs along azimuth and elevation in turn, and then along both at once: aslant, a beam is longer across them. The stencil
+  // narrows once the top is within its middle: narrowed on the way there, it would stop short of it.
   Peak refined(const CellBeam& beam, int64_t d, double power) const {
     Peak peak{angles_.azimuth[d % num_azimuths()], angles_.elevation[d / num_azimuths()], power};
-    double across = step(angles_.azimuth, d % num_azimuths()), up = step(angles_.elevation, d / num_azimuths());
-    for (int round = 0; round < kRefinements; ++round) {
-      climb(beam, peak, &Peak::azimuth, across, angles_.azimuth);
-      climb(beam, peak, &Peak::elevation, up, angles_.elevation);
-      if (across > 0.0 && up > 0.0) climb_aslant(beam, peak, across, up);
-      across *= kNarrowing;
-      up *= kNarrowing;
+    Eigen::Array2d stencil = steps(d);
+    for (int round = 0, narrowings = 0; narrowings < kNarrowings && round < kMaxRounds; ++round) {
+      const Peak before = peak;
+      climb(beam, peak, &Peak::azimuth, stencil[0], angles_.azimuth);
+      climb(beam, peak, &Peak::elevation, stencil[1], angles_.elevation);
+      if (stencil.minCoeff() > 0.0) climb_aslant(beam, peak, stencil[0], stencil[1]);
+      if (!is_within(peak, before, kMiddle * stencil)) continue;
+      stencil *= kNarrowing;
+      ++narrowings;
     }
     return peak;
+  }
+
+  // Returns whether two peaks are no further from each other than `apart`, in azimuth and in elevation.
+  static bool is_within(const Peak& a, const Peak& b, const Eigen::Array2d& apart) {
+    return std::abs(a.azimuth - b.azimuth) <= apart[0] && std::abs(a.elevation - b.elevation) <= apart[1];
+  }
+
+  // Returns the steps of the grid about a direction in azimuth and elevation, rad.
+  Eigen::Array2d steps(int64_t d) const {
+    return {step(angles_.azimuth, d % num_azimuths()), step(angles_.elevation, d / num_azimuths())};
   }
 
   static double step(const std::vector<double>& axis, int64_t i) {

@@ -51,18 +51,43 @@ TEST(EstimateAngles, AWaveIsFoundBetweenTheStepsOfTheGrid) {
 }
 
 // One of three transmitters stands higher, as on boards of known sensors: beams lie aslant to azimuth and elevation.
+Radar aslant_radar() {
+  return testing::radar_with({{0, 0, 0}, {0, 4.0 * kHalf, kHalf}, {0, 8.0 * kHalf, 0}}, testing::line(4, Vec3(0, kHalf, 0)));
+}
+
+AngleEstimates peaks_of_wave(const Radar& radar, double left, double up, const EstimateOptions& options = {}) {
+  RangeDoppler map = testing::empty_map(radar);
+  testing::add_wave(map, radar, direction(left, up), 1.0, 3, 2);
+  return estimate_angles(map, radar, {{3, 2}}, search_grid(radar), options);
+}
+
 TEST(EstimateAngles, AWaveIsFoundByBeamsThatLieAslant) {
-  const Radar radar =
-      testing::radar_with({{0, 0, 0}, {0, 4.0 * kHalf, kHalf}, {0, 8.0 * kHalf, 0}}, testing::line(4, Vec3(0, kHalf, 0)));
+  const Radar radar = aslant_radar();
   for (int i = 0; i < 40; ++i) {
     const double left = 0.8 * std::sin(2.0 * i), up = 0.5 * std::sin(3.7 * i);
-    RangeDoppler map = testing::empty_map(radar);
-    testing::add_wave(map, radar, direction(left, up), 1.0, 3, 2);
-    const AngleEstimates found = estimate_angles(map, radar, {{3, 2}}, search_grid(radar));
+    const AngleEstimates found = peaks_of_wave(radar, left, up);
     ASSERT_EQ(found.cell.size(), 1u);
     EXPECT_NEAR(found.azimuth[0], left, kFine);
     EXPECT_NEAR(found.elevation[0], up, kFine);
     EXPECT_NEAR(found.power[0], 1.0, kPower);
+  }
+}
+
+// Tops of the grid along one beam are one peak, side lobes and ambiguous directions are others.
+TEST(EstimateAngles, ABeamThatLiesAslantHasOnePeak) {
+  constexpr double kWithinABeam = 0.05;  // rad; beams are 0.15 wide and several times as long
+  EstimateOptions options;
+  options.max_peaks = 8;
+  const Radar radar = aslant_radar();
+  for (int i = 0; i < 40; ++i) {
+    const AngleEstimates found = peaks_of_wave(radar, 0.9 * std::sin(2.0 * i), 0.5 * std::sin(3.7 * i), options);
+    ASSERT_GT(found.cell.size(), 1u);
+    for (size_t a = 1; a < found.cell.size(); ++a) {
+      for (size_t b = 0; b < a; ++b) {
+        const double apart = std::hypot(found.azimuth[a] - found.azimuth[b], found.elevation[a] - found.elevation[b]);
+        EXPECT_GT(apart, kWithinABeam) << i;
+      }
+    }
   }
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
@@ -13,11 +16,13 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxPeaks = 64;
-constexpr int kNarrowings = 7;        // of the stencil, each behind a round that has not left its middle
-constexpr double kNarrowing = 0.225;  // factor of each: 3e-5 of a step of the grid at the end
-constexpr double kMiddle = 0.5;       // of the stencil
-constexpr int kMaxRounds = 100;       // beams that are longer than wide aslant take more than one for a stencil
-constexpr double kApart = 0.01;       // of a step of the grid, within which two tops of the grid have led to one peak
+constexpr int kNarrowings = 7;            // of the stencil, each behind a step that stayed within its middle
+constexpr double kNarrowing = 0.225;      // factor of each: 3e-5 of a step of the grid at the end
+constexpr double kMiddle = 0.5;           // of the stencil
+constexpr double kLongest = 4.0;          // stencils, of a step to the top of a paraboloid
+constexpr int kMaxSteps = 100;            // beams that lie aslant are longer than a step
+constexpr double kAlike = 0.98;           // ratio of powers
+constexpr double kNoValley = 1.0 - 1e-9;  // of the lower of two powers that are alike, half way between both
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -63,9 +68,9 @@ class PeakSearch {
     std::vector<Peak> found;
     for (size_t i = 0; i < tops.size() && std::ssize(found) < options_.max_peaks; ++i) {
       const Peak peak = refined(beam, tops[i], power[tops[i]]);
-      const Eigen::Array2d apart = kApart * steps(tops[i]);
-      const auto is_peak = [&](const Peak& other) { return is_within(peak, other, apart); };
-      if (std::ranges::none_of(found, is_peak)) found.push_back(peak);
+      const auto same = std::ranges::find_if(found, [&](const Peak& other) { return is_one(beam, peak, other); });
+      if (same == found.end()) found.push_back(peak);
+      else if (peak.power > same->power) *same = peak;
     }
     return strongest(std::move(found));
   }
@@ -83,26 +88,27 @@ class PeakSearch {
     return true;
   }
 
-  // Climbs along azimuth and elevation in turn, and then along both at once: aslant, a beam is longer across them. The stencil
-  // narrows once the top is within its middle: narrowed on the way there, it would stop short of it.
+  // Returns whether no valley parts two peaks that are as high: along a beam that lies aslant, tops of the grid lead to one.
+  bool is_one(const CellBeam& beam, const Peak& a, const Peak& b) const {
+    const auto [lower, higher] = std::minmax(a.power, b.power);
+    if (lower < kAlike * higher) return false;
+    const Peak between = beside(beam, a, 0.5 * (b.azimuth - a.azimuth), 0.5 * (b.elevation - a.elevation));
+    return between.power >= kNoValley * lower;
+  }
+
+  // Narrows the stencil once the top is within its middle: narrowed on the way there, it would stop short of it.
   Peak refined(const CellBeam& beam, int64_t d, double power) const {
     Peak peak{angles_.azimuth[d % num_azimuths()], angles_.elevation[d / num_azimuths()], power};
     Eigen::Array2d stencil = steps(d);
-    for (int round = 0, narrowings = 0; narrowings < kNarrowings && round < kMaxRounds; ++round) {
+    for (int step = 0, narrowings = 0; narrowings < kNarrowings && step < kMaxSteps; ++step) {
       const Peak before = peak;
-      climb(beam, peak, &Peak::azimuth, stencil[0], angles_.azimuth);
-      climb(beam, peak, &Peak::elevation, stencil[1], angles_.elevation);
-      if (stencil.minCoeff() > 0.0) climb_aslant(beam, peak, stencil[0], stencil[1]);
-      if (!is_within(peak, before, kMiddle * stencil)) continue;
+      climb(beam, peak, stencil);
+      const Eigen::Array2d moved(peak.azimuth - before.azimuth, peak.elevation - before.elevation);
+      if ((moved.abs() > kMiddle * stencil).any()) continue;
       stencil *= kNarrowing;
       ++narrowings;
     }
     return peak;
-  }
-
-  // Returns whether two peaks are no further from each other than `apart`, in azimuth and in elevation.
-  static bool is_within(const Peak& a, const Peak& b, const Eigen::Array2d& apart) {
-    return std::abs(a.azimuth - b.azimuth) <= apart[0] && std::abs(a.elevation - b.elevation) <= apart[1];
   }
 
   // Returns the steps of the grid about a direction in azimuth and elevation, rad.
@@ -116,34 +122,37 @@ class PeakSearch {
     return std::max(i > 0 ? axis[i] - axis[i - 1] : 0.0, i < last ? axis[i + 1] - axis[i] : 0.0);
   }
 
-  // Moves to the highest of the peak, its neighbours at +-step along one angle, and the top of the parabola through the
-  // three.
-  void climb(const CellBeam& beam, Peak& peak, double Peak::* angle, double step, const std::vector<double>& axis) const {
-    if (step <= 0.0) return;
-    const double centre = peak.*angle, low = height(at(beam, peak, angle, centre - step, axis));
-    const double high = height(at(beam, peak, angle, centre + step, axis));
-    const double second_difference = low - 2.0 * height(peak) + high;
-    const double offset = second_difference < 0.0 ? 0.5 * step * (low - high) / second_difference : 0.0;
-    for (const double shift : {-step, step, std::clamp(offset, -step, step)}) {
-      const Peak candidate = at(beam, peak, angle, centre + shift, axis);
-      if (candidate.power > peak.power) peak = candidate;
-    }
+  // Moves to the highest of the peak, its neighbours on the stencil, and the top of the paraboloid through them, or, where
+  // that is no higher, half way to it and so on: aslant, a beam is longer than along azimuth and elevation, and bent.
+  void climb(const CellBeam& beam, Peak& peak, const Eigen::Array2d& stencil) const {
+    const Peak centre = peak;
+    const auto visit = [&](double i, double k) {
+      const Peak here = beside(beam, centre, i * stencil[0], k * stencil[1]);
+      if (here.power > peak.power) peak = here;
+      return height(here);
+    };
+    const double top = height(centre);
+    // These are the slope along an angle, or along both, and the second derivative, in stencils.
+    const auto slopes = [&](double i, double k) {
+      const double before = visit(-i, -k), behind = visit(i, k);
+      return std::pair{0.5 * (behind - before), before - 2.0 * top + behind};
+    };
+    const bool has_azimuth = stencil[0] > 0.0, has_elevation = stencil[1] > 0.0;
+    const auto [x, xx] = has_azimuth ? slopes(1, 0) : std::pair{0.0, 0.0};
+    const auto [y, yy] = has_elevation ? slopes(0, 1) : std::pair{0.0, 0.0};
+    const double xy = has_azimuth && has_elevation ? 0.5 * (slopes(1, 1).second - xx - yy) : 0.0;
+    Eigen::Vector2d to_top = uphill(Eigen::Vector2d(x, y), (Eigen::Matrix2d() << xx, xy, xy, yy).finished());
+    while (visit(to_top[0], to_top[1]) <= top && to_top.lpNorm<Eigen::Infinity>() > kMiddle) to_top *= 0.5;
   }
 
-  // Moves to the top of the paraboloid through the peak and its neighbours at +-across and +-up, if that is higher.
-  void climb_aslant(const CellBeam& beam, Peak& peak, double across, double up) const {
-    const auto beside = [&](double i, double k) { return beside_peak(beam, peak, i * across, k * up); };
-    const auto height_at = [&](double i, double k) { return height(beside(i, k)); };
-    const double top = height(peak), left = height_at(-1, 0), right = height_at(1, 0);
-    const double below = height_at(0, -1), above = height_at(0, 1);
-    const double xx = left - 2.0 * top + right, yy = below - 2.0 * top + above;
-    const double xy = 0.5 * (height_at(1, 1) + height_at(-1, -1) - left - right - below - above) + top;
-    const double x = 0.5 * (right - left), y = 0.5 * (above - below), determinant = xx * yy - xy * xy;
-    if (!(xx < 0.0) || !(determinant > 0.0)) return;
-    const double i = (xy * y - yy * x) / determinant, k = (xy * x - xx * y) / determinant;
-    const double longest = std::max({1.0, std::abs(i), std::abs(k)});
-    const Peak candidate = beside(i / longest, k / longest);
-    if (candidate.power > peak.power) peak = candidate;
+  // Returns the step to the top of a paraboloid of this slope and these second derivatives, and, along axes where it has none,
+  // as far uphill.
+  static Eigen::Vector2d uphill(const Eigen::Vector2d& slope, const Eigen::Matrix2d& derivatives) {
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+    axes.computeDirect(derivatives);
+    const Eigen::Array2d along = axes.eigenvectors().transpose() * slope;
+    const Eigen::Array2d longest = along.sign() * kLongest, step = along / axes.eigenvalues().array().abs();
+    return axes.eigenvectors() * (step.abs() < kLongest).select(step, longest).matrix();
   }
 
   // Returns what is a parabola about a peak: beside one echo Capon's power falls as (e + d^2)^-2 at a distance d.
@@ -151,18 +160,9 @@ class PeakSearch {
     return options_.beams.method == BeamMethod::kCapon ? -1.0 / std::sqrt(peak.power) : peak.power;
   }
 
-  Peak at(const CellBeam& beam, Peak peak, double Peak::* angle, double value, const std::vector<double>& axis) const {
-    peak.*angle = std::clamp(value, axis.front(), axis.back());
-    return with_power(beam, peak);
-  }
-
-  Peak beside_peak(const CellBeam& beam, Peak peak, double across, double up) const {
+  Peak beside(const CellBeam& beam, Peak peak, double across, double up) const {
     peak.azimuth = std::clamp(peak.azimuth + across, angles_.azimuth.front(), angles_.azimuth.back());
     peak.elevation = std::clamp(peak.elevation + up, angles_.elevation.front(), angles_.elevation.back());
-    return with_power(beam, peak);
-  }
-
-  Peak with_power(const CellBeam& beam, Peak peak) const {
     const Vec3 toward = direction(peak.azimuth, peak.elevation);
     peak.power = beam.power(BeamKernel(steering_vectors(source_.array(), {toward})))[0];
     return peak;

@@ -30,10 +30,10 @@ struct AngleEstimates {
   std::vector<Vec3> points;                                        // [N] m, in the radar's frame
 };
 
-// Finds the directions of the strongest peaks of beam power in each cell, strongest first. Parabolas through the power of
+// Finds the directions of the strongest peaks of beam power in each cell, strongest first. Paraboloids through the power of
 // beams about a peak refine it beyond the grid; angles stay within the grid. Tops of the grid that lead to one peak, as on a
-// beam that lies aslant, count once. A cell without power has no peak. A point is at
-// its cell's range from the middle of the mean transmitter and the mean receiver.
+// beam that lies aslant, count once. A cell without power has no peak. A point is at its cell's range from the middle of the
+// mean transmitter and the mean receiver.
 // An array without vertical extent cannot tell elevations apart: give it one elevation.
 // Runs in parallel over cells; the result does not depend on the number of threads. Raises as `beamform`.
 inline constexpr double kSearchStep = kPi;  // largest_step of default axes for a search: the array sets the step

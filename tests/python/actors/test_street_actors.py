@@ -46,6 +46,17 @@ def test_a_sign_flashes_as_a_plate_of_its_area_does():
     assert 10 * np.log10(found) == pytest.approx(10 * np.log10(4 * np.pi * (0.3 * 0.2) ** 2 / wavelength**2), abs=0.3)
 
 
+@pytest.mark.parametrize("radius, end", [(0.07, 0.04), (0.04, 0.04), (0.02, 0.02), (0.001, 0.001)])
+def test_a_pole_is_nowhere_wider_than_at_its_foot(radius, end):
+    """Unless told so, as a wire or a fence post that is named by its radius alone."""
+    vertices = np.asarray(ep.actors.pole(height=1.0, radius=radius).parts[0].mesh.vertices)
+    distance, is_end = np.hypot(vertices[:, 0], vertices[:, 1]), vertices[:, 2] > 0.5
+    assert distance[is_end].max() == pytest.approx(end, rel=1e-12, abs=0)
+    assert distance[~is_end].max() == pytest.approx(radius, rel=1e-12, abs=0)
+    widened = ep.actors.pole(height=1.0, radius=radius, end_radius=0.1).parts[0].mesh.vertices
+    assert np.hypot(*np.asarray(widened).T[:2]).max() == pytest.approx(0.1, rel=1e-12, abs=0)
+
+
 def test_the_rail_has_the_w_profile():
     rail = ep.actors.guard_rail(length=6.0)
     size, _ = extent(rail, lambda name: name == "rail")

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from ... import _core
-from ...arguments.checks import checked, one_of, real
+from ...arguments.checks import checked, one_of, optional, real
 from ..actor import Actor, Part
 from ..limits import row_rule, size_rule
 from ..solids import extruded, outward, round_segments, tube
@@ -20,6 +20,7 @@ SIGN_GAP = 0.03            # m between sign and tube
 # Corners of the shapes and the turn of the first one about the sign's axis, in rad from the top.
 SIGN_CORNERS = {"round": (32, 0.0), "triangle": (3, 0.0), "octagon": (8, np.pi / 8)}
 
+POLE_END_RADIUS = 0.04     # m, where no other is asked for
 SUNK = 0.05                # m by which feet reach into the ground, so that they lie not on it
 RAIL_HEIGHT, RAIL_DEPTH, RAIL_THICKNESS = 0.311, 0.081, 0.003   # m: the W profile of steel guard rails (EN 1317 systems)
 RAIL_TOP = 0.75            # m above the ground
@@ -31,14 +32,16 @@ RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0),
              (1.0, 0.86))
 
 
-@checked(height=size_rule, radius=size_rule, end_radius=size_rule)
-def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04) -> Actor:
+@checked(height=size_rule, radius=size_rule, end_radius=optional(size_rule))
+def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float | None = None) -> Actor:
     """A round metal pole that tapers from `radius` at the ground to `end_radius` at `height`, all in m.
 
     It stands at the origin, its foot 5 cm below the ground z = 0. One part, "tube".
+    end_radius: None: 0.04, or `radius` where that is less
     Raises TypeError or ValueError naming the argument.
     """
-    surface = tube((0, 0, -SUNK), (0, 0, height), radius, end_radius, segments=round_segments(radius))
+    end = min(radius, POLE_END_RADIUS) if end_radius is None else end_radius
+    surface = tube((0, 0, -SUNK), (0, 0, height), radius, end, segments=round_segments(radius))
     return Actor([Part("tube", _core.Mesh(*surface), "metal", smooth=True)])
 
 

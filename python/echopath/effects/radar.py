@@ -1,6 +1,7 @@
 """Effects of antennas, waveform and receiver."""
 from __future__ import annotations
 
+from .. import _core
 from ..base.radar.antennas import antennas_of, are_crossed
 from ..base.text.counts import counted
 from ..tracing.polarization import FIELD_VECTORS, need_of_field_vectors
@@ -90,7 +91,12 @@ def _video_phase(case: Case):
 
 @rule("anti-alias filter", "ChirpSequence.sampling_rate")
 def _filter(case: Case):
-    return True, f"always: echoes beyond {case.radar.waveform.max_range:.4g} m are cut off"
+    waveform = case.radar.waveform
+    reason = f"always: echoes beyond {waveform.max_range:.4g} m are cut off"
+    next_chirp = 0.5 * _core.speed_of_light * waveform.chirp_interval   # m, whose echoes come when it begins
+    if next_chirp < waveform.max_range:
+        reason += f"; those from beyond {next_chirp:.4g} m, which meet the next chirp, stay in their own"
+    return True, reason
 
 
 @rule("real samples", "ChirpSequence.real")

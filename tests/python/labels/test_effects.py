@@ -132,6 +132,15 @@ def test_an_effect_is_on_where_something_asks_for_it_and_off_where_nothing_does(
         assert not other.modelled and other.reason
 
 
+@pytest.mark.parametrize("interval, words", [(60e-6, "beyond 8994 m, which meet the next chirp"), (600e-6, "m are cut off")])
+def test_echoes_that_come_after_the_next_chirp_has_begun_are_named(interval, words):
+    """Half of 299 792 458 m/s times 60 us is 8994 m; 1024 samples over 2 MHz hear as far as 76.7 km, 600 us wait for 89.9 km."""
+    waveform = ep.ChirpSequence(start_frequency=9.4e9, bandwidth=2e6, num_samples=1024, sampling_rate=20e6, num_chirps=2,
+                                chirp_interval=interval)
+    reason = found(radar=make_radar().replace(waveform=waveform))["anti-alias filter"].reason
+    assert words in reason and ("meet" in reason) == ("meet" in words)
+
+
 def test_every_rule_has_a_case():
     assert set(CASES) == {rule.name for rule in rules.RULES}
 

@@ -107,6 +107,23 @@ TEST(EstimateAngles, SeveralPeaksOfACellComeStrongestFirst) {
   EXPECT_NEAR(found.power[1], 1.0, kBesideEachOther);
 }
 
+// Sparse arrays have other directions in which nearly all elements agree. One of them may lie nearer to a direction of the grid
+// than the wave does, whose power no other direction reaches.
+TEST(EstimateAngles, AWaveIsToldFromDirectionsThatAreNearlyAmbiguous) {
+  // Four receivers without a grid; a line of six whose second half stands higher.
+  const std::vector<Vec3> scattered = {
+      {0, 0, 0}, {0, 3.1 * kHalf, 5.3 * kHalf}, {0, 8.7 * kHalf, 1.9 * kHalf}, {0, 13.2 * kHalf, 9.4 * kHalf}};
+  const std::vector<Vec3> two_steps = {{0, 0, 0}, {0, 2.0 * kHalf, 0}, {0, 4.0 * kHalf, 2.0 * kHalf}};
+  for (const Radar& radar : {testing::radar_with({Vec3::Zero()}, scattered),
+                             testing::radar_with(two_steps, testing::line(2, Vec3(0, kHalf, 0)))}) {
+    for (int i = 0; i < 100; ++i) {
+      const AngleEstimates found = peaks_of_wave(radar, 0.8 * std::sin(2.0 * i), 0.5 * std::sin(3.7 * i));
+      ASSERT_EQ(found.cell.size(), 1u);
+      EXPECT_NEAR(found.power[0], 1.0, kPower) << i;
+    }
+  }
+}
+
 TEST(EstimateAngles, FoldsAreTheVelocitiesWhoseSlotsAgree) {
   const Vec3 step(0, kHalf, 0);
   const Radar radar = testing::radar_with(testing::line(5, 4 * step), testing::line(4, step));

@@ -16,13 +16,17 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxPeaks = 64;
-constexpr int kNarrowings = 7;            // of the stencil, each behind a step that stayed within its middle
-constexpr double kNarrowing = 0.225;      // factor of each: 3e-5 of a step of the grid at the end
-constexpr double kMiddle = 0.5;           // of the stencil
-constexpr double kLongest = 4.0;          // stencils, of a step to the top of a paraboloid
-constexpr int kMaxSteps = 100;            // beams that lie aslant are longer than a step
-constexpr double kAlike = 0.98;           // ratio of powers
-constexpr double kNoValley = 1.0 - 1e-9;  // of the lower of two powers that are alike, half way between both
+constexpr int kNarrowings = 7;        // of the stencil, each behind a step that stayed within its middle
+constexpr double kNarrowing = 0.225;  // factor of each: 3e-5 of a step of the grid at the end
+constexpr double kMiddle = 0.5;       // of the stencil
+constexpr double kLongest = 4.0;      // stencils, of a step to the top of a paraboloid
+constexpr int kMaxSteps = 100;        // beams that lie aslant are longer than a step
+constexpr double kAlike = 0.98;       // ratio of powers
+// Of a peak's power the grid has this share at least, cos(pi/8)^2 along each angle, of an array of four corners whose beams lie
+// an eighth of their width beside the directions of the grid: its highest top may lead to a lower peak than others.
+constexpr double kLeastOnGrid = 0.72;
+constexpr double kLeastAfterAStep = 0.95;  // the share that the first step from there finds
+constexpr double kNoValley = 1.0 - 1e-9;   // of the lower of two powers that are alike, half way between both
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -66,11 +70,18 @@ class PeakSearch {
     }
     std::ranges::stable_sort(tops, [&](int64_t a, int64_t b) { return power[a] > power[b]; });
     std::vector<Peak> found;
-    for (size_t i = 0; i < tops.size() && std::ssize(found) < options_.max_peaks; ++i) {
-      const Peak peak = refined(beam, tops[i], power[tops[i]]);
+    for (const int64_t top : tops) {
+      const bool is_full = std::ssize(found) >= options_.max_peaks;
+      const double least = is_full ? found[options_.max_peaks - 1].power : 0.0;  // of the weakest that is asked for
+      if (power[top] < kLeastOnGrid * least) break;
+      Peak peak = at(top, power[top]);
+      if (is_full) climb(beam, peak, steps(top));
+      if (peak.power < kLeastAfterAStep * least) continue;
+      peak = refined(beam, peak, steps(top));
       const auto same = std::ranges::find_if(found, [&](const Peak& other) { return is_one(beam, peak, other); });
       if (same == found.end()) found.push_back(peak);
       else if (peak.power > same->power) *same = peak;
+      std::ranges::stable_sort(found, std::greater(), &Peak::power);
     }
     return strongest(std::move(found));
   }
@@ -97,9 +108,7 @@ class PeakSearch {
   }
 
   // Narrows the stencil once the top is within its middle: narrowed on the way there, it would stop short of it.
-  Peak refined(const CellBeam& beam, int64_t d, double power) const {
-    Peak peak{angles_.azimuth[d % num_azimuths()], angles_.elevation[d / num_azimuths()], power};
-    Eigen::Array2d stencil = steps(d);
+  Peak refined(const CellBeam& beam, Peak peak, Eigen::Array2d stencil) const {
     for (int step = 0, narrowings = 0; narrowings < kNarrowings && step < kMaxSteps; ++step) {
       const Peak before = peak;
       climb(beam, peak, stencil);
@@ -109,6 +118,10 @@ class PeakSearch {
       ++narrowings;
     }
     return peak;
+  }
+
+  Peak at(int64_t d, double power) const {
+    return {angles_.azimuth[d % num_azimuths()], angles_.elevation[d / num_azimuths()], power};
   }
 
   // Returns the steps of the grid about a direction in azimuth and elevation, rad.
@@ -168,8 +181,9 @@ class PeakSearch {
     return peak;
   }
 
+  // Returns the peaks that are asked for of those found, which are in order.
   std::vector<Peak> strongest(std::vector<Peak> found) const {
-    std::ranges::stable_sort(found, std::greater(), &Peak::power);
+    if (std::ssize(found) > options_.max_peaks) found.resize(options_.max_peaks);
     const double share = std::pow(10.0, -options_.peak_range_db / 10.0);
     while (!found.empty() && found.back().power < share * found.front().power) found.pop_back();
     return found;

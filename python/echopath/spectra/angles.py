@@ -51,7 +51,7 @@ def compensate_tdm(spectrum: _core.RangeDoppler, radar: _core.Radar, fold: int =
     """A map without the phase that motion adds between transmit slots (TDM).
 
     Transmitter m sends a time t_m after the first, m chirp intervals and what extra_idle adds in the mean: a cell of velocity v
-    (receding positive) is turned by e^{-j 2 pi (2 v / wavelength) t_m}. M transmitters divide the unambiguous velocity by M;
+    (receding positive) is turned by e^{j 2 pi (2 v / wavelength) t_m}. M transmitters divide the unambiguous velocity by M;
     an echo of v + 2 fold v_max, with v_max = waveform.max_velocity(M), appears at v and needs its `fold`. Where transmitters
     have carriers of their own (frequency_steps and bandwidth_steps that repeat with them), the phase that the delay of a
     cell's range makes of the difference is taken out, too.

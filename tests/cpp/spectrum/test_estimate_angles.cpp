@@ -107,8 +107,8 @@ TEST(EstimateAngles, SeveralPeaksOfACellComeStrongestFirst) {
   EXPECT_NEAR(found.power[1], 1.0, kBesideEachOther);
 }
 
-// Sparse arrays have other directions in which nearly all elements agree. One of them may lie nearer to a direction of the grid
-// than the wave does, whose power no other direction reaches.
+// Sparse arrays have other directions in which nearly all elements agree. One of them may lie nearer to a direction of the
+// grid than the wave does, whose power no other direction reaches.
 TEST(EstimateAngles, AWaveIsToldFromDirectionsThatAreNearlyAmbiguous) {
   // Four receivers without a grid; a line of six whose second half stands higher.
   const std::vector<Vec3> scattered = {

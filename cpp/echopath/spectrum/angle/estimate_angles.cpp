@@ -22,8 +22,8 @@ constexpr double kMiddle = 0.5;       // of the stencil
 constexpr double kLongest = 4.0;      // stencils, of a step to the top of a paraboloid
 constexpr int kMaxSteps = 100;        // beams that lie aslant are longer than a step
 constexpr double kAlike = 0.98;       // ratio of powers
-// Of a peak's power the grid has this share at least, cos(pi/8)^2 along each angle, of an array of four corners whose beams lie
-// an eighth of their width beside the directions of the grid: its highest top may lead to a lower peak than others.
+// Of a peak's power the grid has this share at least, cos(pi/8)^2 along each angle, of an array of four corners whose beams
+// lie an eighth of their width beside the directions of the grid: its highest top may lead to a lower peak than others.
 constexpr double kLeastOnGrid = 0.72;
 constexpr double kLeastAfterAStep = 0.95;  // the share that the first step from there finds
 constexpr double kNoValley = 1.0 - 1e-9;   // of the lower of two powers that are alike, half way between both
@@ -158,8 +158,8 @@ class PeakSearch {
     while (visit(to_top[0], to_top[1]) <= top && to_top.lpNorm<Eigen::Infinity>() > kMiddle) to_top *= 0.5;
   }
 
-  // Returns the step to the top of a paraboloid of this slope and these second derivatives, and, along axes where it has none,
-  // as far uphill.
+  // Returns the step to the top of a paraboloid of this slope and these second derivatives, and, along axes where it has
+  // none, as far uphill.
   static Eigen::Vector2d uphill(const Eigen::Vector2d& slope, const Eigen::Matrix2d& derivatives) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(derivatives);

@@ -91,6 +91,25 @@ TEST(EstimateAngles, ABeamThatLiesAslantHasOnePeak) {
   }
 }
 
+// Elements two wavelengths apart see the same wave from sines that lie half of one apart: 0 and +-1/2, within 45 degrees, whose
+// outer two have the inner one half way between them.
+TEST(EstimateAngles, AmbiguousDirectionsAreNotOne) {
+  const Radar radar = testing::radar_with({Vec3::Zero()}, testing::line(4, Vec3(0, 4.0 * kHalf, 0)));
+  RangeDoppler map = testing::empty_map(radar);
+  testing::add_wave(map, radar, direction(0.0, 0.0), 1.0, 3, 2);
+  EstimateOptions options;
+  options.max_peaks = 3;
+  AngleGrid grid{{}, {0.0}};
+  for (int i = -40; i <= 40; ++i) grid.azimuth.push_back(i * kDegree);
+  const AngleEstimates found = estimate_angles(map, radar, {{3, 2}}, grid, options);
+  ASSERT_EQ(found.cell.size(), 3u);
+  std::vector<double> sines;
+  for (const double azimuth : found.azimuth) sines.push_back(std::sin(azimuth));
+  std::ranges::sort(sines);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(sines[k], 0.5 * (k - 1), kFine);
+  for (const double power : found.power) EXPECT_NEAR(power, 1.0, kPower);
+}
+
 TEST(EstimateAngles, SeveralPeaksOfACellComeStrongestFirst) {
   const Radar radar = testing::line_radar(16);
   RangeDoppler map = testing::empty_map(radar);

@@ -1,6 +1,7 @@
 #include "echopath/spectrum/angle/estimate_angles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -26,7 +27,9 @@ constexpr double kAlike = 0.98;       // ratio of powers
 // lie an eighth of their width beside the directions of the grid: its highest top may lead to a lower peak than others.
 constexpr double kLeastOnGrid = 0.72;
 constexpr double kLeastAfterAStep = 0.95;  // the share that the first step from there finds
-constexpr double kNoValley = 1.0 - 1e-9;   // of the lower of two powers that are alike, half way between both
+constexpr double kNoValley = 1.0 - 1e-9;   // of the lower of two powers that are alike, at places between both
+// These parts of the way between two peaks are not all peaks of a row of ambiguous directions.
+constexpr std::array kBetween = {0.29, 0.382, 0.5};
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -103,8 +106,10 @@ class PeakSearch {
   bool is_one(const CellBeam& beam, const Peak& a, const Peak& b) const {
     const auto [lower, higher] = std::minmax(a.power, b.power);
     if (lower < kAlike * higher) return false;
-    const Peak between = beside(beam, a, 0.5 * (b.azimuth - a.azimuth), 0.5 * (b.elevation - a.elevation));
-    return between.power >= kNoValley * lower;
+    return std::ranges::all_of(kBetween, [&](double part) {
+      const Peak between = beside(beam, a, part * (b.azimuth - a.azimuth), part * (b.elevation - a.elevation));
+      return between.power >= kNoValley * lower;
+    });
   }
 
   // Narrows the stencil once the top is within its middle: narrowed on the way there, it would stop short of it.

@@ -91,8 +91,8 @@ TEST(EstimateAngles, ABeamThatLiesAslantHasOnePeak) {
   }
 }
 
-// Elements two wavelengths apart see the same wave from sines that lie half of one apart: 0 and +-1/2, within 45 degrees, whose
-// outer two have the inner one half way between them.
+// Elements two wavelengths apart see the same wave from sines that lie half of one apart: 0 and +-1/2 within 45 degrees, of
+// which the outer two have the inner one half way between them.
 TEST(EstimateAngles, AmbiguousDirectionsAreNotOne) {
   const Radar radar = testing::radar_with({Vec3::Zero()}, testing::line(4, Vec3(0, 4.0 * kHalf, 0)));
   RangeDoppler map = testing::empty_map(radar);
@@ -108,6 +108,28 @@ TEST(EstimateAngles, AmbiguousDirectionsAreNotOne) {
   std::ranges::sort(sines);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(sines[k], 0.5 * (k - 1), kFine);
   for (const double power : found.power) EXPECT_NEAR(power, 1.0, kPower);
+}
+
+// The first side lobes of a line of 16 are alike, and have the main lobe between them.
+TEST(EstimateAngles, SideLobesOnBothSidesAreFound) {
+  // The closed form of beam power, sin^2(16 pi x) / (16 sin(pi x))^2 with x half of the sine, between its first two zeros.
+  double highest = 0.0, place = 0.0;
+  for (double x = 1.0 / 16.0 + 1e-6; x < 2.0 / 16.0; x += 1e-6) {
+    const double power = std::pow(std::sin(16.0 * kPi * x) / (16.0 * std::sin(kPi * x)), 2);
+    if (power > highest) highest = power, place = 2.0 * x;
+  }
+  const Radar radar = testing::line_radar(16);
+  EstimateOptions options;
+  options.max_peaks = 3;
+  options.peak_range_db = 20.0;
+  const AngleEstimates found = peaks_of_wave(radar, 0.0, 0.0, options);
+  ASSERT_EQ(found.cell.size(), 3u);
+  EXPECT_NEAR(found.azimuth[0], 0.0, kFine);
+  for (const size_t lobe : {size_t{1}, size_t{2}}) {
+    EXPECT_NEAR(std::abs(std::sin(found.azimuth[lobe])), place, kFine);
+    EXPECT_NEAR(found.power[lobe], highest, kPower);
+  }
+  EXPECT_LT(found.azimuth[1] * found.azimuth[2], 0.0);
 }
 
 TEST(EstimateAngles, SeveralPeaksOfACellComeStrongestFirst) {

@@ -1,7 +1,6 @@
 #include "echopath/spectrum/angle/estimate_angles.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -17,19 +16,15 @@ namespace echopath {
 namespace {
 
 constexpr int kMaxPeaks = 64;
-constexpr int kNarrowings = 7;        // of the stencil, each behind a step that stayed within its middle
+constexpr int kNarrowings = 7;        // of the stencil, each behind a short step
 constexpr double kNarrowing = 0.225;  // factor of each: 3e-5 of a step of the grid at the end
-constexpr double kMiddle = 0.5;       // of the stencil
+constexpr double kMiddle = 0.5;       // stencils, up to which a step is short
 constexpr double kLongest = 4.0;      // stencils, of a step to the top of a paraboloid
-constexpr int kMaxSteps = 100;        // beams that lie aslant are longer than a step
-constexpr double kAlike = 0.98;       // ratio of powers
+constexpr int kMaxSteps = 100;        // from which on it narrows with each, wherever it is
 // Of a peak's power the grid has this share at least, cos(pi/8)^2 along each angle, of an array of four corners whose beams
 // lie an eighth of their width beside the directions of the grid: its highest top may lead to a lower peak than others.
 constexpr double kLeastOnGrid = 0.72;
-constexpr double kLeastAfterAStep = 0.95;  // the share that the first step from there finds
-constexpr double kNoValley = 1.0 - 1e-9;   // of the lower of two powers that are alike, at places between both
-// These parts of the way between two peaks are not all peaks of a row of ambiguous directions.
-constexpr std::array kBetween = {0.29, 0.382, 0.5};
+constexpr double kLeastAfterAStep = 0.95;                     // the share that the first step from there finds
 constexpr double kMinPeakRange = 0.0, kMaxPeakRange = 200.0;  // dB
 
 struct Peak {
@@ -81,7 +76,7 @@ class PeakSearch {
       if (is_full) climb(beam, peak, steps(top));
       if (peak.power < kLeastAfterAStep * least) continue;
       peak = refined(beam, peak, steps(top));
-      const auto same = std::ranges::find_if(found, [&](const Peak& other) { return is_one(beam, peak, other); });
+      const auto same = std::ranges::find_if(found, [&](const Peak& other) { return is_one(peak, other, steps(top)); });
       if (same == found.end()) found.push_back(peak);
       else if (peak.power > same->power) *same = peak;
       std::ranges::stable_sort(found, std::greater(), &Peak::power);
@@ -102,23 +97,19 @@ class PeakSearch {
     return true;
   }
 
-  // Returns whether no valley parts two peaks that are as high: along a beam that lies aslant, tops of the grid lead to one.
-  bool is_one(const CellBeam& beam, const Peak& a, const Peak& b) const {
-    const auto [lower, higher] = std::minmax(a.power, b.power);
-    if (lower < kAlike * higher) return false;
-    return std::ranges::all_of(kBetween, [&](double part) {
-      const Peak between = beside(beam, a, part * (b.azimuth - a.azimuth), part * (b.elevation - a.elevation));
-      return between.power >= kNoValley * lower;
-    });
+  // Returns whether two peaks are within a step of the grid: tops along one beam that lies aslant lead to one.
+  static bool is_one(const Peak& a, const Peak& b, const Eigen::Array2d& step) {
+    const Eigen::Array2d apart(std::remainder(a.azimuth - b.azimuth, kTwoPi), a.elevation - b.elevation);
+    return (apart.abs() <= step).all();
   }
 
-  // Narrows the stencil once the top is within its middle: narrowed on the way there, it would stop short of it.
+  // Narrows the stencil once the top is near: narrowed on the way there, it would stop short of it.
   Peak refined(const CellBeam& beam, Peak peak, Eigen::Array2d stencil) const {
-    for (int step = 0, narrowings = 0; narrowings < kNarrowings && step < kMaxSteps; ++step) {
+    for (int step = 0, narrowings = 0; narrowings < kNarrowings; ++step) {
       const Peak before = peak;
       climb(beam, peak, stencil);
       const Eigen::Array2d moved(peak.azimuth - before.azimuth, peak.elevation - before.elevation);
-      if ((moved.abs() > kMiddle * stencil).any()) continue;
+      if (step < kMaxSteps && (moved.abs() > kMiddle * stencil).any()) continue;
       stencil *= kNarrowing;
       ++narrowings;
     }
@@ -163,8 +154,9 @@ class PeakSearch {
     while (visit(to_top[0], to_top[1]) <= top && to_top.lpNorm<Eigen::Infinity>() > kMiddle) to_top *= 0.5;
   }
 
-  // Returns the step to the top of a paraboloid of this slope and these second derivatives, and, along axes where it has
-  // none, as far uphill.
+  // Returns Newton's step to the top of a paraboloid of this slope and these second derivatives, in stencils: along each of
+  // its principal axes the slope over the size of the second derivative, so that it goes uphill where there is no top, and
+  // at most kLongest.
   static Eigen::Vector2d uphill(const Eigen::Vector2d& slope, const Eigen::Matrix2d& derivatives) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(derivatives);

@@ -175,7 +175,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     cells: [N, 2] (velocity, range) indices
     velocity: [N] in m/s of the echoes in these cells, by which the phase between transmit slots is taken out, None: that of the
         middles of the cells, which is off by up to half a cell: by half a turn over the frame's number of chirps
-    max_peaks: of a cell, the strongest, one of each beam; peak_range_db: dB below the strongest of the cell, within which others count
+    max_peaks: of a cell, the strongest, one of each beam
+    peak_range_db: dB below the strongest of the cell, within which others count
     folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
         tell apart ("tdm"); less than half the number of transmitters
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the

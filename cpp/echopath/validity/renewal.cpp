@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/replay/factors/radio_constants.h"
 #include "echopath/validity/frame/frame_probe.h"
+#include "echopath/validity/legs/coefficients.h"
 #include "echopath/validity/legs/edge_share.h"
 
 namespace echopath {
@@ -21,17 +23,21 @@ enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
 
 bool stays(Outcome outcome) { return outcome == Outcome::kKept || outcome == Outcome::kMoved; }
 
-// Holds what edges leave of an image that stays.
-struct ShareOfImage {
-  int64_t path;
-  std::complex<double> share;
+// Holds what has become of the field of a path that stays.
+struct FieldNow {
+  int64_t path = 0;
+  std::optional<std::complex<double>> share;  // what edges leave of an image
+  std::complex<double> gain = 1.0;            // over that of the record, of the coefficients in the weight
+  std::optional<JonesMatrix> matrix;
+
+  bool is_as_recorded() const { return !share && gain == 1.0 && !matrix; }
 };
 
 // Holds what became of a block of paths, and the hits of those that moved, in the order of the record.
 struct BlockOutcome {
   std::vector<Outcome> of_path;
   std::vector<Hit> moved_hits;
-  std::vector<ShareOfImage> shares;
+  std::vector<FieldNow> fields;
 };
 
 class Renewer {
@@ -41,29 +47,33 @@ class Renewer {
         walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber),
         pose_(*paths.scene, time),
         loan_(kept, *paths.scene, pose_, paths.frame.transmitter, EmbreeScene::Upkeep::kTimes, job), geometry_(*loan_),
-        origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.meshes(), origin_, time) {}
+        origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.meshes(), origin_, time),
+        scene_at_trace_(*paths.scene, radar_, preparer_.meshes(), origin_, paths.frame.trace_time),
+        coefficients_(paths, kSpeedOfLight / kTwoPi * wavenumber_) {}
 
-  // Shares are found of what stays, and only where they are asked for.
-  BlockOutcome renew_block(std::span<const int64_t> indices, bool with_shares) const {
+  // Fields are found of what stays, and only where they are asked for.
+  BlockOutcome renew_block(std::span<const int64_t> indices, bool with_fields) const {
     BlockOutcome block;
     const LocalPaths local = preparer_(indices);
     Scratch scratch(local.longest);
     for (size_t i = 0; i < indices.size(); ++i) {
       const LocalPath& path = local.paths[i];
       block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
-      if (with_shares && stays(block.of_path.back()) && is_over_unflagged_planes(path, preparer_))
-        renew_share(indices[i], path, scratch, block.shares);
+      if (!with_fields || !stays(block.of_path.back())) continue;
+      const FieldNow field = renew_field(indices[i], path, scratch);
+      if (!field.is_as_recorded()) block.fields.push_back(field);
     }
     return block;
   }
 
  private:
   struct Scratch {
-    std::vector<PosedHit> posed;
+    std::vector<PosedHit> posed, posed_at_trace;
     std::vector<LocalHit> hits;
     std::vector<std::array<Vec3, 3>> normals;  // of hits that moved
     SpecularSlide slide;
-    explicit Scratch(int longest) : posed(size_of(longest)), hits(size_of(longest)), normals(size_of(longest)) {}
+    explicit Scratch(int longest)
+        : posed(size_of(longest)), posed_at_trace(size_of(longest)), hits(size_of(longest)), normals(size_of(longest)) {}
     static size_t size_of(int longest) { return static_cast<size_t>(std::max(longest, 1)); }
   };
 
@@ -81,18 +91,38 @@ class Renewer {
   }
 
   // Takes the hits as renew_path has posed them.
-  void renew_share(int64_t index, const LocalPath& path, const Scratch& scratch, std::vector<ShareOfImage>& shares) const {
-    const auto found =
-        find_edge_share(geometry_, path, scratch.posed.data(), start_of(path), end_of(path), kTwoPi / wavenumber_);
-    if (found) shares.push_back({index, found->share});
+  FieldNow renew_field(int64_t index, const LocalPath& path, Scratch& scratch) const {
+    FieldNow field;
+    field.path = index;
+    if (is_over_unflagged_planes(path, preparer_)) {
+      const auto found =
+          find_edge_share(geometry_, path, scratch.posed.data(), start_of(path), end_of(path), kTwoPi / wavenumber_);
+      if (found) field.share = found->share;
+    }
+    if (coefficients_.follow_angles(path)) renew_coefficients(path, scratch, field);
+    return field;
   }
 
-  const PosedAntenna& start_of(const LocalPath& path) const {
-    return (path.is_reversed ? scene_at_.receivers : scene_at_.transmitters).front();
+  void renew_coefficients(const LocalPath& path, Scratch& scratch, FieldNow& field) const {
+    pose_hits(path, scene_at_trace_, scratch.posed_at_trace.data());
+    const PathAtTime then = at_time(path, scratch.posed_at_trace, scene_at_trace_),
+                     now = at_time(path, scratch.posed, scene_at_);
+    if (now.is_as(then)) return;
+    if (!paths_.jones.empty()) {
+      field.matrix = coefficients_.matrix(now);
+      return;
+    }
+    const std::complex<double> recorded = coefficients_.product(then);
+    if (std::norm(recorded) > 0) field.gain = coefficients_.product(now) / recorded;
   }
-  const PosedAntenna& end_of(const LocalPath& path) const {
-    return (path.is_reversed ? scene_at_.transmitters : scene_at_.receivers).front();
+
+  static PathAtTime at_time(const LocalPath& path, const std::vector<PosedHit>& posed, const PosedScene& scene) {
+    return {path, posed.data(), scene.antennas(path.is_reversed).front().position,
+            scene.antennas(!path.is_reversed).front().position};
   }
+
+  const PosedAntenna& start_of(const LocalPath& path) const { return scene_at_.antennas(path.is_reversed).front(); }
+  const PosedAntenna& end_of(const LocalPath& path) const { return scene_at_.antennas(!path.is_reversed).front(); }
 
   // Takes Newton steps from the recorded points of reflection to Fermat's.
   Outcome find_reflections(const LocalPath& path, Scratch& scratch) const {
@@ -151,7 +181,8 @@ class Renewer {
   GeometryLoan loan_;
   const EmbreeScene& geometry_;
   Vec3 origin_;
-  PosedScene scene_at_;
+  PosedScene scene_at_, scene_at_trace_;
+  Coefficients coefficients_;
 };
 
 // Gives an image the share of the field that edges leave it at the time; one that has not changed stays as it is.
@@ -165,12 +196,14 @@ void set_share(std::complex<double> share, size_t path, Paths& paths) {
 }
 
 // `keep` tells which of the paths of the record are in `paths`.
-void set_shares(const std::vector<BlockOutcome>& blocks, const std::vector<uint8_t>& keep, Paths& paths) {
+void set_fields(const std::vector<BlockOutcome>& blocks, const std::vector<uint8_t>& keep, Paths& paths) {
   size_t next = 0, path = 0;  // of the record, and its place in `paths`
   for (const BlockOutcome& block : blocks) {
-    for (const ShareOfImage& image : block.shares) {
-      while (next < static_cast<size_t>(image.path)) path += keep[next++];
-      set_share(image.share, path, paths);
+    for (const FieldNow& field : block.fields) {
+      while (next < static_cast<size_t>(field.path)) path += keep[next++];
+      paths.weight[path] *= std::complex<float>(field.gain);
+      if (field.matrix) paths.jones[path] = *field.matrix;
+      if (field.share) set_share(*field.share, path, paths);
     }
   }
 }
@@ -199,7 +232,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
     }
   }
   renewal.paths = record.select(keep, job);
-  set_shares(blocks, keep, renewal.paths);
+  set_fields(blocks, keep, renewal.paths);
   if (!grown) return;
   renewal.paths.hits = grown;
   for (size_t i = 0; i < moved_offsets.size(); ++i) {
@@ -207,7 +240,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
   }
 }
 
-std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, bool with_shares, Job* job,
+std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, bool with_fields, Job* job,
                                        KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
   std::vector<BlockOutcome> blocks(num_chunks(paths.num_paths(), kPathsRenewedTogether));
@@ -215,7 +248,7 @@ std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, d
   parallel_for_chunks(paths.num_paths(), kPathsRenewedTogether, [&](int64_t begin, int64_t end) {
     std::vector<int64_t> indices(end - begin);
     std::iota(indices.begin(), indices.end(), begin);
-    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices, with_shares);
+    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices, with_fields);
   }, job);
   return blocks;
 }

@@ -14,12 +14,13 @@ struct Renewal {
 };
 
 // Returns the paths of a record as they are at `time` (s) for the trace's own antennas, carried along by the motion of
-// `radar`. It renews the shadow rays of all legs and replaces frozen points of reflection by Fermat's, found by Newton steps
-// over the surface. Material points keep their hits, weights and phases, so that rough surfaces keep their speckle and
-// clutter stays where it is. Weights of images over unmarked planes get what edges leave of their fields at the time.
-// Surface that came into view has no paths. What a curved bounce makes of the tube (Paths::curved_cell) stays as traced. The
-// result has the same bits for any number of threads. Raises invalid_argument when a motion does not cover the time; raises
-// DeviceError and Cancelled. `kept` is as in `trace`.
+// `radar`. It renews the shadow rays of all legs and replaces frozen points of reflection by Fermat's, found by Newton
+// steps over the surface. Material points keep their hits, and diffuse paths their weights and phases, so that rough
+// surfaces keep their speckle and clutter stays where it is. Coherent paths without edges get the coefficients of their
+// angles at the time, and images over unmarked planes what edges then leave of their fields. Surface that came into view
+// has no paths. What a curved bounce makes of the tube (Paths::curved_cell) stays as traced. The result has the same bits
+// for any number of threads. Raises invalid_argument when a motion does not cover the time; raises DeviceError and
+// Cancelled. `kept` is as in `trace`.
 Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
 // Returns [P] 1 where `renew` keeps the path at `time`. For paths of another trace it tells those that one at `time` could

@@ -42,9 +42,9 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
 def renew(paths: _core.Paths, radar: _core.Radar | None = None, *, time: float, progress: Progress = None) -> _core.Renewal:
     """A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
 
-    Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Weights of images over
-    unmarked planes get the share of the field that edges leave at the time. Surface that came into
-    view has no paths here; `synthesize(retrace="invalid")` adds it.
+    Material points keep their hits, and diffuse paths their weights and phases, so that rough surfaces keep their speckle.
+    Coherent paths without edges get the coefficients of their angles at the time, and images over unmarked planes the share
+    of the field that edges then leave. Surface that came into view has no paths here; `synthesize(retrace="invalid")` adds it.
     paths: of a trace
     radar: whose motion carries the antennas of the trace along, or None: that of the trace
     time: s

@@ -7,16 +7,6 @@
 #include "echopath/trace/sbr/ray_formula.h"
 
 namespace echopath {
-namespace {
-
-// Returns the sign of the field that comes back to the radar.
-//
-// Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h). These point opposite ways where a wave turns
-// back, so the sign changes once: only then TE and TM are the same at normal incidence. Conductors count as TE at every
-// angle: an odd number of them has made that change already.
-double sign_of_return(const Ray& ray) { return ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0; }
-
-}  // namespace
 
 template <class Weight>
 bool Connector<Weight>::is_near_antenna(const Vec3& point) const {
@@ -66,7 +56,7 @@ void Connector<Weight>::connect_coherent(Connection& at) const {
   const double launch_area =
       ray.stands_for * tube_area / (ray.launch_density * surface.cos_incidence) * surface.point.stretch;
   const std::complex<double> coefficient =
-      ray.coefficient * surface.response.gamma * surface.response.coherent * sign_of_return(ray);
+      ray.coefficient * surface.response.gamma * surface.response.coherent * ray.return_sign.value();
   const std::complex<double> weight =
       std::complex<double>(0.0, 1.0) * ray.field_factor * weight_.held(coefficient) * launch_area;
   for (const Leg& leg : at.legs.receive) {

@@ -109,12 +109,9 @@ void JonesWeight::find_receive_axes(Connection& at) const {
 void JonesWeight::set_coherent_matrix(Connection& at, const Leg& leg) const {
   const SurfaceHit& surface = at.surface;
   const Vec3& normal = surface.point.normal;
-  const ModeCoefficients modes = surface.model->modes(surface.cos_incidence);
   const double scale = surface.response.coherent * polarized_scale(surface.cos_incidence, normal.dot(leg.to_antenna));
-  FieldPair fields;
-  for (size_t launch = 0; launch < 2; ++launch) {
-    fields[launch] = scale * radiated_field(at.ray.fields[launch], at.ray.direction, normal, leg.to_antenna, modes);
-  }
+  FieldPair fields = at.ray.fields;
+  radiate_fields(fields, at.ray.direction, normal, leg.to_antenna, *surface.model, scale);
   at.block.set_jones(components(fields, at.axes_of(leg)));
 }
 

@@ -42,6 +42,21 @@ struct DiffuseChain {
   FieldPair fields;                        // where polarised: fields of launches at the receiver that run the ray's way
 };
 
+// Tells the sign of the field that comes back to the radar.
+//
+// Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h). These point opposite ways where a wave turns
+// back, so the sign changes once: only then TE and TM are the same at normal incidence. Conductors count as TE at every
+// angle: an odd number of them has made that change already.
+struct ReturnSign {
+  bool has_dielectric_tm = false, has_odd_conductors = false;
+
+  void add(const SurfaceModel& surface, PolarizationMode mode) {
+    has_dielectric_tm |= mode == PolarizationMode::kTm;
+    has_odd_conductors ^= !surface.is_dielectric();
+  }
+  double value() const { return has_dielectric_tm && !has_odd_conductors ? -1.0 : 1.0; }
+};
+
 struct Ray {
   int64_t index = 0;
   int stratum = 0;
@@ -61,8 +76,7 @@ struct Ray {
   double leg_length = 0.0, leg_density = 0.0;
   std::complex<double> coefficient = 1.0;  // product of Gamma s and of what diffuse hits scatter, without q
   FieldPair fields;                        // the same for field vectors, where polarised
-  // These describe the unflagged bounces so far and tell the sign of the field that comes back (ScalarWeight).
-  bool has_dielectric_tm = false, has_odd_conductors = false;
+  ReturnSign return_sign;                  // of the unflagged hits so far (ScalarWeight)
   // Holds the factors of a coherent ray's field beside its coefficients: 1/q of every bounce and j of every caustic.
   std::complex<double> field_factor = 1.0;
   RayDifferential differential;      // of coherent rays, where the scene has smooth meshes

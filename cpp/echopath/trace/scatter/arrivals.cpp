@@ -42,10 +42,7 @@ void Arrivals::record(Ray& ray, SurfaceHit& surface) const {
   ray.hits[ray.depth++] = surface.point.hit;
   ray.leg_length += surface.point.distance;
   if (context_.surfaces.has_smooth() && ray.coherent) carry_tube(ray, surface, context_.wavelength);
-  if (!surface.material->mirror) {
-    ray.has_dielectric_tm |= surface.mode == PolarizationMode::kTm;
-    ray.has_odd_conductors ^= !surface.model->is_dielectric();
-  }
+  if (!surface.material->mirror) ray.return_sign.add(*surface.model, surface.mode);
   surface.area = ray.leg_length * ray.leg_length / (ray.leg_density * surface.cos_incidence);
 }
 

@@ -1,0 +1,106 @@
+#include "echopath/validity/legs/coefficients.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "echopath/em/polarization/mirrored_fields.h"
+#include "echopath/trace/mirrors/mirrors.h"
+#include "echopath/trace/sbr/weight.h"
+
+namespace echopath {
+namespace {
+
+// Calls visit(k, arrival, departure) for the hits of a path in turn, with unit directions of travel. Images mirror what
+// arrives; between other hits waves run straight over the images.
+template <class Visit>
+void for_each_hit(const PathAtTime& at, const Visit& visit) {
+  const LocalPath& path = at.path;
+  Vec3 from = at.start, arrival;
+  for (int material = -1; material < path.count;) {
+    int next = material + 1;
+    while (next < path.count && path.is_image(next)) ++next;
+    const Vec3 to = next < path.count ? at.hits[next].point : at.end;
+    const UnfoldedLeg leg = unfolded_leg(at.hits, from, material + 1, next, to);
+    if (material >= 0) visit(material, arrival, leg.departure);
+    Vec3 way = leg.departure;
+    for (int k = material + 1; k < next; ++k) {
+      const Vec3 behind = at.hits[k].mirrored(way);
+      visit(k, way, behind);
+      way = behind;
+    }
+    arrival = leg.arrival;
+    from = to;
+    material = next;
+  }
+}
+
+}  // namespace
+
+bool PathAtTime::is_as(const PathAtTime& other) const {
+  const auto is_alike = [](const PosedHit& a, const PosedHit& b) { return a.point == b.point && a.normal == b.normal; };
+  return start == other.start && end == other.end && std::equal(hits, hits + path.count, other.hits, is_alike);
+}
+
+Coefficients::Coefficients(const Paths& paths, double frequency)
+    : is_polarized_(!paths.jones.empty()), polarization_(paths.mode_polarization()) {
+  std::unordered_map<const Material*, uint32_t> index;
+  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+    const Material& material = *paths.scene->node_of(id).material;
+    const auto [entry, is_new] = index.try_emplace(&material, static_cast<uint32_t>(sides_.size()));
+    if (is_new) sides_.push_back({{material, frequency, SheetSide::kFront}, {material, frequency, SheetSide::kBack}});
+    of_mesh_.push_back(entry->second);
+  }
+}
+
+// The matrix of a polarised path turns with the surfaces, whatever they are made of.
+bool Coefficients::follow_angles(const LocalPath& path) const {
+  if (path.diffuse != 0 || path.edge >= 0 || path.count == 0) return false;
+  if (is_polarized_) return true;
+  for (int k = 0; k < path.count; ++k) {
+    if (!sides(path, k).front.is_constant()) return true;
+  }
+  return false;
+}
+
+// The normals of posed hits are those of their triangles' winding.
+const SurfaceModel& Coefficients::model(const PathAtTime& at, int k, const Vec3& direction) const {
+  const Sides& both = sides(at.path, k);
+  return direction.dot(at.hits[k].normal) < 0 ? both.front : both.back;
+}
+
+std::complex<double> Coefficients::product(const PathAtTime& at) const {
+  std::complex<double> out = 1.0;
+  ReturnSign sign;
+  for_each_hit(at, [&](int k, const Vec3& arrival, const Vec3&) {
+    const SurfaceModel& surface = model(at, k, arrival);
+    const Vec3 normal = lit_normal(arrival, at.hits[k].normal);
+    const bool is_image = at.path.is_image(k);
+    const SurfaceResponse response = is_image ? respond_as_mirror(surface, polarization_, arrival, normal)
+                                              : respond_along(surface, polarization_, arrival, normal);
+    if (!is_image) sign.add(surface, mode_along(surface, polarization_, arrival, normal));
+    out *= response.gamma * response.coherent;
+  });
+  return at.path.first_material < 0 ? out : out * sign.value();
+}
+
+// Bounces reflect what arrives; the last material point radiates toward what follows.
+JonesMatrix Coefficients::matrix(const PathAtTime& at) const {
+  FieldPair fields;
+  Vec3 last = Vec3::Zero();
+  for_each_hit(at, [&](int k, const Vec3& arrival, const Vec3& departure) {
+    if (k == 0) fields = launched_fields(arrival);
+    Vec3 direction = arrival;
+    const SurfaceModel& surface = model(at, k, arrival);
+    if (k == at.path.last_material) {
+      const Vec3 normal = lit_normal(arrival, at.hits[k].normal);
+      const double cosine = -arrival.dot(normal), coherent = surface.respond(cosine, PolarizationMode::kTe).coherent;
+      radiate_fields(fields, arrival, normal, departure, surface, coherent * polarized_scale(cosine, normal.dot(departure)));
+    } else {
+      carry_over_mirror(fields, direction, at.hits[k].normal, surface);
+    }
+    last = departure;
+  });
+  return arriving_components(fields, last);
+}
+
+}  // namespace echopath

@@ -12,6 +12,7 @@
 #include "echopath/posed/posed_antenna.h"
 #include "echopath/scene/coherent_meshes.h"
 #include "echopath/scene/large_planes.h"
+#include "echopath/scene/mesh/surface_widths.h"
 #include "echopath/scene/mesh_traits.h"
 #include "values/array.h"
 #include "values/shared.h"
@@ -77,6 +78,14 @@ std::vector<uint32_t> meshes_cut_from_mirrors(const Scene& scene) {
   return found;
 }
 
+std::vector<double> widths_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids, double time) {
+  const PosedScene pose(scene, time);
+  SurfaceWidths widths;
+  std::vector<double> found;
+  for (const uint32_t id : mesh_ids) found.push_back(widths.width_of(*scene.node_of(id).mesh, pose.world_vertices(id)));
+  return found;
+}
+
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
   std::vector<std::string> names;
   for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[scene.meshes().at(id).node].name);
@@ -103,6 +112,10 @@ void bind_scene_reports(py::module_& m) {
   m.def(
       "mesh_traits", &traits_of_meshes, py::arg("scene"),
       "Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).");
+  m.def("mesh_widths", &widths_of_meshes, py::arg("scene"), py::arg("mesh_ids"), py::arg("time"),
+        "Middle extents in m along the principal axes of meshes by their IDs, at a time in s: the diameter of a rod. Parts "
+        "of a "
+        "surface have that of the whole.");
   m.def("mesh_names", &names_of_meshes, py::arg("scene"), py::arg("mesh_ids"), "Full names by mesh IDs.");
 }
 

@@ -16,6 +16,7 @@ from ..tracing.tessellation import coarse_meshes
 from .planes import imaged_planes
 from .rules import Case, rule
 
+VALID_WIDTH = 2.0 / 3.0  # wavelengths, from which on physical optics is within 0.6 dB on rods (python/docs/theory/limits.md)
 VALID_FOCK = 2.0     # cosine at the point that mirrors over the width of the shadow's edge
 MOST_AT_CORNER = 4   # bounces whose orders are told apart from images (trace/mirrors/plane_images.cpp)
 TOLD_CHANGE_DB = 0.5  # of what a sheet passes or reflects over the band, from which on it is told
@@ -79,6 +80,19 @@ def bistatic_limit_deg(radius: float, frequency: float) -> float:
     shadow's edge (Fock 1946). 0 where the sphere is too small at any angle."""
     size = 2.0 * math.pi * frequency / speed_of_light * radius
     return 2.0 * math.degrees(math.acos(min(1.0, VALID_FOCK * (2.0 / size) ** (1.0 / 3.0))))
+
+
+@rule("bodies wide against the wavelength")
+def _widths(case: Case):
+    if len(case.coherent) == 0:
+        return False, "no coherent echoes"
+    least = VALID_WIDTH * case.wavelength
+    limit = f"narrower than two thirds of a wavelength ({1e3 * least:.2g} mm)"
+    narrow = case.coherent[np.array(_core.mesh_widths(case.scene, case.coherent, case.time)) < least]
+    if len(narrow) == 0:
+        return True, f"none with a specular share is {limit}"
+    return False, (f"{case.named(narrow)}, {limit}: without currents around them echoes are off by 1 dB and more, at a twelfth "
+                   "of a wavelength by 9 dB")
 
 
 @rule("check of the tessellation")

@@ -51,6 +51,12 @@ SPECULAR_BALL.add(ep.actors.sphere(0.1), name="ball", material=SPECULAR, positio
 MIRROR = ep.Material.metal(mirror=True)
 
 
+def rod_of(radius):
+    scene = ep.Scene()
+    scene.add(ep.actors.pole(radius=radius, height=1.0), name="rod", position=(5, 0, 0))
+    return scene
+
+
 def rainy():
     scene = make_scene()
     scene.weather = ep.Weather(rain_mm_per_hour=10)
@@ -72,6 +78,8 @@ CASES = {
     "caustics": (dict(scene=SPECULAR_BALL), "quarter turns", {}),
     "shadow's edge of curved surfaces": (dict(scene=SPECULAR_BALL), "125 and 155 degrees",
                                          dict(scene=SPECULAR_BALL, footprint="none")),
+    "bodies wide against the wavelength": (dict(scene=rod_of(0.0014)), "two thirds of a wavelength (2.6 mm)",
+                                           dict(scene=rod_of(0.0012))),
     "check of the tessellation": ({}, "0.3 dB", dict(scene=make_scene(ROUGH))),
     "perfect conductors": ({}, "plate", dict(scene=make_scene(ROUGH))),
     "Fresnel coefficients": (dict(scene=make_scene("concrete")), "plate", {}),

@@ -72,11 +72,12 @@ class PeakSearch {
       const bool is_full = std::ssize(found) >= options_.max_peaks;
       const double least = is_full ? found[options_.max_peaks - 1].power : 0.0;  // of the weakest that is asked for
       if (power[top] < kLeastOnGrid * least) break;
+      const Eigen::Array2d step = steps(top);
       Peak peak = at(top, power[top]);
-      if (is_full) climb(beam, peak, steps(top));
+      if (is_full) climb(beam, peak, step);
       if (peak.power < kLeastAfterAStep * least) continue;
-      peak = refined(beam, peak, steps(top));
-      const auto same = std::ranges::find_if(found, [&](const Peak& other) { return is_one(peak, other, steps(top)); });
+      peak = refined(beam, peak, step);
+      const auto same = std::ranges::find_if(found, [&](const Peak& other) { return is_one(peak, other, step); });
       if (same == found.end()) found.push_back(peak);
       else if (peak.power > same->power) *same = peak;
       std::ranges::stable_sort(found, std::greater(), &Peak::power);

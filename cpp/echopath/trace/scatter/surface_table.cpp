@@ -1,50 +1,20 @@
 #include "echopath/trace/scatter/surface_table.h"
 
-#include <algorithm>
 #include <unordered_map>
 
-#include "echopath/base/principal_box.h"
+#include "echopath/scene/mesh/surface_widths.h"
 
 namespace echopath {
 namespace {
 
-// Returns the middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a
-// sphere.
-double middle_extent(const std::vector<Vec3>& vertices) {
-  Vec3 extents = principal_box(vertices).box.sizes();
-  std::ranges::sort(extents);
-  return extents[1];
-}
-
 bool is_unflagged_smooth(const Node& node) { return node.smooth && !node.material->mirror; }
-
-// Finds how wide smooth surfaces are.
-class SmoothWidths {
- public:
-  double width_of(const Mesh& mesh, const std::vector<Vec3>& vertices) {
-    const double width = middle_extent(vertices);
-    if (!mesh.whole()) return width;
-    // The whole surface is scaled as this part of it is.
-    const double at_rest = middle_extent(mesh.vertices());
-    return at_rest > 0 ? extent_of_whole(*mesh.whole()) * (width / at_rest) : width;
-  }
-
- private:
-  double extent_of_whole(const Mesh& whole) {
-    const auto [entry, is_new] = extents_.try_emplace(&whole);
-    if (is_new) entry->second = middle_extent(whole.vertices());
-    return entry->second;
-  }
-
-  std::unordered_map<const Mesh*, double> extents_;  // parts share their whole
-};
 
 }  // namespace
 
 SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                            double frequency)
     : geometry_(geometry), mirror_of_(mirrors, geometry) {
-  SmoothWidths widths;
+  SurfaceWidths widths;
   std::unordered_map<const Material*, uint32_t> index;  // in models_
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);

@@ -99,7 +99,9 @@ class Renewer {
           find_edge_share(geometry_, path, scratch.posed.data(), start_of(path), end_of(path), kTwoPi / wavenumber_);
       if (found) field.share = found->share;
     }
-    if (coefficients_.follow_angles(path)) renew_coefficients(path, scratch, field);
+    // Matrices of paths through sheets hold what these make of polarisations, too: they stay.
+    if (coefficients_.follow_angles(path) && (paths_.jones.empty() || paths_.passes_of(index).empty()))
+      renew_coefficients(path, scratch, field);
     return field;
   }
 

@@ -17,10 +17,10 @@ struct Renewal {
 // `radar`. It renews the shadow rays of all legs and replaces frozen points of reflection by Fermat's, found by Newton
 // steps over the surface. Material points keep their hits, and diffuse paths their weights and phases, so that rough
 // surfaces keep their speckle and clutter stays where it is. Coherent paths without edges get the coefficients of their
-// angles at the time, and images over unmarked planes what edges then leave of their fields. Surface that came into view
-// has no paths. What a curved bounce makes of the tube (Paths::curved_cell) stays as traced. The result has the same bits
-// for any number of threads. Raises invalid_argument when a motion does not cover the time; raises DeviceError and
-// Cancelled. `kept` is as in `trace`.
+// angles at the time (polarised ones through sheets keep theirs), and images over unmarked planes what edges then leave of
+// their fields. Surface that came into view has no paths. What a curved bounce makes of the tube (Paths::curved_cell) stays
+// as traced. The result has the same bits for any number of threads. Raises invalid_argument when a motion does not cover
+// the time; raises DeviceError and Cancelled. `kept` is as in `trace`.
 Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
 // Returns [P] 1 where `renew` keeps the path at `time`. For paths of another trace it tells those that one at `time` could

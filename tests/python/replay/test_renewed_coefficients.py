@@ -22,14 +22,16 @@ def fresnel(cosine, across):
     return (PERMITTIVITY * cosine - behind) / (PERMITTIVITY * cosine + behind)
 
 
-def receding_wall(mirror, polarization, field):
-    """Paths over a wall of glass in front of two antennas, which goes away."""
+def receding_wall(mirror, polarization, field, pane=False):
+    """Paths over a wall of glass in front of two antennas, which goes away; pane: behind one of glass."""
     radar = build_radar(transmitters=[ep.Antenna((0, -ASIDE, 0), polarization=field)],
                         receivers=[ep.Antenna((0, ASIDE, 0), polarization=field)], num_chirps=64, chirp_interval=100e-6)
     scene = ep.Scene()
     plate = ep.Mesh([[0, -9, -9], [0, 9, -9], [0, 9, 9], [0, -9, 9]], [[0, 1, 2], [0, 2, 3]])
     scene.add(plate, name="wall", material=ep.Material(permittivity=PERMITTIVITY, mirror=mirror), position=(2, 0, 0),
               speed=SPEED)
+    if pane:
+        scene.add(plate, name="pane", material="glass_pane", position=(1, 0, 0))
     paths = ep.trace(scene, radar, num_rays=2000, max_bounces=1, polarization=polarization)
     return paths.select(paths.stratum == IMAGES)
 
@@ -62,6 +64,15 @@ def test_matrices_of_images_take_the_angles_of_their_time(mirror):
         assert np.ravel(renewed.jones[0])[[1, 2]] == pytest.approx(0.0, abs=ROUNDING)
         assert np.ravel(renewed.jones[0])[3] == pytest.approx(fresnel(cosine, True), rel=ROUNDING)
         assert np.abs(np.ravel(renewed.jones[0])[0]) == pytest.approx(level, rel=ROUNDING)
+
+
+def test_matrices_of_what_passes_a_pane_keep_what_it_makes_of_polarisations():
+    paths = receding_wall(True, "jones", UPRIGHT, pane=True)
+    through = paths.select("T P ('wall') P R")
+    renewed = ep.renew(through, time=paths.frame.trace_time + 1e-9).paths
+    assert renewed.num_paths == 1 and np.allclose(renewed.jones, through.jones, rtol=0, atol=ROUNDING)
+    cosine = cosines(paths, paths.frame.trace_time)
+    assert abs(abs(np.ravel(through.jones[0])[0]) - abs(fresnel(cosine, False))) > 1e-2  # without the pane
 
 
 def test_a_record_renewed_at_its_own_time_is_as_it_was():

@@ -17,7 +17,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'HIGHEST_FREQUENCY', 'Isotropic', 'Joint', 'KeptGeometry', 'KeptStillRays', 'KeyframeMotion', 'LOWEST_FREQUENCY', 'Layer', 'LinearMotion', 'LiveTrace', 'MESH_SUFFIXES', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'RECORD_SETTINGS', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'amplitude_tolerance', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'main_lobe_half_width', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mesh_widths', 'meshes_cut_from_mirrors', 'meshes_of_large_planes', 'meshes_of_objects', 'meshes_of_usual_objects', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'slot_phasors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+__all__: list[str] = ['AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'GaussianBeam', 'Grouping', 'HIGHEST_FREQUENCY', 'Isotropic', 'Joint', 'KeptGeometry', 'KeptStillRays', 'KeyframeMotion', 'LOWEST_FREQUENCY', 'Layer', 'LinearMotion', 'LiveTrace', 'MESH_SUFFIXES', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'RECORD_SETTINGS', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'amplitude_tolerance', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'main_lobe_half_width', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mesh_widths', 'meshes_cut_from_mirrors', 'meshes_of_large_planes', 'meshes_of_objects', 'meshes_of_usual_objects', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'slot_phasors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class DeviceError(RuntimeError):
     """
     A device failed; a RuntimeError.
@@ -1221,7 +1221,7 @@ class ChirpSequence:
         """
 class AntennaPattern:
     """
-    Power gain over direction; made by Isotropic, CosinePower or GainTable.
+    Power gain over direction; made by Isotropic, CosinePower, GaussianBeam or GainTable.
     """
     def __eq__(self, other: object) -> bool:
         """
@@ -1298,7 +1298,7 @@ class Antenna:
     yaw: rad about the radar's z, left positive, as in scene.add: where the boresight points, +x of the antenna's frame
     pitch: rad, -pi/2 to pi/2, up positive: then about the antenna's own +y, which stays level
     orientation: [4] unit quaternion (w, x, y, z), radar from antenna, instead of yaw and pitch, for antennas that are rolled, too
-    pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
+    pattern: Isotropic(gain), CosinePower(exponent), GaussianBeam(...), GainTable(...) or load_antenna(path); None is Isotropic(1)
     polarization: [3] unit vector in the antenna's frame
     Antennas of equal arguments are equal, and pickle.
     Raises ValueError or TypeError naming the argument. Warns (RuntimeWarning) of a yaw beyond a turn, which looks like degrees.
@@ -3287,6 +3287,15 @@ def GainTable(*, azimuth: ArrayLike, elevation: ArrayLike, gain: ArrayLike, phas
     Azimuths that cover the whole turn up to one step are closed to a ring.
     Returns an AntennaPattern. Raises TypeError or ValueError naming the argument, also where the mean gain over the sphere is more
     than 1.02 (0.09 dB): an antenna cannot radiate more power than it is fed.
+    """
+def GaussianBeam(*, azimuth: float, elevation: float, peak_gain: float | None = None) -> AntennaPattern:
+    """
+    A beam of which the widths at half the power are known: it falls as 2^{-(2 angle/width)^2} along both angles.
+
+    azimuth, elevation: rad, whole widths at half the power, from 1e-6 to pi
+    peak_gain: linear, None for that of a beam without losses, which is the most: 16 ln 2/(azimuth elevation) of narrow ones
+    There is no gain behind, nor beyond 2.6 widths, 81 dB below the peak: for side lobes take a table.
+    Returns an AntennaPattern, a table. Raises TypeError or ValueError naming the argument.
     """
 def Isotropic(gain: float = 1.0) -> AntennaPattern:
     """

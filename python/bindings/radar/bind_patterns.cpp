@@ -12,6 +12,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/geometry.h"
 #include "echopath/base/text/streamed.h"
+#include "echopath/radar/gaussian_beam.h"
 #include "echopath/radar/radar.h"
 #include "values/value.h"
 
@@ -41,6 +42,11 @@ AntennaPattern gain_table(Arg<"azimuth", VectorOf<double>> azimuth, Arg<"elevati
   const std::vector<double> phases = *phase ? samples(**phase, "phase") : std::vector<double>{};
   return AntennaPattern::of_table(GainTable(*azimuth, *elevation, gains, phases,
                                             *normalize ? GainTable::Scale::kMeanOfOne : GainTable::Scale::kAsGiven));
+}
+
+AntennaPattern gaussian_beam_of(Arg<"azimuth", Real> azimuth, Arg<"elevation", Real> elevation,
+                                Arg<"peak_gain", Optional<Real>> peak_gain) {
+  return AntennaPattern::of_table(gaussian_beam(*azimuth, *elevation, *peak_gain));
 }
 
 const char* kind_of(const AntennaPattern& pattern) { return kPatternKind.name_of(pattern.kind); }
@@ -105,8 +111,8 @@ std::string text_of(const AntennaPattern& pattern) {
 
 void bind_patterns(py::module_& m) {
   py::class_<AntennaPattern> type(m, "AntennaPattern",
-                                  "Power gain over direction; made by Isotropic, CosinePower or GainTable.");
-  define_no_init(type, "ep.Isotropic, ep.CosinePower, ep.GainTable and ep.load_antenna");
+                                  "Power gain over direction; made by Isotropic, CosinePower, GaussianBeam or GainTable.");
+  define_no_init(type, "ep.Isotropic, ep.CosinePower, ep.GaussianBeam, ep.GainTable and ep.load_antenna");
   define(type, "gain", &gain_of, py::arg("cos_boresight"),
          "Linear power gain where cos_boresight is the cosine of the angle from the boresight, from -1 to 1. "
          "A table raises ValueError.");
@@ -141,6 +147,14 @@ void bind_patterns(py::module_& m) {
          "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
          "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1), which is the most\n"
          "Raises ValueError naming the argument.");
+  define(m, "GaussianBeam", &gaussian_beam_of, py::kw_only(), py::arg("azimuth"), py::arg("elevation"),
+         py::arg("peak_gain") = py::none(),
+         R"(A beam of which the widths at half the power are known: it falls as 2^{-(2 angle/width)^2} along both angles.
+
+azimuth, elevation: rad, whole widths at half the power, from 1e-6 to pi
+peak_gain: linear, None for that of a beam without losses, which is the most: 16 ln 2/(azimuth elevation) of narrow ones
+There is no gain behind, nor beyond 2.6 widths, 81 dB below the peak: for side lobes take a table.
+Returns an AntennaPattern, a table. Raises TypeError or ValueError naming the argument.)");
   define(m, "GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
          py::arg("phase") = py::none(), py::arg("normalize") = false,
          R"(Gain sampled over direction; there is none outside the table.

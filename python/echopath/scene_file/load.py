@@ -255,4 +255,7 @@ def _pattern(table, folder: Path, key: str):
             return _core.Isotropic(gain=table.gain)
         if table.kind == "table":
             return load_antenna(folder / table.file, normalize=table.normalize)
+        if table.kind == "gaussian_beam":
+            return _core.GaussianBeam(azimuth=math.radians(table.azimuth_deg), elevation=math.radians(table.elevation_deg),
+                                      peak_gain=table.peak_gain)
         return _core.CosinePower(table.exponent, peak_gain=table.peak_gain)

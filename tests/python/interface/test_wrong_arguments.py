@@ -97,7 +97,7 @@ def good(tmp_path_factory) -> dict:
 # Classes whose constructors are held to the same.
 CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings", "Sequence", "Receiver", "Adc", "PhaseNoise"]
 # Of the extension, which checks their arguments itself; and what reads foreign files, whose readers have tests of their own.
-APART = {"CosinePower", "GainTable", "Isotropic"}
+APART = {"CosinePower", "GainTable", "GaussianBeam", "Isotropic"}
 FUNCTIONS = sorted(name for name in ep.__all__ if inspect.isroutine(getattr(ep, name)) and name not in APART)
 # Arguments that nothing is wrong for: whatever is passed on as it is.
 FREE = {("plot_rays", "cmap"), ("plot_rays", "plotter")}

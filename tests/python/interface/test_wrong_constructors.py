@@ -84,6 +84,7 @@ CALLS = {
     "CosinePower": (ep.CosinePower, {"exponent": 2.0, "peak_gain": 3.0}),
     "GainTable": (ep.GainTable, {"azimuth": [-1.0, 1.0], "elevation": [-0.5, 0.5], "gain": np.ones((2, 2)),
                                  "phase": np.zeros((2, 2)), "normalize": False}),
+    "GaussianBeam": (ep.GaussianBeam, {"azimuth": 1.0, "elevation": 0.2, "peak_gain": 0.5}),
     "gain": (ep.CosinePower(2.0).gain, {"cos_boresight": 0.5}),
     "field": (ep.CosinePower(2.0).field, {"directions": [[1.0, 0.0, 0.0]]}),
     "conductor": (ep.Material, {"conductor": True, "mirror": False}),

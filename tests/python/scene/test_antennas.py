@@ -69,6 +69,31 @@ def test_other_patterns_have_no_table():
     np.testing.assert_allclose(ep.CosinePower(2.0).field([[0.6, 0.8, 0.0]]), [np.sqrt(6 * 0.36)])
 
 
+@pytest.mark.parametrize("azimuth_deg, elevation_deg", [(4, 4), (3, 10), (60, 10), (120, 30), (1, 0.5), (180, 180)])
+def test_a_beam_known_by_its_widths_falls_to_half_at_half_of_them(azimuth_deg, elevation_deg):
+    widths = np.radians([azimuth_deg, elevation_deg])
+    beam = ep.GaussianBeam(azimuth=widths[0], elevation=widths[1])
+    u, v = (array.ravel() for array in np.meshgrid(np.linspace(-0.9, 0.9, 13), np.linspace(-0.9, 0.9, 11)))
+    angles = widths[:, None] * [u, v]
+    is_ahead = np.all(np.abs(angles) < np.pi / 2, axis=0)
+    azimuth, elevation = angles[:, is_ahead]
+    toward = np.column_stack([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    expected = 0.5 ** ((2 * u) ** 2 + (2 * v) ** 2)[is_ahead]
+    np.testing.assert_allclose(np.abs(beam.field(toward)) ** 2 / beam.peak_gain, expected, atol=1e-3)
+    assert beam.efficiency == pytest.approx(1.0, abs=1e-12)
+    if max(azimuth_deg, elevation_deg) <= 10:  # the integral over the plane
+        assert beam.peak_gain == pytest.approx(16 * np.log(2) / np.prod(widths), rel=0.01)
+
+
+def test_a_beam_with_losses_has_the_gain_that_is_told_and_none_behind():
+    beam = ep.GaussianBeam(azimuth=1.2, elevation=0.3, peak_gain=10.0)
+    assert beam.peak_gain == 10.0 and beam.efficiency < 1.0
+    np.testing.assert_allclose(np.abs(beam.field([[1, 0, 0], [-1, 0, 0], [0, 0, 1]])) ** 2, [10.0, 0.0, 0.0], rtol=1e-12)
+    for wrong in ({"azimuth": 0.0}, {"elevation": 3.2}, {"peak_gain": -1.0}):
+        with pytest.raises(ValueError, match=f"^{next(iter(wrong))}: must be"):
+            ep.GaussianBeam(**{"azimuth": 1.2, "elevation": 0.3, **wrong})
+
+
 def test_more_gain_than_the_sphere_has_is_an_error():
     with pytest.raises(ValueError, match=r"^gain: must have a mean over the sphere of at most 1.02 \(0.09 dB\).*"
                                          r"normalize=True.*, got a mean of 1\.1\d* \(0\.41\d* dB\)"):

@@ -85,6 +85,7 @@ def test_what_is_likely_passes_without_a_word():
 @pytest.mark.parametrize("make, says", [
     (lambda: ep.Isotropic(100), "^gain: must be at most 1, .*, got 100"),
     (lambda: ep.CosinePower(2, peak_gain=100), r"^peak_gain: must be at most .* 2 \(exponent \+ 1\) = 6, got 100"),
+    (lambda: ep.GaussianBeam(azimuth=1, elevation=0.5, peak_gain=100), "^peak_gain: .* without losses, 22.*, got 100"),
     (lambda: ep.GainTable(azimuth=[-3.1, 3.1], elevation=[-1.5, 1.5], gain=np.full((2, 2), 100.0)), "^gain: .*at most 1.02"),
 ])
 def test_no_antenna_radiates_more_than_it_is_fed(make, says):

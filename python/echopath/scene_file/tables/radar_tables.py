@@ -36,6 +36,13 @@ class CosinePowerTable(Table):
     peak_gain: Positive | None = Field(None, description="power gain, linear; none: of a lossless antenna")
 
 
+class GaussianBeamTable(Table):
+    kind: Literal["gaussian_beam"] = Field(description="a beam known by its widths, 0 behind")
+    azimuth_deg: Number = Field(gt=0.0, le=180.0, description="degrees, whole width at half the power")
+    elevation_deg: Number = Field(gt=0.0, le=180.0, description="degrees, likewise")
+    peak_gain: Positive | None = Field(None, description="power gain, linear; none: of a lossless antenna")
+
+
 class GainFileTable(Table):
     kind: Literal["table"] = Field(description="gain, and phase where given, sampled over direction")
     file: str = Field(min_length=1, description="CSV file (echopath.load_antenna), relative to the scene file")
@@ -44,7 +51,7 @@ class GainFileTable(Table):
 
 PatternTable = Annotated[
     Annotated[IsotropicTable, Tag("<isotropic>")] | Annotated[CosinePowerTable, Tag("<cosine_power>")] |
-    Annotated[GainFileTable, Tag("<table>")],
+    Annotated[GaussianBeamTable, Tag("<gaussian_beam>")] | Annotated[GainFileTable, Tag("<table>")],
     Discriminator(by_kind("kind"))]
 
 

@@ -78,6 +78,13 @@ exponent = 2.0
     assert first.polarization.tolist() == [0.0, 0.0, 1.0] and second.polarization.tolist() == [0.0, 1.0, 0.0]
 
 
+def test_beams_are_known_by_their_widths(write):
+    beam = '[radar.pattern]\nkind = "gaussian_beam"\nazimuth_deg = {}\nelevation_deg = 10.0\n'
+    first, = ep.load_scene(write(beam.format(60.0))).radar.receivers
+    assert first.pattern == ep.GaussianBeam(azimuth=np.radians(60), elevation=np.radians(10))
+    assert "radar.pattern.azimuth_deg: must be" in fault_of(write(beam.format(181.0)))
+
+
 def test_mesh_files_are_found_beside_the_scene_file_and_placed(write):
     scene = ep.load_scene(write(mesh_object(
         'unit = 0.001\nmaterial = "concrete"\nposition = [10.0, 0.0, 0.0]\nyaw_deg = 90.0'))).scene

@@ -99,8 +99,10 @@ class _Body:
             transform = _placed(node, time) @ transform
             index = node.parent
         left, _, right = np.linalg.svd(transform[:3, :3])
-        rotation = left @ right
-        transform[:3, :3] = rotation if np.linalg.det(rotation) > 0.0 else left @ np.diag([1.0, 1.0, -1.0]) @ right
+        axes = left @ right  # the nearest of unit length, mirrored or not
+        if np.linalg.det(axes) < 0.0:
+            axes[:, 1] *= -1.0  # a mirrored body keeps its +x and its +z
+        transform[:3, :3] = axes
         return transform
 
     def _own_centroid(self, time: float):

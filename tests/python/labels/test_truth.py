@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.truth.boxes import boxes_at
 from echopath.truth.cross_section import cross_section_dbsm, isotropic_power
 from support.radars import build_radar
 
 ROOT = Path(__file__).parents[3]
 TOUCH = 1e-9         # m, of vertices and faces of a box: rounding
+DIFFERENCES = 1e-9   # rad/s, of rates by differences over 0.1 ms: rounding
 RATE_ERROR = 1e-6    # m/s, of differences over 0.1 ms
 SPHERE_ERROR_DB = 0.1
 
@@ -77,6 +79,20 @@ def test_scale_of_a_placement_is_in_the_size():
     transform[:3, 3] = 15, 0, 0
     found = ep.truth(trace(box_scene(transform=transform)))
     assert found.size[0] == pytest.approx([8.0, 4.0, 3.0]) and found.yaw[0] == pytest.approx(np.pi / 2)
+
+
+@pytest.mark.parametrize("mirror", [(-1, 1, 1), (1, -1, 1), (1, 1, -1), (-2, -2, -2)])
+def test_the_box_of_a_mirrored_body_turns_with_it(mirror):
+    """A body that is mirrored by its placement turns as any other: its box keeps to its +x and +z and does not jump."""
+    scene, turn = ep.Scene(), ep.LinearMotion(velocity=(1, 2, 0), angular_velocity=(0, 0, 3))
+    scene.add(ep.actors.box((2.0, 1.0, 0.6)), name="box", material="metal", motion=turn,
+              transform=np.diag([*mirror, 1.0]))
+    times = np.linspace(0.0, 1.0, 23)
+    boxes = [boxes_at(scene, [["box"]], time, 0.01) for time in times]
+    signs = np.sign(mirror)
+    expected = np.array([turned((0, 0, 1), 3.0 * time) for time in times]) * np.array([signs[0], signs[0] * signs[2], signs[2]])
+    assert np.array([box.rotation[0] for box in boxes]) == pytest.approx(expected, abs=1e-12)
+    assert np.array([box.angular_velocity[0] for box in boxes]) == pytest.approx(np.tile([0, 0, 3.0], (23, 1)), abs=DIFFERENCES)
 
 
 def test_objects_of_several_nodes_stand_in_the_axes_above_them():

@@ -14,6 +14,7 @@ from ..base.radar.chirps import chirp_period
 from ..spectra.angles import Combine, range_azimuth
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..spectra.windows import of_range, of_velocity
+from ..transmit import demultiplex, is_coded, radar_of_noise, signal_shape
 from .bursts import Burst, Channel, Frames, Part, bursts, text_of_part
 from .maps import AngleTime, RangeTime
 from .spectrogram import IN_TIME_RULES
@@ -40,7 +41,7 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     """
     columns = _Columns(bursts(frames, radar, part=part, channel=channel, start_times=start_times), window_length, hop)
     spread = noise_bandwidth(of_velocity(window), columns.length) * zero_pad
-    empty = columns.one_map(np.zeros, window, zero_pad)
+    empty = columns.empty_map(window, zero_pad)
     inside = in_gate("velocity_gate", empty.velocity, velocity_gate, "m/s")
 
     def column(spectrum):
@@ -48,9 +49,11 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
         return power.max(axis=0) if combine == "peak" else power.sum(axis=0) / spread
 
     power = columns.mapped(lambda cube, one: column(_core.range_doppler(cube, one, window, zero_pad)))
+    noise = (columns.noise(column, window, zero_pad) if combine == "peak" else
+             columns.noise_of_cell(window) * np.count_nonzero(inside) / spread)
     velocities = empty.velocity[inside]
     return RangeTime(times=columns.times, range=empty.range.copy(), power=power, combine=combine, window=window,
-                     noise_power=columns.noise(column, window, zero_pad), zero_pad=zero_pad, part=text_of_part(part),
+                     noise_power=noise, zero_pad=zero_pad, part=text_of_part(part),
                      velocity_gate=(float(velocities[0]), float(velocities[-1])), channel=channel)
 
 
@@ -81,7 +84,7 @@ def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     def map_of(spectrum, one):
         return range_azimuth(spectrum, one, **settings)
 
-    empty = map_of(columns.one_map(np.zeros, window, zero_pad), columns.radar_of_column)
+    empty = map_of(columns.empty_map(window, zero_pad), columns.radar_of_column)
     inside = in_gate("range_gate", empty.range, range_gate, "m")
 
     def column(spectrum, one=columns.radar_of_column):
@@ -121,19 +124,28 @@ class _Columns:
         self.times = np.array(times)
         return np.array(found)
 
-    def one_map(self, make, window, zero_pad):
-        """The map of a piece that `make` (shape) gives."""
-        one = _of_channels(self.radar_of_column, self._first)
+    def empty_map(self, window, zero_pad):
+        """The map of a piece without a signal."""
         shape = (*self._first.cube.shape[:2], self.length, self.radar.waveform.num_samples)
-        return _core.range_doppler(make(shape), one, window, zero_pad)
+        return self._map_of(np.zeros(shape), window, zero_pad)
+
+    def _map_of(self, piece, window, zero_pad):
+        return _core.range_doppler(piece, _of_channels(self.radar_of_column, self._first), window, zero_pad)
+
+    def noise_of_cell(self, window) -> float:
+        """Mean of the noise in a cell of a piece's map, W."""
+        return _core.cell_noise_power(self.radar_of_column, window)
 
     def noise(self, column, window, zero_pad) -> float:
-        """Mean in W of a column of noise, of which a channel of a code has less than a radar of that channel alone."""
-        one = _of_channels(self.radar_of_column, self._first)
-        spectrum = self.one_map(lambda shape: _core.add_noise(np.zeros(shape), one, seed=_NOISE_SEED, start_time=0.0), window,
-                                zero_pad)
-        share = _core.cell_noise_power(self.radar_of_column, window) / _core.cell_noise_power(one, window)
-        return share * float(np.mean(column(spectrum)))
+        """Mean in W of a column of noise: that which a receiver has, taken apart as the cubes are. What undoes a code leaves noise
+        that the channels have in common, and more of it near the ends of a frame."""
+        radar = self.radar if is_coded(self.radar) else self.radar_of_column
+        received = _core.add_noise(np.zeros(signal_shape(radar), np.complex128), radar_of_noise(radar), seed=_NOISE_SEED,
+                                   start_time=0.0)
+        noise = demultiplex(received, radar)[list(self._first.transmitters), :self._first.cube.shape[1]]
+        pieces = (np.ascontiguousarray(noise[:, :, begin:begin + self.length])
+                  for begin in range(0, noise.shape[2] - self.length + 1, self.length))
+        return float(np.mean([column(self._map_of(piece, window, zero_pad)) for piece in pieces]))
 
 
 def _of_channels(radar, burst: Burst):

@@ -8,6 +8,7 @@ from support.radars import build_radar
 from support.signals.tones import random_cube, tone
 
 ROUNDING = 1e-11     # relative, of sums in another order
+ONE_DRAWING = 0.07   # relative, of the noise of one frame beside that of twenty; 0.04 found
 
 
 # --- against the map of one frame ---
@@ -54,6 +55,30 @@ def test_the_noise_of_a_channel_of_signs_is_what_their_sum_leaves():
     for channel in (None, (1, 0)):
         found = ep.range_time(cube, radar, channel=channel)
         assert found.power.mean() / found.noise_power == pytest.approx(1.0, abs=0.1)  # of 256 x 64 cells
+
+
+@pytest.mark.parametrize("code", [{"multiplexing": "ddm", "empty_slots": 1}, {"multiplexing": "bpm"},
+                                  {"multiplexing": "cdm", "code_phases": np.random.default_rng(1).uniform(0, 6, (4, 8))}])
+@pytest.mark.parametrize("window_length", [None, 20])
+def test_the_noise_of_angles_is_what_undoing_a_code_leaves(code, window_length):
+    """The mean over frames of noise that are taken apart: their channels have noise in common."""
+    half = 0.5 * ep.speed_of_light / 77e9
+    radar = build_radar([(0, 4 * tx * half, 0) for tx in range(4)], [(0, rx * half, 0) for rx in range(4)], num_chirps=60, **code)
+    slots = 60 * radar.num_slots
+    frames = [ep.demultiplex(ep.add_noise(np.zeros((1, 4, slots, 64)), radar, seed=seed), radar) for seed in range(5, 25)]
+    found = ep.angle_time(frames, radar, combine="peak", angles={"combine": "sum"}, window_length=window_length)
+    assert found.noise_power == pytest.approx(found.power.mean(), rel=ONE_DRAWING)
+
+
+def test_the_noise_of_a_sum_of_velocities_is_its_closed_form():
+    """k T F fs over all cells, of a chirp's transform: PHYSICS 2.3, for so many velocities of the gate as there are."""
+    radar = build_radar(num_chirps=64)
+    waveform, cells = radar.waveform, ep.range_doppler(random_cube(radar), radar, "hann", 2).velocity
+    inside = np.count_nonzero((cells >= -3.0) & (cells <= 5.0))
+    found = ep.range_time(random_cube(radar), radar, velocity_gate=(-3.0, 5.0), window="hann", zero_pad=2)
+    density = ep.boltzmann * 290.0 * 10.0 ** (0.1 * radar.noise_figure_db)
+    expected = density * waveform.sampling_rate * 1.5 / (waveform.num_samples * 64) * inside / 2  # Hann: 1.5 cells of range
+    assert found.noise_power == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_gate_takes_the_ranges_in_it():

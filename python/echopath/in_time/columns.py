@@ -14,7 +14,7 @@ from ..base.radar.chirps import chirp_period
 from ..spectra.angles import Combine, range_azimuth
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..spectra.windows import of_range, of_velocity
-from ..transmit import demultiplex, is_coded, radar_of_noise, signal_shape
+from ..transmit import is_coded, noise_apart
 from .bursts import Burst, Channel, Frames, Part, bursts, text_of_part
 from .maps import AngleTime, RangeTime
 from .spectrogram import IN_TIME_RULES
@@ -137,12 +137,9 @@ class _Columns:
         return _core.cell_noise_power(self.radar_of_column, window)
 
     def noise(self, column, window, zero_pad) -> float:
-        """Mean in W of a column of noise: that which a receiver has, taken apart as the cubes are. What undoes a code leaves noise
-        that the channels have in common, and more of it near the ends of a frame."""
-        radar = self.radar if is_coded(self.radar) else self.radar_of_column
-        received = _core.add_noise(np.zeros(signal_shape(radar), np.complex128), radar_of_noise(radar), seed=_NOISE_SEED,
-                                   start_time=0.0)
-        noise = demultiplex(received, radar)[list(self._first.transmitters), :self._first.cube.shape[1]]
+        """Mean in W of a column of noise: of one piece, or of all in a frame where a code has been undone."""
+        apart = noise_apart(self.radar if is_coded(self.radar) else self.radar_of_column, _NOISE_SEED)
+        noise = apart[list(self._first.transmitters), :self._first.cube.shape[1]]
         pieces = (np.ascontiguousarray(noise[:, :, begin:begin + self.length])
                   for begin in range(0, noise.shape[2] - self.length + 1, self.length))
         return float(np.mean([column(self._map_of(piece, window, zero_pad)) for piece in pieces]))

@@ -7,6 +7,7 @@ from .. import _core
 from ..arguments.checks import shown
 from ..spectra.angles import range_azimuth
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
+from ..transmit import noise_apart
 from .labels import AzimuthBox, AzimuthPeak, Box, Peak
 
 _NOISE_SEED = 1  # of the noise whose mean in a range-azimuth map is measured
@@ -59,7 +60,7 @@ class RangeAzimuthPlane:
             raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those "
                              f"of a part are not those of the whole), got {self._angles['method']!r}")
         self._settings, self.window_and_padding = {"window": window, "zero_pad": zero_pad}, (window, zero_pad)
-        noise = self._map(_core.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED, start_time=0.0), radar)
+        noise = self._map(noise_apart(radar, _NOISE_SEED), radar)
         self.velocity, self.azimuth, self.range = None, noise.azimuth.copy(), noise.range.copy()
         self.noise_power = float(np.mean(noise.power))
         self._num_elevations = len(noise.elevation)

@@ -5,8 +5,8 @@ slot, at the slot's own time; the code of slot i multiplies it by e^{j phase} as
 """
 from .code import code_of, code_signal, is_coded, signal_shape, slots_radar
 from .demultiplex import demultiplex
-from .noise import radar_of_noise
+from .noise import noise_apart, radar_of_noise
 from .signals import coded_cube, synthesize_slots
 
-__all__ = ["code_of", "code_signal", "coded_cube", "demultiplex", "is_coded", "radar_of_noise", "signal_shape", "slots_radar",
-           "synthesize_slots"]
+__all__ = ["code_of", "code_signal", "coded_cube", "demultiplex", "is_coded", "noise_apart", "radar_of_noise", "signal_shape",
+           "slots_radar", "synthesize_slots"]

@@ -7,6 +7,8 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
+from echopath.dataset.exports.carrada_views import views_of
+from support.radars import build_radar
 
 RANGE_CELL, VELOCITY_CELL, ANGLE_CELL = 0.1953125, 0.41968030701528203, 0.01227184630308513  # m, m/s, rad, as published
 STATS = {"range_doppler": (58.47112418237332, 37.59535773996415, 119.08313902425246),         # dB: mean, lowest, highest
@@ -124,6 +126,17 @@ def test_noise_has_the_published_level_and_inputs_end_at_the_published_ends(root
     level = 10.0 * np.log10(np.median(10.0 ** (values / 10.0)))
     assert level == pytest.approx(mean, abs=0.3)
     assert values.min() >= lowest and view(root, name).max() <= highest
+
+
+def test_noise_of_channels_at_one_position_has_the_published_level():
+    """Three transmitters two elements apart: four of eight elements are those of two channels."""
+    step, scene = 0.001947, ep.Scene()
+    scene.add(ep.actors.sphere(0.01), name="speck", material="metal", smooth=True, position=(10, 0, 0))
+    radar = build_radar([(0, 2 * k * step, 0) for k in range(3)], [(0, k * step, 0) for k in range(4)], num_samples=256,
+                        num_chirps=64, transmit_power=1e-12)
+    views = views_of(ep.simulate(scene, radar, num_rays=500, guard=False))
+    for name, (mean, *_) in STATS.items():
+        assert 10.0 * np.log10(np.mean(10.0 ** (views[name] / 10.0))) == pytest.approx(mean, abs=0.1), name
 
 
 @pytest.mark.parametrize("ball", BALLS)

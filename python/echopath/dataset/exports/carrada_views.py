@@ -73,10 +73,16 @@ def views_of(frame: Frame) -> dict[str, NDArray[np.float32]]:
                       f"{spectrum.values.shape[3]} and {spectrum.values.shape[2]}")
     beams = beamform(spectrum, radar, AZIMUTHS).power[0]  # [A, V, R]
     noise = _core.cell_noise_power(radar, frame.spectrum_settings["window"])
-    in_beam = noise / (len(radar.transmitters) * len(radar.receivers))
+    in_beam = noise * _noise_of_beam(radar)
     return {"range_doppler": _in_db(_approaching(_core.mean_power(spectrum)), noise, LEVELS["range_doppler"]),
             "range_angle": _in_db(_range_angle(beams.mean(axis=1)), in_beam, LEVELS["range_angle"]),
             "angle_doppler": _in_db(_approaching(beams.mean(axis=2).T)[::-1], in_beam, LEVELS["angle_doppler"])}
+
+
+def _noise_of_beam(radar: Any) -> float:
+    """Noise of a beam over that of a channel: the mean over elements, each the mean of the channels at its position."""
+    _, channels = np.unique(_core.virtual_array(radar).element_of_channel, return_counts=True)
+    return float(np.mean(1.0 / channels) / len(channels))
 
 
 def instances_of(frame: Frame, kinds: dict[str, ClassName], margins: LabelSettings) -> dict[str, list[Instance]]:

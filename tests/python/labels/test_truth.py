@@ -376,6 +376,23 @@ def test_rows_travel(frame, tmp_path):
     assert "1 row, 1 frame, 1 object: car" in repr(found)
 
 
+def test_what_a_loop_kept_of_its_frames_is_the_truth_of_all():
+    scene = ep.Scene()
+    scene.add(ep.actors.box((4, 2, 1.5)), name="car", material="metal", position=(10, 0, 0), speed=8.0)
+    starts = [0.0, 0.1, 0.3]
+    traced = [trace(scene, start_time=start) for start in starts]
+    kept = ep.truth([ep.truth(one) for one in traced])
+    assert kept.frame.tolist() == [0, 1, 2]
+    assert kept.position[:, 0] == pytest.approx(10.0 + 8.0 * kept.time)
+    assert kept.time - kept.time[0] == pytest.approx(starts)
+    points = [position[None] for position in kept.position]
+    assert set(ep.track(points, kept.time, truth=kept, truth_distance=5.0).object) == {"car"}
+    with pytest.raises(ValueError, match="frame: must be the Truth of one frame, got Truth"):
+        ep.truth([kept, kept])
+    with pytest.raises(ValueError, match="frame: must be a Frame for objects of a call, which need its paths, got Truth"):
+        ep.truth([ep.truth(traced[0])], {"all": "*"})
+
+
 def test_tables_have_names_and_units(frame, tmp_path):
     pytest.importorskip("pandas")
     table = frame.truth.to_dataframe()
@@ -391,7 +408,7 @@ def test_a_scene_without_objects_has_no_rows():
     scene = ep.Scene()
     scene.add(ep.actors.ground(50.0), name="ground", material=ep.materials["concrete"].replace(mirror=True), position=(0, 0, -1))
     assert len(ep.truth(trace(scene))) == 0
-    with pytest.raises(TypeError, match="frame: must be a Frame, Paths, or some of either, got 3"):
+    with pytest.raises(TypeError, match="frame: must be a Frame, Paths, the Truth of a frame, or some of these, got 3"):
         ep.truth(3)
 
 

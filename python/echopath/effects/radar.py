@@ -1,11 +1,15 @@
 """Effects of antennas, waveform and receiver."""
 from __future__ import annotations
 
+import math
+
 from .. import _core
 from ..base.radar.antennas import antennas_of, are_crossed
 from ..base.text.counts import counted
 from ..tracing.polarization import FIELD_VECTORS, need_of_field_vectors
 from .rules import Case, rule
+
+TOLD_LEVELS_DB = 0.5  # by which the square of the wavelength falls over the band, from which on it is told
 
 
 @rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "Antenna.yaw", "Antenna.pitch", "AntennaPattern.kind",
@@ -54,6 +58,17 @@ def _codes(case: Case):
 def _steps(case: Case):
     names = [name for name in ("extra_idle", "frequency_steps", "bandwidth_steps") if getattr(case.radar.waveform, name)]
     return bool(names), ", ".join(names) or "all chirps are alike"
+
+
+@rule("one level over the band", "ChirpSequence.bandwidth")
+def _levels(case: Case):
+    waveform = case.radar.waveform
+    last = waveform.start_frequency + waveform.bandwidth + max(waveform.frequency_steps, default=0.0)
+    fall = 20.0 * math.log10(last / waveform.start_frequency)
+    if fall < TOLD_LEVELS_DB:
+        return False, f"the square of the wavelength falls by {fall:.2g} dB from the start to the end"
+    return True, ("rough surfaces and planes by images send as at the start of the chirp all over its band, at whose end "
+                  f"antennas receive {fall:.1f} dB less; physical optics follows the wavelength")
 
 
 @rule("faults of the receiver", "Radar.receiver")

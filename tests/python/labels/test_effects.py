@@ -41,6 +41,7 @@ def deforming():
 
 
 STAGGERED = ep.ChirpSequence(num_chirps=2, extra_idle=(0.0, 1e-6))
+WIDE = ep.ChirpSequence(start_frequency=3e9, bandwidth=2.9e9, frequency_steps=(0.0, 0.1e9), num_chirps=2)
 MOVING = ep.LinearMotion(velocity=(1, 0, 0))
 LOBED = ep.Material(reflectivity=0.5, scattering=1.0, lobe_exponent=4)
 TURNING = ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2)
@@ -120,6 +121,7 @@ CASES = {
     "attenuation by weather": (dict(scene=rainy()), "rain 5.8", {}),
     "echoes of rain": (dict(scene=rainy()), "nothing hides it", dict(scene=rainy(), effects={"echoes of rain": False})),
     "interference": (dict(scene=ep.Scene(make_scene(), interferers=[ep.Interferer(radar=make_radar())])), "another radar", {}),
+    "one level over the band": (dict(radar=make_radar().replace(waveform=WIDE)), "6.0 dB less", {}),
     "transmission through sheets": (dict(scene=make_scene(ep.materials["glass_pane"])), "-6.3 dB", {}),
     "edge diffraction": (dict(edges=True), "looked for", {}),
     "few faint paths for many": (dict(scene=make_scene(ROUGH), faint_power="auto"), "one in 4", dict(scene=make_scene(ROUGH))),

@@ -3304,7 +3304,7 @@ def Isotropic(gain: float = 1.0) -> AntennaPattern:
     gain: linear, at most 1 (1.02 for rounding): without a direction to prefer it is the efficiency of the antenna
     Raises TypeError or ValueError naming the argument.
     """
-def _sheet_coefficients(material: Material, frequency: float, incidence: ArrayLike, from_behind: bool = False) -> numpy.typing.NDArray[numpy.complex128]:
+def _sheet_coefficients(material: Material, frequency: float, incidence: ArrayLike, from_behind: bool = False, bandwidth: float = 0.0) -> numpy.typing.NDArray[numpy.complex128]:
     ...
 def _wait(seconds: float, progress: typing.Any = None) -> None:
     ...

@@ -49,7 +49,7 @@ struct Replayer::Target {
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      preparer_(paths, touched_meshes(paths)), sheets_(preparer_, radio_.wavelength), grids_(paths, radar, settings),
+      preparer_(paths, touched_meshes(paths)), sheets_(preparer_, radar.waveform), grids_(paths, radar, settings),
       posed_(grids_, paths, radar, preparer_) {}
 
 PathGrids Replayer::path_grids() {

@@ -17,14 +17,15 @@ namespace {
 // [5, N]: reflection TE and TM, transmission TE and TM, and the delays of both as one complex number.
 py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material>> material,
                                                Arg<"frequency", Real> frequency,
-                                               Arg<"incidence", VectorOf<double>> incidence,
-                                               Arg<"from_behind", Flag> behind) {
+                                               Arg<"incidence", VectorOf<double>> incidence, Arg<"from_behind", Flag> behind,
+                                               Arg<"bandwidth", Real> bandwidth) {
   require(material->is_sheet(), "material", "must have layers", 0);
   require(*frequency > 0, "frequency", "must be > 0 Hz", *frequency);
+  require(*bandwidth >= 0, "bandwidth", "must be >= 0 Hz", *bandwidth);
   std::vector<Layer> layers = material->layers;
   if (*behind) std::ranges::reverse(layers);
   const LayerStack stack(layers, *frequency);
-  const SheetModel sheet(*material, *frequency);
+  const SheetModel sheet(*material, *frequency, *bandwidth);
   const auto count = std::ssize(*incidence);
   py::array_t<std::complex<double>> out({py::ssize_t{5}, count});
   auto rows = out.mutable_unchecked<2>();
@@ -48,7 +49,7 @@ py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material
 
 void bind_sheets(py::module_& m) {
   define(m, "_sheet_coefficients", &coefficients, py::arg("material"), py::arg("frequency"), py::arg("incidence"),
-         py::arg("from_behind") = false);
+         py::arg("from_behind") = false, py::arg("bandwidth") = 0.0);
 }
 
 }  // namespace echopath::bindings

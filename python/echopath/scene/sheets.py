@@ -22,7 +22,7 @@ class SheetCoefficients:
     incidence: rad from the normal [N]
     te_reflection, tm_reflection: complex [N], at the face that the wave meets
     te_transmission, tm_transmission: complex [N], from that face to the other one, at the same point of both
-    te_delay, tm_delay: m [N], by how much longer the way seems to be than through air
+    te_delay, tm_delay: m [N], by how much longer the way seems to be than through air, the mean over the band
     TE has its electric field across the plane of incidence, TM in it; signs are those of Fresnel's coefficients here.
     """
 
@@ -54,19 +54,22 @@ class SheetCoefficients:
     __hash__ = None
 
 
-@checked(material=an(_core.Material), frequency=carrier, incidence=array("[]", "[N]", finite=True), from_behind=flag)
+@checked(material=an(_core.Material), frequency=carrier, incidence=array("[]", "[N]", finite=True), from_behind=flag,
+         bandwidth=real(0.0))
 def sheet_coefficients(material: _core.Material, *, frequency: float, incidence: ArrayLike,
-                       from_behind: bool = False) -> SheetCoefficients:
+                       from_behind: bool = False, bandwidth: float = 0.0) -> SheetCoefficients:
     """What a sheet reflects and lets pass: Airy's sums over all bounces within its layers.
 
     material: one with layers
     frequency: Hz
     incidence: rad from the normal, in [0, pi/2], a number or [N]
     from_behind: the wave meets the last layer first
+    bandwidth: Hz, of the band from `frequency` on over which delays are the mean, as they are of a radar; 0: at `frequency`
+        alone. Fields are those at `frequency`.
     Returns SheetCoefficients, [N] each. Raises TypeError or ValueError naming the argument.
     """
     angles = np.atleast_1d(np.array(incidence, np.float64))  # a copy, which the result keeps
-    rows = _core._sheet_coefficients(material, frequency, angles, from_behind)
+    rows = _core._sheet_coefficients(material, frequency, angles, from_behind, bandwidth)
     return SheetCoefficients(angles, *rows[:4], rows[4].real, rows[4].imag)
 
 

@@ -82,7 +82,7 @@ TEST(PathPassages, FieldsPassBothModesByTheirOwnCoefficients) {
   const double angle = 0.9;
   const Paths paths = traced(scene_behind(glass(), angle));
   const PathPreparer preparer(paths, touched_meshes(paths));
-  const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
+  const RecordSheets sheets(preparer, paths.radar.waveform);
   int64_t path = 0;
   while (paths.hits_of(path)->mesh_id != 0) ++path;
   ASSERT_EQ(paths.passes_of(static_cast<size_t>(path)).size(), 2u);
@@ -108,7 +108,7 @@ TEST(PathPassages, OnTheWayToAMirrorDirectionsAreThoseToTheImage) {
   add_rectangle(scene, "pane", {2, -3, -3}, {0, 6, 0}, {0, 0, 6}, glass());
   const Paths paths = trace(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), with_rays(4000, 2));
   const PathPreparer preparer(paths, touched_meshes(paths));
-  const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
+  const RecordSheets sheets(preparer, paths.radar.waveform);
   int64_t path = 0;
   while (paths.num_bounces[path] != 2 || paths.hits_of(path)[0].mesh_id != 1) ++path;
   PathPassages passages(sheets, path);
@@ -124,7 +124,7 @@ TEST(PathPassages, SmoothSheetsHaveTheNormalOfThePlaceWhereALineCrossesThem) {
   scene.add(node_with("dome", ellipsoid(Vec3::Zero(), Vec3::Constant(4.0), 3), glass(), true));
   const Paths paths = traced(scene);
   const PathPreparer preparer(paths, touched_meshes(paths));
-  const RecordSheets sheets(preparer, kTwoPi / kWavenumber);
+  const RecordSheets sheets(preparer, paths.radar.waveform);
   int64_t path = 0;
   while (paths.hits_of(path)->mesh_id != 0) ++path;
   PathPassages passages(sheets, path);

@@ -7,6 +7,7 @@ import pytest
 
 import echopath as ep
 from support.behind_sheets import (
+    CHIRPS,
     FORMULA,
     FREQUENCY,
     GLASS,
@@ -125,12 +126,34 @@ def test_every_antenna_of_an_array_passes_at_its_own_angle():
             assert abs(ratio - 1) < RAYS, (tx, rx)
 
 
+@pytest.mark.parametrize("wall", [ep.Layer(0.2, 3.91 - 0.05j), ep.Layer(0.02, 6.3 - 0.05j)])
+def test_the_range_behind_a_wall_is_that_of_its_transmission_over_the_whole_band(wall):
+    """The bounces within a wall let its delay swing over a wide band: at the start alone a way there and back is 30 to 60 mm
+    longer."""
+    chirps = ep.ChirpSequence(start_frequency=3e9, bandwidth=2e9, num_samples=256, sampling_rate=2e6, num_chirps=1,
+                              chirp_interval=1e-3)
+    radar = make_radar().replace(waveform=chirps)
+    free, behind = (ep.synthesize(echo_of_ball(make_scene(pane), radar), radar)[0, 0, 0]
+                    for pane in (None, ep.Material(layers=[wall])))
+    frequencies = chirps.start_frequency + chirps.slope * np.arange(chirps.num_samples) / chirps.sampling_rate
+    air = np.exp(2j * np.pi * frequencies * wall.thickness / ep.speed_of_light)
+    passed = airy(0.0, wall, frequencies)[0][1] * air
+    expected = free * np.conj(passed) ** 2  # the beat of a later echo turns forward
+    found, known = (peak_of(beat, chirps) for beat in (behind, expected))
+    assert found == pytest.approx(known, abs=0.005)
+
+
+def peak_of(beat, chirps, zero_pad=64):
+    """Range in m of the strongest place of a beat signal."""
+    profile = np.abs(np.fft.fft(beat * np.hanning(beat.size), beat.size * zero_pad))[:beat.size * zero_pad // 2]
+    return profile.argmax() / zero_pad * ep.speed_of_light / (2 * chirps.bandwidth)
+
+
 def test_the_delay_of_a_pane_is_seen_in_the_range():
     free, behind = echo_of_ball(make_scene(None), make_radar()), echo_of_ball(make_scene(), make_radar())
-    step = 1e6
-    phase = np.unwrap([np.angle(airy(0.0, frequency=f)[0][1] * np.exp(2j * np.pi * f / ep.speed_of_light * THICKNESS))
-                       for f in (FREQUENCY - step, FREQUENCY + step)])
-    delay = -(phase[1] - phase[0]) / (2 * step) * ep.speed_of_light / (2 * np.pi)
+    band = np.linspace(FREQUENCY, FREQUENCY + CHIRPS.bandwidth, 50)
+    phase = np.unwrap(np.angle(airy(0.0, frequency=band)[0][1] * np.exp(2j * np.pi * band / ep.speed_of_light * THICKNESS)))
+    delay = -(phase[-1] - phase[0]) / CHIRPS.bandwidth * ep.speed_of_light / (2 * np.pi)
     nearest = [np.min(paths.lengths([paths.frame.trace_time])) for paths in (free, behind)]
     assert nearest[1] - nearest[0] == pytest.approx(2.0 * delay, abs=1e-4)
 
@@ -251,3 +274,18 @@ def test_coefficients_keep_their_angles():
     found = ep.sheet_coefficients(ep.materials["glass_pane"], frequency=77e9, incidence=angles)
     angles[:] = 1.0
     assert found.incidence.tolist() == [0.0, 0.3]
+
+
+@pytest.mark.parametrize("bandwidth", [0.0, 2e9])
+def test_the_delay_of_a_sheet_is_the_mean_over_the_band(bandwidth):
+    """By the phase of Airy's formula, unwrapped in steps."""
+    wall, start, incidence = ep.Layer(0.2, 3.91 - 0.05j), 3e9, 0.5
+    found = ep.sheet_coefficients(ep.Material(layers=[wall]), frequency=start, incidence=incidence, bandwidth=bandwidth)
+    width = bandwidth or 1e4
+    band = np.linspace(start, start + width, 400)
+    free = np.exp(2j * np.pi * band / ep.speed_of_light * wall.thickness * np.cos(incidence))
+    for delay, (_, passed) in zip((found.te_delay[0], found.tm_delay[0]), airy(incidence, wall, band)):
+        phase = np.unwrap(np.angle(passed * free))
+        assert delay == pytest.approx((phase[0] - phase[-1]) * ep.speed_of_light / (2 * np.pi * width), abs=1e-5)
+    with pytest.raises(ValueError, match="bandwidth"):
+        ep.sheet_coefficients(ep.Material(layers=[wall]), frequency=start, incidence=0.0, bandwidth=-1.0)

@@ -25,11 +25,19 @@ Interface reflection_between(const Side& before, const Side& behind) {
           (tm_before - tm_behind) / (tm_before + tm_behind)};
 }
 
-// Puts an interface and a layer before what is known of the stack behind them.
-void join(Complex interface, Complex through, Complex& reflection, Complex& transmission) {
+// Puts an interface and a layer before what is known of the stack behind them. Adds the phase of the interface and of the
+// bounces within to `phase`, unless it is null. Nothing passive reflects more than it gets: 1 + interface and the sum have
+// positive real parts, so that the argument of their quotient never jumps.
+void join(Complex interface, Complex through, Complex& reflection, Complex& transmission, double* phase) {
   const Complex back = reflection * through * through, sum = 1.0 + interface * back;
   transmission *= (1.0 + interface) * through / sum;
   reflection = (interface + back) / sum;
+  if (phase != nullptr) *phase += std::arg((1.0 + interface) * std::conj(sum));
+}
+
+void add_to_both(double phase, LayerPhases& phases) {
+  phases.te += phase;
+  phases.tm += phase;
 }
 
 }  // namespace
@@ -43,7 +51,7 @@ LayerStack::LayerStack(std::span<const Layer> layers, double frequency) : wavenu
   }
 }
 
-LayerStack::Joined LayerStack::joined(double cos_incidence) const {
+LayerStack::Joined LayerStack::joined(double cos_incidence, LayerPhases* phases) const {
   const Side air{1.0, cos_incidence};
   Joined out{{0.0, 0.0}, {1.0, 1.0}};
   Side behind = air;
@@ -52,9 +60,12 @@ LayerStack::Joined LayerStack::joined(double cos_incidence) const {
     const Side before =
         k == 0 ? air : Side{slices_[k - 1].permittivity, transmitted_cosine(slices_[k - 1].permittivity, cos_incidence)};
     const Interface at = reflection_between(before, behind);
-    join(at.te, through, out.reflection.te, out.transmission.te);
-    join(at.tm, through, out.reflection.tm, out.transmission.tm);
-    if (k > 0) through = std::exp(Complex(0.0, -slices_[k - 1].phase) * before.cosine);
+    join(at.te, through, out.reflection.te, out.transmission.te, phases != nullptr ? &phases->te : nullptr);
+    join(at.tm, through, out.reflection.tm, out.transmission.tm, phases != nullptr ? &phases->tm : nullptr);
+    if (k > 0) {
+      through = std::exp(Complex(0.0, -slices_[k - 1].phase) * before.cosine);
+      if (phases != nullptr) add_to_both(-slices_[k - 1].phase * before.cosine.real(), *phases);
+    }
     behind = before;
   }
   return out;
@@ -72,9 +83,12 @@ LayerTransmission LayerStack::transmission(double cos_incidence) const {
   return joined(cos_incidence).transmission;
 }
 
-LayerTransmission LayerStack::over_free_space(double cos_incidence) const {
-  LayerTransmission found = transmission(cos_incidence);
-  const Complex free = std::polar(1.0, phase_ * cos_incidence);
+LayerTransmission LayerStack::over_free_space(double cos_incidence, LayerPhases* phases) const {
+  const double straight = phase_ * cos_incidence;
+  if (phases != nullptr) *phases = {straight, straight};
+  if (cos_incidence <= 0.0) return {0.0, 0.0};
+  const LayerTransmission found = joined(cos_incidence, phases).transmission;
+  const Complex free = std::polar(1.0, straight);
   return {found.te * free, found.tm * free};
 }
 

@@ -18,6 +18,11 @@ struct LayerTransmission {
   std::complex<double> te, tm;
 };
 
+// Holds phases in rad of the transmission of both modes, without jumps over frequency: many turns in thick layers.
+struct LayerPhases {
+  double te = 0.0, tm = 0.0;
+};
+
 class LayerStack {
  public:
   // Takes the layers in the order in which the wave meets them; `frequency` is in Hz.
@@ -28,8 +33,9 @@ class LayerStack {
   FresnelModes reflection(double cos_incidence) const;
   // Returns the field behind the last face over that before the first one, at the points where a normal meets both.
   LayerTransmission transmission(double cos_incidence) const;
-  // Returns the same over that of free space between the same faces: over the phase of the straight line.
-  LayerTransmission over_free_space(double cos_incidence) const;
+  // Returns the same over that of free space between the same faces: over the phase of the straight line. Writes its phases,
+  // whose difference between two frequencies counts whole turns, too, to `phases`, unless it is null.
+  LayerTransmission over_free_space(double cos_incidence, LayerPhases* phases = nullptr) const;
   // Returns by how much a ray leaves the stack beside the straight line, in m across the ray: the sum of what its layers
   // refract. It is positive toward the foot of the normal at the point of entry.
   double offset(double cos_incidence) const;
@@ -45,7 +51,8 @@ class LayerStack {
     FresnelModes reflection;
     LayerTransmission transmission;
   };
-  Joined joined(double cos_incidence) const;
+  // Adds the phases of the transmission to `phases`, unless it is null.
+  Joined joined(double cos_incidence, LayerPhases* phases = nullptr) const;
 
   std::vector<Slice> slices_;
   double thickness_ = 0.0, phase_ = 0.0, wavenumber_;

@@ -8,23 +8,22 @@
 namespace echopath {
 namespace {
 
-constexpr double kStep = 1e-4;         // of the frequency, to either side
+constexpr double kLeastBand = 1e-6;    // of the frequency, over which the delay at this frequency alone is told
 constexpr double kLeastOffset = 0.1;   // wavelengths
 constexpr double kLeastField = 1e-12;  // of a polarisation's square: what lies along the direction has no mode
 
 }  // namespace
 
-SheetModel::SheetModel(const Material& material, double frequency)
-    : at_(material.layers, frequency), below_(material.layers, (1.0 - kStep) * frequency),
-      above_(material.layers, (1.0 + kStep) * frequency), turn_(kSpeedOfLight / (kTwoPi * 2.0 * kStep * frequency)) {}
+SheetModel::SheetModel(const Material& material, double frequency, double bandwidth)
+    : band_(std::max(bandwidth, kLeastBand * frequency)), at_(material.layers, frequency),
+      last_(material.layers, frequency + band_) {}
 
 SheetPassage SheetModel::passage(double cos_incidence) const {
-  const LayerTransmission at = at_.over_free_space(cos_incidence), below = below_.over_free_space(cos_incidence),
-                          above = above_.over_free_space(cos_incidence);
-  const auto delay = [&](std::complex<double> first, std::complex<double> last) {
-    return -turn_ * std::arg(last * std::conj(first));
-  };
-  return {at.te, at.tm, delay(below.te, above.te), delay(below.tm, above.tm), at_.offset(cos_incidence)};
+  LayerPhases first, last;
+  const LayerTransmission at = at_.over_free_space(cos_incidence, &first);
+  last_.over_free_space(cos_incidence, &last);
+  const double turn = kSpeedOfLight / (kTwoPi * band_);  // m of length per rad
+  return {at.te, at.tm, turn * (first.te - last.te), turn * (first.tm - last.tm), at_.offset(cos_incidence)};
 }
 
 double te_share(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {

@@ -2,10 +2,11 @@
 // Models what a sheet does to a wave that goes through it.
 //
 // A leg of a path stays straight: its wave is multiplied by the transmission of a plane wave of its direction, over that of
-// free space between the same faces. The delay of the sheet, by which its phase grows with frequency, is part of the length
-// of the path. A refracted wave leaves the sheet beside the straight line, by `offset`. The phase of the transmission has
-// this to first order; what is left is k offset^2 / (2 length), the detour of a wave that meets the far end of the leg all
-// the same, and it is added where the offset exceeds a tenth of a wavelength.
+// free space between the same faces. The delay of the sheet, by which its phase grows over the band, is part of the length
+// of the path: the mean, as bounces within a thick sheet let it swing. A refracted wave leaves the sheet beside the
+// straight line by `offset`. The phase of the transmission has this to first order; what is left is k offset^2 / (2
+// length), the detour of a wave that meets the far end of the leg all the same, and it is added where the offset exceeds a
+// tenth of a wavelength.
 #include "echopath/base/geometry.h"
 #include "echopath/em/layers/layer_stack.h"
 
@@ -14,7 +15,7 @@ namespace echopath {
 // Holds what one crossing does to the wave, in both modes.
 struct SheetPassage {
   std::complex<double> te, tm;            // over free space
-  double te_delay = 0.0, tm_delay = 0.0;  // m, longer than free space
+  double te_delay = 0.0, tm_delay = 0.0;  // m, longer than free space, mean over the band
   double offset = 0.0;                    // m, across the ray, toward the foot of the normal at the point of entry
 };
 
@@ -23,8 +24,8 @@ inline constexpr double kMinSineOfModes = 1e-9;
 
 class SheetModel {
  public:
-  // `material` has layers; `frequency` is in Hz.
-  SheetModel(const Material& material, double frequency);
+  // `material` has layers; the band of `bandwidth` (Hz) begins at `frequency` (Hz), at which fields and offsets are told.
+  SheetModel(const Material& material, double frequency, double bandwidth);
   // cos_incidence in [0, 1] is taken from the normal, of either side: both have the same passage.
   SheetPassage passage(double cos_incidence) const;
   // Returns the phase in rad that a wave turns by within the layers and back, straight through: about the rate at which a
@@ -32,8 +33,8 @@ class SheetModel {
   double most_phase() const { return at_.most_phase(); }
 
  private:
-  LayerStack at_, below_, above_;  // at the frequency, and at two frequencies about it
-  double turn_;                    // m of length per rad between these two
+  double band_;           // Hz
+  LayerStack at_, last_;  // at the first and at the last frequency of the band
 };
 
 // Returns the share of the TE mode in the power of a wave that travels along `direction` with a polarisation, which need not

@@ -14,6 +14,7 @@
 
 #include "echopath/em/layers/sheet_table.h"
 #include "echopath/em/polarization/jones.h"
+#include "echopath/radar/radar.h"
 #include "echopath/replay/posed/local_paths.h"
 
 namespace echopath {
@@ -21,7 +22,7 @@ namespace echopath {
 // Holds the sheets that the paths of a record go through.
 struct RecordSheets {
   // Raises invalid_argument. The preparer must outlive it.
-  RecordSheets(const PathPreparer& preparer, double wavelength);
+  RecordSheets(const PathPreparer& preparer, const ChirpSequence& waveform);
   SheetPassage passage(uint32_t mesh_id, double cos_incidence) const {
     const Sheet& sheet = *of_mesh[mesh_id];
     return sheet.table ? sheet.table->passage(cos_incidence) : sheet.model.passage(cos_incidence);
@@ -32,7 +33,7 @@ struct RecordSheets {
     std::optional<SheetTable> table;  // where there are many passes
   };
   const PathPreparer& preparer;
-  double wavelength;                          // m
+  double wavelength;                          // m, at the start frequency
   Vec3 polarization = Vec3::UnitZ();          // of the wave, by which its modes are told apart
   std::vector<std::optional<Sheet>> of_mesh;  // by mesh ID; empty where no path passes a sheet
 };

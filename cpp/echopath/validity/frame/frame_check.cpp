@@ -67,7 +67,7 @@ struct FrameCheck::Sweep {
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(one_channel(radar)),
       preparer_(paths, whole_meshes(*paths.scene)), walk_(*paths.scene, preparer_.smooth_normals()),
-      radio_(radio_constants(paths, radar)), sheets_(preparer_, radio_.wavelength), specular_(specular),
+      radio_(radio_constants(paths, radar)), sheets_(preparer_, radar.waveform), specular_(specular),
       mesh_moves_(moving_meshes(*paths.scene)) {
   sheets_move_ = std::ranges::any_of(paths.passes, [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
   is_geometry_still_ = std::ranges::count(mesh_moves_, 1) == 0;

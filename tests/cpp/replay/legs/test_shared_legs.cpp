@@ -202,7 +202,7 @@ TEST(SharedLegs, UnfilteredAmplitudesAreThoseOfCellsWithoutSize) {
   const PathPreparer preparer(paths, touched_meshes(paths));
   RadioConstants radio = radio_constants(paths, radar);
   radio.cells.side = 0.0;
-  const SheetPassages sheets(preparer, radio.wavelength);
+  const SheetPassages sheets(preparer, radar.waveform);
   const std::vector<int64_t> indices = all_of(paths);
   const PosedNodes nodes(
       pose_at(*paths.scene, radar, preparer.meshes(), paths.frame.transmitter, {&paths.frame.trace_time, 1}));

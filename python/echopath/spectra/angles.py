@@ -105,7 +105,9 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
     method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
         resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid, and
         its powers are low, as it takes what noise adds to an echo for another one: of 12 channels by 3 to 6 dB at a ratio of
-        30 dB in each, by 10 to 20 dB at 10 dB, with a diagonal_loading of 1 by less than 1 and 2 to 5 dB)
+        30 dB in each, by 10 to 20 dB at 10 dB, with a diagonal_loading of 1 by less than 1 and 2 to 5 dB. Echoes of one
+        velocity and range are one source to it and cancel each other: of two balls at rest, 20 m away and 10 degrees apart,
+        it has 36 dB less than bartlett in 16 channels, with forward_backward 8 to 13 dB less)
     window: of bartlett, as in `angle_fft`; other than "rect" for grids of equal steps only
     overlaps: "average" of channels at one position, or the "first" of them
     compensate: take out the phase between transmit slots (`compensate_tdm`)

@@ -5,6 +5,7 @@ import pytest
 import echopath as ep
 from echopath import _core
 from echopath.labels import powers
+from echopath.labels.cell_owners import CellOwners
 from echopath.labels.family_pass import owners_of_views
 from support.labelled import TARGETS, make_radar
 
@@ -67,6 +68,18 @@ def test_maps_of_objects_and_ghosts_hold_the_cells_that_labels_count(labels):
         assert np.count_nonzero(labels.ghost_map == index) == ghost.cells
     assert not np.any((labels.object_map >= 0) & (labels.ghost_map >= 0))
     assert not np.any(((labels.object_map >= 0) | (labels.ghost_map >= 0)) & ~labels.mask)
+
+
+def test_boxes_go_from_the_first_to_the_last_of_the_cells(labels):
+    """Velocities are a circle, of which a box leaves out the longest arc without a cell."""
+    owners = [(labels.object_map == index, label) for index, label in enumerate(labels.objects)]
+    owners += [(labels.ghost_map == index, ghost) for index, ghost in enumerate(labels.ghosts) if ghost.cells]
+    for own, label in owners:
+        rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
+        last = int(np.argmax(np.diff(rows, append=rows[0] + len(own))))
+        first = rows[(last + 1) % len(rows)]
+        expected = *labels.range[columns[[0, -1]]], *labels.velocity[[first, rows[last]]]
+        assert tuple(label.box) == pytest.approx(expected, abs=0)
 
 
 def test_shares_sum_to_one_and_the_dominant_part_has_the_largest(labels):
@@ -165,6 +178,39 @@ def test_an_object_has_the_cells_that_it_shares_with_its_ghosts(own, stranger, f
     found.add(cubes, powers.CubeSet(None, 1.0, {}))
     owners = owners_of_views(found, np.ones((1, 1), bool), floor)
     assert owners.family.item() == wins and owners.own.item() == pytest.approx([own, 1.0, 1.0, stranger][wins] ** 2)
+
+
+OWNERS = [ep.Family("a", 0, 1, ()), ep.Family("b", 0, 1, ()), ep.Family("a", 1, 2, ("road",)), ep.Family("b", 1, 2, ("road",)),
+          ep.Family("", 0, 0, ())]
+
+
+def slow_owner(power, peak, floor):
+    """The rule of CellOwners for one cell, power [F], of families with their strongest cells, peak [F]."""
+    best = int(np.argmax(power))
+    if power[best] == 0.0:
+        return -1
+    direct = best - 2 if OWNERS[best].is_ghost else best
+    shown = 0.1 * min(power[best], peak[direct] if peak[direct] > floor else np.inf)
+    return direct if power[direct] >= shown else best
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_owners_of_some_cells_are_those_of_the_whole_map_in_whatever_order(seed):
+    """Powers over four decades about the floor, of which many are alike; detections ask for a few cells of the map."""
+    random, floor = np.random.default_rng(seed), 1.0
+    power = random.integers(0, 4, (len(OWNERS), 30)) * 10.0 ** random.integers(-2, 2, (len(OWNERS), 1))
+    peak, some = power.max(axis=1), slice(0, 5)
+    expected = [slow_owner(of_cell, peak, floor) for of_cell in power.T]
+    for order in (range(len(OWNERS)), reversed(range(len(OWNERS)))):
+        whole, few = CellOwners((30,), OWNERS, floor), CellOwners((5,), OWNERS, floor)
+        for rival in order:
+            whole.add(rival, power[rival], 0.0)
+            few.add(rival, power[rival, some], 0.0)
+        for rival in few.faded():
+            few.peak[few.rivals[rival]] = peak[few.rivals[rival]]
+        for owners in (whole, few):
+            owners.give(np.ones(owners.best.shape, bool))
+        assert whole.family.tolist() == expected and few.family.tolist() == expected[some]
 
 
 def test_pairs_of_ghosts_have_their_cells_together(labels):

@@ -79,10 +79,10 @@ def test_why_an_object_is_not_in_the_map():
     assert all(label.cells == 0 and label.box is None for name, label in found.items() if name != "near")
 
 
-@pytest.mark.parametrize("transmit_power, status", [(1e-3, "not seen"), (1.0, "unresolved")])
+@pytest.mark.parametrize("transmit_power, status", [(0.014, "not seen"), (0.05, "unresolved")])
 def test_what_no_ray_has_met_is_called_unresolved_where_it_may_be_above_the_noise(transmit_power, status):
     """A plate of metal of 5 cm at 31 m may send sigma = 4 pi A^2 / lambda^2 where it faces the radar: -104 dBm with 1 W, 16 dB
-    above a floor of -121 dBm."""
+    above a floor of -121 dBm, which a fortieth of that reaches."""
     scene, radar = ep.Scene(), make_radar(transmit_power=transmit_power)
     scene.add(ep.actors.plate(0.05, 0.05), name="far", material=ep.Material.metal(), position=(30, 9, 1), yaw=np.pi + 0.1)
     paths = ep.trace(scene, radar, num_rays=3)
@@ -96,13 +96,33 @@ def test_what_no_ray_has_met_is_called_unresolved_where_it_may_be_above_the_nois
     assert far.status == status
 
 
-def test_an_echo_under_a_stronger_one_is_masked():
+@pytest.mark.parametrize("retrace", ["never", "always"])  # "never" makes no signal of what cannot be seen
+@pytest.mark.parametrize("transmit_power, status", [(0.002, "hidden in noise"), (0.02, "unresolved")])
+def test_what_the_rays_hardly_know_is_unresolved_where_its_interval_ends_above_the_noise(transmit_power, status, retrace):
+    """Ten rays on metal of 0.5 m that looks 0.1 rad beside the radar: the map shows next to nothing of what there may be, which
+    would spread over cells as that does."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material=ep.Material.metal(), position=(10, 0.3, 1), yaw=np.pi + 0.1)
+    paths = ep.trace(scene, make_radar(transmit_power=transmit_power), num_rays=10)
+    parts = ep.decompose(paths, parts={"plate": "T .* R"})
+    found = ep.annotate(paths, parts, retrace=retrace, keyframes=1)
+    (plate,) = found.objects
+    shown = found.power[0].max() / np.mean(np.abs(parts["plate"]) ** 2)  # in the strongest cell, of 1 W received
+    assert found.power[0].max() < 1e-4 * found.noise_floor
+    assert (shown * plate.received.high > found.noise_floor) == (status == "unresolved")
+    assert plate.status == status
+
+
+@pytest.mark.parametrize("transmit_power, status", [(1.0, "masked"), (0.1, "hidden in noise")])
+def test_an_echo_above_the_noise_under_a_stronger_one_is_masked(transmit_power, status):
     scene = ep.Scene()
     add_plate(scene, "large", (10, 0.3, 1), size=0.3)
     add_plate(scene, "small", (10, -0.3, 1), size=0.05)
-    paths = ep.trace(scene, make_radar(), num_rays=20_000)
-    large, small = ep.annotate(paths, {}).objects
-    assert (large.status, small.status) == ("seen", "masked") and small.power < large.power
+    paths = ep.trace(scene, make_radar(transmit_power=transmit_power), num_rays=20_000)
+    found = ep.annotate(paths, {"small": ep.hits("small")})
+    large, small = found.objects
+    assert (found.power[0].max() > found.noise_floor) == (status == "masked")
+    assert (large.status, small.status) == ("seen", status) and small.power < large.power
 
 
 def test_a_box_goes_over_the_end_of_the_velocities():

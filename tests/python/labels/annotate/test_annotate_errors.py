@@ -13,6 +13,7 @@ SPREAD = 0.45
 SPECKLE = 0.2  # relative, three times the error of the mean of 40 independent sums over few cells
 HANN_BANDWIDTH = 1.5  # cells
 ROUNDING = 1e-9
+IMAGE = 1e-3  # relative: what the edges of the mirror leave of its image, and spreading over the array
 
 
 def make_radar(num_rx=2):
@@ -67,6 +68,20 @@ def test_mean_powers_add_up_to_the_received_power(traces):
         received = np.mean([ep.received_power(paths.select(selection)).power for paths, _ in traces])
         found = np.mean([labels.mean_power[part].sum() for _, labels in traces]) / HANN_BANDWIDTH**2
         assert abs(found / received - 1) < SPECKLE, part
+
+
+def test_an_echo_of_a_mirror_is_known_without_an_error():
+    """No ray tells it, so that it belongs to every batch: Pt lambda^2 / ((4 pi)^2 (2 d)^2), that of the antenna's image."""
+    radar, scene, distance = make_radar(num_rx=1), ep.Scene(), 7.0
+    scene.add(ep.actors.sphere(0.3), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(5, 0.6, 1))
+    scene.add(ep.actors.plate(20.0, 20.0), name="mirror", material=ep.Material.metal(mirror=True), position=(distance, 0, 1),
+              yaw=np.pi)
+    paths = ep.trace(scene, radar, num_rays=500, batches=2, max_bounces=1)
+    found = ep.annotate(paths, {"mirror": "T 'mirror' R"}, errors=True)
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    expected = radar.transmit_power * wavelength**2 / ((4 * np.pi) ** 2 * (2 * distance) ** 2)
+    assert found.mean_power[0].sum() / HANN_BANDWIDTH**2 == pytest.approx(expected, rel=IMAGE)
+    assert found.power_error[0].max() <= ROUNDING * expected and found.power_error[1].max() > 0
 
 
 def test_labels_of_the_map_do_not_depend_on_the_errors_asked_for():

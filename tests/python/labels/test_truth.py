@@ -160,6 +160,11 @@ def test_velocity_of_what_goes_straight():
     assert np.abs(found.angular_velocity).max() < 1e-6
 
 
+def test_what_rises_has_a_direction_and_no_heading():
+    found = ep.truth(trace(box_scene(position=(20, 1, 0), motion=ep.LinearMotion(velocity=(0.0, 0.0, 3.0)))))
+    assert np.isnan(found.heading[0]) and found.direction_in_radar[0] == pytest.approx([0.0, 0.0, 1.0], abs=RATE_ERROR)
+
+
 @pytest.mark.parametrize("name", ["axis", "axis/gondola"])
 def test_velocity_of_what_goes_round(name):
     """A box 3 m from an axis that turns: v = omega x r, of the box's centre, wherever the object's own origin is."""
@@ -278,9 +283,11 @@ def test_ghosts_are_no_part_of_a_cross_section():
               yaw=np.pi / 2)
     paths = trace(scene, num_rays=20000)
     found = ep.truth(paths, ["ball"])
-    alone = ep.received_power(paths.select("T 'ball'+ R")).power
-    assert found.received[0] / alone == pytest.approx(1.0)
-    assert abs(ep.received_power(paths.select(ep.hits("ball"))).power / alone - 1.0) > 0.1
+    alone = ep.received_power(paths.select("T 'ball'+ R"))
+    assert found.received[0] / alone.power == pytest.approx(1.0) and 0 < alone.low < alone.power < alone.high
+    assert found.rcs_low[0] / found.rcs[0] == pytest.approx(alone.low / alone.power)
+    assert found.rcs_high[0] / found.rcs[0] == pytest.approx(alone.high / alone.power)
+    assert abs(ep.received_power(paths.select(ep.hits("ball"))).power / alone.power - 1.0) > 0.1
 
 
 def test_what_no_antenna_sees_has_no_cross_section():
@@ -350,6 +357,28 @@ def test_boxes_in_the_axes_of_a_radar_that_pitches_and_rolls():
     w, x, y, z = found.quaternions_in_radar[0]
     assert w >= 0 and turned(np.array([x, y, z]) / np.sin(np.arccos(w)), 2 * np.arccos(w)) == pytest.approx(axes.T @ tilt)
     assert np.isnan(ep.truth(trace(box_scene(position=(12, 3, 0)), radar)).direction_in_radar).all()
+
+
+def test_ranges_and_directions_count_from_between_the_antennas():
+    """Of a box high above to the left, by the place between antennas that stand apart on a radar that drives and turns."""
+    antennas, middle = (ep.Antenna((0.9, -0.2, 0.4)), ep.Antenna((0.1, 0.8, -0.2))), np.array([0.5, 0.3, 0.1])
+    place, spin, ahead, velocity = np.array([1.0, 2.0, 1.5]), 0.8, np.array([9.0, 0.0, 0.2]), np.array([-5.0, 1.0, 0.5])
+    radar = build_radar(antennas[:1], antennas[1:], num_chirps=64, position=place, yaw=0.2,
+                        motion=ep.LinearMotion(velocity=ahead, angular_velocity=(0, 0, spin)))
+    found = ep.truth(trace(box_scene(position=(12, 9, 8), motion=ep.LinearMotion(velocity=velocity)), radar))
+    now, step = found.time[0], 1e-5
+
+    def sight(time):
+        axes = turned((0, 0, 1), 0.2 + spin * time)
+        at = found.position[0] + velocity * (time - now)
+        return (at - place - ahead * time) @ axes - middle
+
+    x, y, z = sight(now)
+    distance = np.linalg.norm(sight(now))
+    assert found.range[0] == pytest.approx(distance) and found.azimuth[0] == pytest.approx(np.arctan2(y, x))
+    assert found.elevation[0] == pytest.approx(np.arcsin(z / distance))
+    rate = (np.linalg.norm(sight(now + step)) - np.linalg.norm(sight(now - step))) / (2 * step)
+    assert found.radial_velocity[0] == pytest.approx(rate, abs=1e-6)
 
 
 # --- as tables and rows ---

@@ -446,6 +446,20 @@ def test_records_that_are_no_array_are_refused_by_name():
         ep.Truth.from_records(np)
 
 
+def test_a_square_metre_between_two_antennas_sends_what_the_radar_equation_says():
+    """Pt Gt Gr lambda^2 / ((4 pi)^3 Rt^2 Rr^2) of antennas 5 m apart, 2 (n + 1) cos^n of the angle from where each looks."""
+    sent = ep.Antenna((0.0, 4.0, 0.0), yaw=-0.3, pattern=ep.CosinePower(4.0))
+    heard = ep.Antenna((1.0, -1.0, 0.5), yaw=0.4, pattern=ep.CosinePower(2.0, peak_gain=3.0))
+    radar = build_radar((sent,), (heard,), num_chirps=4, position=(2, -3, 1), yaw=0.5, transmit_power=0.7)
+    point = np.array([14.0, 5.0, 2.0])
+    expected = 0.7 * (ep.speed_of_light / radar.waveform.start_frequency) ** 2 / (4 * np.pi) ** 3
+    for antenna, yaw, exponent, peak in ((sent, -0.3, 4, 10.0), (heard, 0.4, 2, 3.0)):
+        way = point - [2, -3, 1] - turned((0, 0, 1), 0.5) @ antenna.position
+        cosine = way @ [np.cos(0.5 + yaw), np.sin(0.5 + yaw), 0.0] / np.linalg.norm(way)
+        expected *= peak * cosine**exponent / (way @ way)
+    assert isotropic_power(radar, point[None], 0.0)[0] == pytest.approx(expected)
+
+
 def test_cross_sections_of_nulls_are_told_without_a_warning():
     """An echo of no power has none, and where the antennas hear nothing nobody knows it."""
     pattern = ep.CosinePower(2.0)

@@ -91,7 +91,8 @@ class _Body:
 
     def _frame(self, time: float):
         """World from the object's node [4, 4] without its scale, and from where the motion of all its meshes has brought that;
-        the world itself for objects that share no node."""
+        the world itself for objects that share no node. What is mirrored looks ahead and up as it does, and left is the other
+        side."""
         transform = np.eye(4) if self._shared is None else _moved(self._shared, time)
         index = self._node
         while index >= 0:
@@ -99,10 +100,8 @@ class _Body:
             transform = _placed(node, time) @ transform
             index = node.parent
         left, _, right = np.linalg.svd(transform[:3, :3])
-        axes = left @ right  # the nearest of unit length, mirrored or not
-        if np.linalg.det(axes) < 0.0:
-            axes[:, 1] *= -1.0  # a mirrored body keeps its +x and its +z
-        transform[:3, :3] = axes
+        nearest = left @ right
+        transform[:3, :3] = nearest if np.linalg.det(nearest) > 0.0 else nearest * [1.0, -1.0, 1.0]
         return transform
 
     def _own_centroid(self, time: float):

@@ -38,7 +38,7 @@ class Truth:
     heading: [N] rad, horizontal direction of the velocity, left positive from the world's x; NaN below 0.1 mm/s
     size: [N, 3] m, of the smallest box about all vertices along the object's own axes; rotation: [N, 3, 3], world_from_box:
         those axes, of the node that bears its name, or of the lowest node above all its meshes; where all of these have one
-        motion below it, as those of a trailer have, as that turns them
+        motion below it, as those of a trailer have, as that turns them; of what a placement mirrors with y to the other side
     yaw: [N] rad, where the box's own +x points; angular_velocity: [N, 3] rad/s, of these axes, in world axes
     position_in_radar: [N, 3] m; velocity_in_radar: [N, 3] m/s, its rate as it is seen from a radar that moves and turns;
         yaw_in_radar: [N] rad, of the box's +x in the radar's axes

@@ -30,6 +30,13 @@ def box_scene(**placing):
     return scene
 
 
+def turned(axis, angle):
+    """Rotation by `angle` about a unit vector (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
 # --- boxes ---
 
 @pytest.mark.parametrize("name, speed", [("car", 8.0), ("motorcycle", 7.0), ("cyclist", 4.5)])
@@ -93,6 +100,18 @@ def test_the_box_of_a_mirrored_body_turns_with_it(mirror):
     expected = np.array([turned((0, 0, 1), 3.0 * time) for time in times]) * np.array([signs[0], signs[0] * signs[2], signs[2]])
     assert np.array([box.rotation[0] for box in boxes]) == pytest.approx(expected, abs=1e-12)
     assert np.array([box.angular_velocity[0] for box in boxes]) == pytest.approx(np.tile([0, 0, 3.0], (23, 1)), abs=DIFFERENCES)
+
+
+@pytest.mark.parametrize("scale", [(0.5, -1.0, 1.0), (1.0, -1.0, 1.0), (1.0, -2.0, 0.5), (-0.5, 1.0, 2.0), (1.5, 1.0, -0.5)])
+def test_a_mirrored_object_looks_where_its_nose_points(scale):
+    """Axes of a box are a rotation: those of what is mirrored look ahead and up with the object, whatever side is its shortest."""
+    placed = np.eye(4)
+    placed[:3, :3], placed[:3, 3] = turned((0, 0, 1), 0.3) * scale, (20, 1, 0)
+    found = ep.truth(trace(box_scene(transform=placed)))
+    ahead, _, up = turned((0, 0, 1), 0.3).T * np.sign(scale)[:, None]
+    assert found.rotation[0].T == pytest.approx(np.array([ahead, np.cross(up, ahead), up]), abs=1e-12)
+    assert found.yaw[0] == pytest.approx(np.arctan2(ahead[1], ahead[0]))
+    assert found.size[0] == pytest.approx(np.abs(scale) * [4.0, 2.0, 1.5])
 
 
 def test_objects_of_several_nodes_stand_in_the_axes_above_them():
@@ -328,13 +347,6 @@ def test_axes_of_a_radar_that_drives_and_turns():
     assert found.radial_velocity[0] == pytest.approx(own(now) @ rate / np.linalg.norm(own(now)), abs=1e-6)
     assert found.azimuth[0] == pytest.approx(np.arctan2(own(now)[1], own(now)[0]))
     assert found.yaw_in_radar[0] == pytest.approx(-0.2 - spin * now)
-
-
-def turned(axis, angle):
-    """Rotation by `angle` about a unit vector (Rodrigues)."""
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def test_boxes_in_the_axes_of_a_radar_that_pitches_and_rolls():

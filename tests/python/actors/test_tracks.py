@@ -1,14 +1,17 @@
 """Tracks against motions that are known: crossing points keep their tracks, and their errors are as large as they claim."""
 import csv
+import dataclasses
 import pickle
 
 import numpy as np
 import pytest
-from scipy import special
+from scipy import special, stats
 
 import echopath as ep
 from echopath.tracks.assignment import assigned
-from echopath.tracks.track import _outline_distances
+from echopath.tracks.kalman import Filter
+from echopath.tracks.points import Points, carrier_of, points_of
+from echopath.tracks.track import _outline_distances, _Tracker
 from support.radars import build_radar
 
 STEP, FRAMES = 0.1, 40
@@ -79,6 +82,17 @@ def test_objects_are_as_far_as_their_outlines_are():
     assert found[:, 0] == pytest.approx([5.0, 1.5, 1.25, 0.0], abs=1e-9)
 
 
+@pytest.mark.parametrize("yaw, name", [(0.5 * np.pi, "bus"), (0.0, "")])
+def test_tracks_in_the_axes_of_the_radar_take_boxes_as_these_have_them(yaw, name):
+    """A bus of 12 m across the line of sight, and one along it, by a point 5 m beside its middle; in the world they look
+    elsewhere."""
+    truth = truth_of(np.tile([20.0, 0.0], (3, 1, 1)), ["bus"])
+    truth = dataclasses.replace(truth, size=np.tile([12.0, 2.5, 3.0], (3, 1)), yaw_in_radar=np.full(3, yaw),
+                                yaw=np.full(3, yaw + 0.5 * np.pi))
+    found = ep.track([[[20.0, 5.0]]] * 3, TIMES[:3], truth=truth)
+    assert found.num_tracks == 1 and set(found.object) == {name}
+
+
 def test_the_truth_of_other_times_is_refused():
     positions = crossing()
     truth = truth_of(positions, ["up", "down"])
@@ -99,6 +113,18 @@ def test_a_track_goes_on_through_gaps_and_ends_behind_long_ones():
     assert through.state[:, 0] == pytest.approx(points[:, 0, 0], abs=0.1)
     apart = ep.track(found, TIMES, range_std=0.05, azimuth_std=0.005, max_misses=2)
     assert apart.num_tracks == 2 and [len(apart.of_track(number)) for number in (0, 1)] == [10, 27]
+
+
+@pytest.mark.parametrize("hits, count", [(3, 1), (2, 0)])
+def test_a_track_counts_from_so_many_detections_on(hits, count):
+    found = [[[10.0, 0.0]] if frame < hits else np.zeros((0, 2)) for frame in range(6)]
+    assert ep.track(found, TIMES[:6], min_hits=3).num_tracks == count
+
+
+def test_detections_whose_errors_are_large_make_tracks_too():
+    """8 m along and 15 m across the line of sight: likelihoods are small numbers then, and go together all the same."""
+    found = [[[30.0 + time, 0.0]] for time in TIMES]
+    assert ep.track(found, TIMES, range_std=8.0, azimuth_std=0.5).num_tracks == 1
 
 
 def test_false_alarms_make_no_tracks():
@@ -185,6 +211,13 @@ def test_walkers_who_meet_are_told_apart_by_their_radial_velocities(ambiguity, s
         assert not swaps([found_at(points, speeds) for points, speeds in zip(own, folded)], radar_of(ambiguity, speed))
 
 
+def test_what_starts_off_at_the_place_of_something_that_stands_is_another():
+    """Its speed of 15 m/s is 15 standard errors from that of the track, at the very place that the track expects."""
+    found = [found_at([[20.0 + 1.5 * max(0, frame - 6), 0.0]], [15.0 if frame >= 6 else 0.0]) for frame in range(12)]
+    tracks = ep.track(found, TIMES[:12], radar=radar_of(100.0), velocity_std=1.0)
+    assert [tracks.of_track(number).frame[0] for number in range(tracks.num_tracks)] == [0, 6]
+
+
 def test_without_radial_velocities_walkers_who_meet_are_taken_for_each_other():
     """Else the test before would tell nothing."""
     assert sum(swaps(list(meeting(seed)[0]), None) for seed in range(12)) >= 2
@@ -197,6 +230,68 @@ def test_a_speed_that_the_ambiguity_hides_is_taken_from_the_places():
     tracks = ep.track(found, TIMES, radar=radar_of(6.0), range_std=0.1, azimuth_std=0.01, velocity_std=0.2)
     assert tracks.num_tracks == 1 and len(tracks) == FRAMES
     assert tracks.state[-1, 2:] == pytest.approx([15.0, 0.0], abs=0.05)
+
+
+def seen_points(ambiguity, speed_std=0.5):
+    """Two points, the second a little beside where the first leads, with speeds along their lines of sight."""
+    sights = np.array([[0.8, 0.6], [0.6, 0.8]])
+    covariances = np.array([[[0.04, 0.01], [0.01, 0.09]], [[0.05, -0.02], [-0.02, 0.08]]])
+    return Points(np.array([[16.0, 12.0], [16.6, 12.9]]), covariances, np.array([3.0, 4.0]), sights, speed_std, ambiguity)
+
+
+def test_a_track_begins_with_the_speed_along_its_line_of_sight():
+    """Of a prior of 10 m/s and a measurement of 0.5 m/s the mean weighted by their inverse squares; across nothing is known."""
+    found = seen_points(np.inf)
+    begun = Filter(found, 0, 10.0)
+    along, across = found.sights[0], np.array([-0.6, 0.8])
+    assert begun.state == pytest.approx([16.0, 12.0, *(3.0 * 10.0**2 / (10.0**2 + 0.5**2) * along)])
+    variances = [way @ begun.covariance[2:, 2:] @ way for way in (along, across)]
+    assert variances == pytest.approx([1.0 / (10.0**-2 + 0.5**-2), 10.0**2])
+
+
+@pytest.mark.parametrize("ambiguity, tells", [(np.inf, True), (12.0, True), (3.0, False)])
+def test_costs_are_likelihoods_of_places_and_speeds_together(ambiguity, tells):
+    """Gaussians of SciPy: of place and speed where the filter knows that to a quarter of the ambiguity, else of the place alone
+    and evenly over the ambiguity of the speed."""
+    found = seen_points(ambiguity)
+    filter = Filter(seen_points(np.inf), 0, 2.0)
+    filter.predict(0.2, 2.0)
+    costs = filter.fit(found).cost
+    for point, speed, sight, noise, cost in zip(found.points, found.speeds, found.sights, found.covariances, costs):
+        seen = np.zeros((3, 4))
+        seen[:2, :2], seen[2, 2:] = np.eye(2), sight
+        spread = seen @ filter.covariance @ seen.T
+        spread[:2, :2] += noise
+        spread[2, 2] += 0.5**2
+        assert (4.0 * np.sqrt(spread[2, 2]) < ambiguity) == tells
+        count, values = 3 if tells else 2, np.array([*point, speed])
+        density = stats.multivariate_normal((seen @ filter.state)[:count], spread[:count, :count]).pdf(values[:count])
+        expected = -2.0 * np.log(density if tells else density / ambiguity)
+        assert cost + 3.0 * np.log(2.0 * np.pi) == pytest.approx(expected)
+
+
+def test_points_of_detections_have_the_errors_of_their_line_of_sight_and_the_speed_of_the_strongest():
+    """In the world, for a radar that looks 0.7 rad to the left: two that are 0.5 m apart are one, in their mean by power."""
+    radar = radar_of(50.0).replace(position=(1, 2, 0), yaw=0.7)
+    found = found_at([[20.0, 5.0], [20.3, 5.4], [10.0, -9.0]], [1.0, 2.0, 3.0])
+    found = dataclasses.replace(found, power=np.array([1.0, 3.0, 1.0]))
+    points = points_of(found, carrier_of(radar, 0.0), 0.3, 0.01, 0.5, 1.0)
+    axes = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
+    expected = [[1, 2] + axes @ own for own in ([20.225, 5.3], [10.0, -9.0])]
+    assert points.points == pytest.approx(np.array(expected)) and points.speeds.tolist() == [2.0, 3.0]
+    for covariance, point in zip(points.covariances, expected):
+        way = point - [1, 2]
+        along = way / np.linalg.norm(way)
+        across = np.array([-along[1], along[0]])
+        assert covariance == pytest.approx(0.3**2 * np.outer(along, along) + 0.01**2 * (way @ way) * np.outer(across, across))
+
+
+@pytest.mark.parametrize("probability", [0.5, 0.9, 0.99])
+def test_gates_hold_the_share_of_chi_square_that_is_asked_for(probability):
+    """Of squared distances of two coordinates, and of one speed: SciPy's quantiles."""
+    tracker = _Tracker(2.0, 10.0, probability, 3, 3)
+    assert tracker._gate == pytest.approx(stats.chi2.ppf(probability, 2))
+    assert tracker._gate_of_speed == pytest.approx(stats.chi2.ppf(probability, 1))
 
 
 def test_what_stands_stands_for_antennas_ahead_of_the_axle_that_turns():

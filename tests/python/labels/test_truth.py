@@ -11,6 +11,7 @@ import pytest
 import echopath as ep
 from echopath.truth.boxes import boxes_at
 from echopath.truth.cross_section import cross_section_dbsm, isotropic_power
+from echopath.truth.places import true_places
 from support.radars import build_radar
 
 ROOT = Path(__file__).parents[3]
@@ -104,7 +105,7 @@ def test_the_box_of_a_mirrored_body_turns_with_it(mirror):
 
 @pytest.mark.parametrize("scale", [(0.5, -1.0, 1.0), (1.0, -1.0, 1.0), (1.0, -2.0, 0.5), (-0.5, 1.0, 2.0), (1.5, 1.0, -0.5)])
 def test_a_mirrored_object_looks_where_its_nose_points(scale):
-    """Axes of a box are a rotation: those of what is mirrored look ahead and up with the object, whatever side is its shortest."""
+    """Axes of a box are a rotation: those of what is mirrored look ahead and up with it, whatever side is its shortest."""
     placed = np.eye(4)
     placed[:3, :3], placed[:3, 3] = turned((0, 0, 1), 0.3) * scale, (20, 1, 0)
     found = ep.truth(trace(box_scene(transform=placed)))
@@ -371,13 +372,22 @@ def test_boxes_in_the_axes_of_a_radar_that_pitches_and_rolls():
     assert np.isnan(ep.truth(trace(box_scene(position=(12, 3, 0)), radar)).direction_in_radar).all()
 
 
+def test_quaternions_of_objects_that_look_backward_have_no_negative_w():
+    scene = ep.Scene()
+    for name, yaw in (("left", 3.0), ("right", -3.0)):
+        scene.add(ep.actors.box((4.0, 2.0, 1.5)), name=name, material="metal", position=(20, yaw, 0), yaw=yaw)
+    found = ep.truth(trace(scene)).quaternions_in_radar
+    assert found == pytest.approx(np.array([[np.cos(half), 0, 0, np.sin(half)] for half in (1.5, -1.5)]))
+
+
 def test_ranges_and_directions_count_from_between_the_antennas():
     """Of a box high above to the left, by the place between antennas that stand apart on a radar that drives and turns."""
     antennas, middle = (ep.Antenna((0.9, -0.2, 0.4)), ep.Antenna((0.1, 0.8, -0.2))), np.array([0.5, 0.3, 0.1])
     place, spin, ahead, velocity = np.array([1.0, 2.0, 1.5]), 0.8, np.array([9.0, 0.0, 0.2]), np.array([-5.0, 1.0, 0.5])
     radar = build_radar(antennas[:1], antennas[1:], num_chirps=64, position=place, yaw=0.2,
                         motion=ep.LinearMotion(velocity=ahead, angular_velocity=(0, 0, spin)))
-    found = ep.truth(trace(box_scene(position=(12, 9, 8), motion=ep.LinearMotion(velocity=velocity)), radar))
+    scene = box_scene(position=(12, 9, 8), motion=ep.LinearMotion(velocity=velocity))
+    found = ep.truth(trace(scene, radar))
     now, step = found.time[0], 1e-5
 
     def sight(time):
@@ -389,6 +399,7 @@ def test_ranges_and_directions_count_from_between_the_antennas():
     distance = np.linalg.norm(sight(now))
     assert found.range[0] == pytest.approx(distance) and found.azimuth[0] == pytest.approx(np.arctan2(y, x))
     assert found.elevation[0] == pytest.approx(np.arcsin(z / distance))
+    assert true_places(scene, radar, ["car"], now) == {"car": pytest.approx((distance, np.arctan2(y, x)))}
     rate = (np.linalg.norm(sight(now + step)) - np.linalg.norm(sight(now - step))) / (2 * step)
     assert found.radial_velocity[0] == pytest.approx(rate, abs=1e-6)
 

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.in_time.bursts import bursts
+from echopath.in_time.sliding import Stft
 from support.radars import build_radar
 from support.signals.tones import random_cube, tone
 
@@ -38,6 +40,22 @@ def test_a_point_gives_its_received_power(window):
         found = ep.spectrogram(cube, radar, window_length=64, window=window)
         assert found.power.max() == pytest.approx(3.0, rel=1e-9)
         assert found.ridge[0] == cell.velocity[40]
+
+
+@pytest.mark.parametrize("zero_pad", [1, 3])
+@pytest.mark.parametrize("window", ["hann", ("hann", "rect"), ("rect", ("chebyshev", 60))])
+def test_a_point_gives_its_received_power_to_a_sum_over_velocities_or_ranges(window, zero_pad):
+    """Wherever it lies between the cells that are summed (Parseval); straight ahead of an array of two."""
+    radar = build_radar(receivers=((0, 0, 0), (0, 0.0019, 0)), num_chirps=64)
+    cell = ep.range_doppler(random_cube(radar), radar)
+    ranges, velocities = (axis[30] + np.array([0.0, 0.4]) * (axis[1] - axis[0]) for axis in (cell.range, cell.velocity))
+    cube = np.repeat(tone(radar, ranges[0], velocities[1], power=3.0), 2, axis=1)
+    found = ep.range_time(cube, radar, window=window, zero_pad=zero_pad)
+    assert found.power.max() == pytest.approx(3.0, rel=1e-9) and found.ridge[0] == pytest.approx(ranges[0])
+    cube = np.repeat(tone(radar, ranges[1], velocities[0], power=3.0), 2, axis=1)
+    ahead = {"azimuth": [-0.1, 0.0, 0.1], "combine": "peak"}
+    found = ep.angle_time(cube, radar, window=window, zero_pad=zero_pad, angles=ahead)
+    assert found.power.max() == pytest.approx(3.0, rel=1e-9) and found.ridge[0] == 0.0
 
 
 def test_noise_has_the_power_that_is_told():
@@ -94,6 +112,29 @@ def test_the_gate_takes_the_ranges_in_it():
 
 
 # --- trains of chirps ---
+
+@pytest.mark.parametrize("num_chirps, length", [(200, 128), (20, 20)])
+def test_windows_are_of_128_chirps_or_a_frame_and_a_quarter_of_that_apart(num_chirps, length):
+    radar = build_radar(num_chirps=num_chirps)
+    found = ep.spectrogram(random_cube(radar), radar)
+    assert (found.window_length, found.hop) == (length, length // 4)
+    assert np.diff(found.times) == pytest.approx(length // 4 * radar.waveform.chirp_interval)
+
+
+def test_a_copy_of_what_has_begun_goes_on_by_itself():
+    radar = build_radar(num_chirps=32)
+    cubes = [random_cube(radar), random_cube(radar) * 2.0, np.zeros((1, 1, 32, 64), complex)]
+    first, second, silent = bursts(cubes, radar)
+    silent = silent._replace(start_time=second.start_time)
+    whole = Stft(32, 8, "hann", 1, None, True, None)
+    whole.add(first)
+    other = whole.copy()
+    whole.add(second)
+    other.add(silent)
+    for found, pair in ((whole, cubes[:2]), (other, cubes[::2])):
+        expected = ep.spectrogram(pair, radar, window_length=32, hop=8, span_frames=True)
+        assert np.array_equal(found.result(None).power, expected.power)
+
 
 def test_no_window_spans_a_gap():
     radar = build_radar(num_chirps=32)

@@ -1,4 +1,5 @@
 """Maps over time against closed forms: a pendulum, a rotor, tones, and the maps of single frames."""
+import dataclasses
 
 import numpy as np
 import pytest
@@ -119,6 +120,34 @@ def test_windows_are_of_128_chirps_or_a_frame_and_a_quarter_of_that_apart(num_ch
     found = ep.spectrogram(random_cube(radar), radar)
     assert (found.window_length, found.hop) == (length, length // 4)
     assert np.diff(found.times) == pytest.approx(length // 4 * radar.waveform.chirp_interval)
+
+
+def test_times_without_power_have_no_ridge_and_no_extent():
+    radar = build_radar(num_chirps=32)
+    found = ep.spectrogram([tone(radar, 5.0, 1.0), np.zeros((1, 1, 32, 64))], radar, window_length=32)
+    assert np.isnan([found.ridge[1], *(end[1] for end in found.extent())]).all() and np.isfinite(found.ridge[0])
+
+
+@pytest.mark.parametrize("below_peak_db, cells", [(0.0, 0), (9.0, 0), (15.0, 1), (29.0, 2), (31.0, 3)])
+def test_extents_reach_as_far_as_the_decibels_say(below_peak_db, cells):
+    """Of a peak that falls by 10 dB a cell to both sides."""
+    radar = build_radar(num_chirps=32)
+    found = ep.spectrogram(random_cube(radar), radar, window_length=32)
+    found = dataclasses.replace(found, power=10.0 ** -np.abs(np.arange(32.0) - 20.0)[None])
+    assert found.extent(below_peak_db) == (found.velocity[20 - cells], found.velocity[20 + cells])
+
+
+def test_windows_of_doppler_division_may_be_of_any_length():
+    """Of 64 chirps in 4 shares 25 are no multiple: the map of these chirps by transmitters in turns of the same interval."""
+    places = ((0, 0, 0), (0, 0.01, 0), (0, 0.02, 0))
+    radar = build_radar(places, num_chirps=64, multiplexing="ddm", empty_slots=1)
+    cube = random_cube(radar)
+    found = ep.spectrogram(cube, radar, window_length=25, hop=25)
+    waveform = radar.waveform.replace(num_chirps=25, chirp_interval=radar.waveform.chirp_interval / 3)
+    plain = build_radar(places).replace(waveform=waveform)
+    map = ep.range_doppler(cube[:, :, :25], plain)
+    assert found.velocity == pytest.approx(map.velocity)
+    assert found.power[0] == pytest.approx(np.mean(np.abs(map.values) ** 2, axis=(0, 1)).sum(axis=1) / 1.5, rel=ROUNDING)
 
 
 def test_a_copy_of_what_has_begun_goes_on_by_itself():
@@ -328,6 +357,20 @@ def test_a_part_is_what_the_whole_taken_apart_has_of_it(retrace):
         found = ep.spectrogram(frames, part=part).power
         assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * expected.max())
         assert (found.max() > 0.0) == ("'ball_1' 'ball_1'" not in part)
+
+
+def test_an_object_is_a_part_with_what_goes_back_and_forth_on_it():
+    """The corner of two plates sends most of its echo over both; it is all that there is."""
+    scene = ep.Scene()
+    scene.add(name="corner", position=(8, 0, 0), yaw=0.25 * np.pi)
+    for name, place, yaw in (("left", (0, 0.5, 0), np.pi), ("right", (-0.5, 0, 0), 0.5 * np.pi)):
+        scene.add(ep.actors.plate(1.0, 1.0), name=name, parent="corner", material="metal", position=place, yaw=yaw)
+    frame = ep.simulate(scene, build_radar(num_chirps=16), num_rays=2000, max_bounces=2, guard=False)
+    assert np.count_nonzero(frame.paths.num_bounces == 2) > 0
+    whole = ep.spectrogram(ep.synthesize(frame.paths), frame.radar)
+    once = ep.spectrogram(ep.synthesize(frame.paths.select("T 'corner' R")), frame.radar)
+    assert ep.spectrogram(frame, part="corner").power == pytest.approx(whole.power, rel=1e-6, abs=1e-9 * whole.power.max())
+    assert once.power.max() < 0.5 * whole.power.max()
 
 
 def test_a_part_is_an_object_a_part_or_a_selection(pendulum):

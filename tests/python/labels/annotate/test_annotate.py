@@ -147,6 +147,16 @@ def test_power_of_an_object_is_that_of_its_cube(plates_and_wall):
         assert label.power / np.mean(np.abs(made[label.name]) ** 2) == pytest.approx(1.0, abs=ROUNDING)
 
 
+def test_power_of_ghosts_that_share_cells_is_that_of_the_cube_of_each(plates_and_wall, labels):
+    paths, _, _ = plates_and_wall
+    cubes = ep.decompose(paths, parts=ep.families(paths))
+    shared = [ghost for ghost in labels.ghosts if ghost.order == 2]
+    assert len(shared) == 2 * len(TARGETS)
+    for ghost in shared:
+        own = cubes[ep.Family(ghost.object, ghost.ghost_type, ghost.order, ghost.via)]
+        assert ghost.power / np.mean(np.abs(own) ** 2) == pytest.approx(1.0, abs=CHUNKED)
+
+
 class OneCell:
     """A map of one cell with the power of a cube of one sample."""
 

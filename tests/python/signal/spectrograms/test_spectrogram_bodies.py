@@ -130,6 +130,8 @@ def test_the_strongest_part_owns_a_cell():
     assert labels.share.sum(axis=0) == pytest.approx(1.0)
     assert np.array_equal(labels.mask, (labels.whole > 10 * labels.noise_power) & (labels.whole >= 1e-6 * labels.whole.max()))
     assert "fast:" in repr(labels)
+    few = ep.spectrogram_labels(parts, noise_margin_db=-20.0, dynamic_range_db=24.0)
+    assert np.array_equal(few.mask, few.whole >= 10.0 ** -2.4 * few.whole.max()) and 0 < few.mask.sum() < labels.mask.sum()
     without = ep.spectrogram_labels(parts)
     assert np.array_equal(without.whole, parts["slow"].power + parts["fast"].power)
     with pytest.raises(ValueError, match="parts: must all have the same times, which 'b' has not"):

@@ -82,6 +82,19 @@ def test_they_are_those_of_spectrograms_of_each_part(frames, found):
     assert np.mean(again.dominant == parts.dominant) > 0.98  # where parts interfere the whole is not the sum of their powers
 
 
+@pytest.mark.parametrize("retrace", ["never", "always"])
+def test_labels_of_a_channel_are_those_of_its_antennas(retrace):
+    """The second transmitter looks aside, so that it hears both balls far weaker."""
+    left = ep.Antenna((0, 0.01, 0), yaw=np.arctan2(0.8, 8.0) + 0.9, pattern=ep.CosinePower(30.0))
+    radar = build_radar([(0, 0, 0), left], num_chirps=32, bandwidth=0.5e9, transmit_power=100.0)
+    frame = ep.simulate(make_scene(), radar, num_rays=1500, guard=False, retrace=retrace, keyframes=1)
+    for channel in ((0, 0), (1, 0)):
+        labels = ep.spectrogram(frame, window_length=32, labels=True, channel=channel).labels["objects"]
+        for name in SPEEDS:
+            alone = ep.spectrogram(frame, part=name, window_length=32, channel=channel).power
+            assert labels.power[labels.part_names.index(name)] == pytest.approx(alone, rel=1e-6, abs=1e-9 * alone.max())
+
+
 def test_ghosts_are_told_apart_as_in_maps():
     frames = frames_of(make_scene(["fast"], wall=True), 2, labels=True)
     labels = ep.spectrogram(frames, window_length=32, labels={"noise": False}, channel=(0, 1)).labels

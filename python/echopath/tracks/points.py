@@ -47,7 +47,8 @@ class Points:
 class Carrier:
     """What carries the points of a radar into the world at a time.
 
-    world_from_radar: [4, 4]; velocity: [3] m/s, of its antennas in the world; ambiguity: m/s, of its radial velocities
+    world_from_radar: [4, 4]; velocity: [3] m/s, of its antennas in the world; ambiguity: m/s, of its radial velocities, 0:
+    these are not known
     """
 
     world_from_radar: np.ndarray
@@ -56,8 +57,9 @@ class Carrier:
 
 
 def carrier_of(radar, time: float) -> Carrier:
-    """Of a radar at a time in s."""
-    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity_of(radar))
+    """Of a radar at a time in s; frames of a single chirp tell no radial velocities."""
+    ambiguity = ambiguity_of(radar) if radar.waveform.num_chirps > 1 else 0.0
+    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity)
 
 
 def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float | None,

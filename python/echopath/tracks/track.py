@@ -36,7 +36,7 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     Model: points in the plane that go straight but for random accelerations, a Kalman filter for each; detections within the
     gate of a track are assigned so that the sum of their log likelihoods is largest. With `radar` the radial velocities of
     Detections count, too, folded by its ambiguity, as soon as a track's speed along the line of sight is known to a quarter
-    of that: a track does not go on with what moves otherwise. Heights are left out.
+    of that: a track does not go on with what moves otherwise. Frames of one chirp tell none. Heights are left out.
     detections: of each frame, in the order of time: Detections with azimuths, or points [D, 2] or [D, 3] in m in the radar's
         axes
     times: [F] s, ascending, of the frames: their middles, as `Truth` has them

@@ -294,6 +294,16 @@ def test_gates_hold_the_share_of_chi_square_that_is_asked_for(probability):
     assert tracker._gate_of_speed == pytest.approx(stats.chi2.ppf(probability, 1))
 
 
+def test_frames_of_one_chirp_tell_no_speeds():
+    """The map of a chirp has 0 m/s alone, where an echo comes nearer by 10 m/s."""
+    radar = radar_of(50.0)
+    radar = radar.replace(waveform=radar.waveform.replace(num_chirps=1))
+    found = [found_at([[60.0 - 10.0 * time, 0.0]], [0.0]) for time in TIMES]
+    tracks = ep.track(found, TIMES, radar=radar)
+    assert tracks.num_tracks == 1 and len(tracks) == FRAMES
+    assert tracks.state[-1, 2:] == pytest.approx([-10.0, 0.0], abs=0.1)
+
+
 def test_what_stands_stands_for_antennas_ahead_of_the_axle_that_turns():
     """Antennas that go around at 0.5 rad/s, 4 m from the axis, move at 2 m/s sideways: the closed form of a circle."""
     turning, centre, post = 0.5, np.array([4.0, 0.0]), np.array([20.0, 15.0])

@@ -3,6 +3,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.base.radar.antennas import mixes_polarisations
+from echopath.base.radar.velocities import ambiguity_of, folded
 
 C = 299792458.0
 LAST_DIGIT = 1e-3        # of published figures with five digits
@@ -151,3 +153,28 @@ def test_representations_tell_what_they_are():
     assert "at (1, 2, 3) m, yaw 0.7 rad, pitch -0.1 rad" in repr(placed) and "moving" in repr(placed)
     assert "(0.1, 0.2, 0.3) m, yaw 0.1 rad, pitch 0.2 rad" in repr(turned)
     assert "rolled" in repr(ep.Antenna(orientation=(0, 1, 0, 0)))
+
+
+def three_in_turns():
+    return ep.Radar(reference(), transmitters=[ep.Antenna((0, 0.01 * k, 0)) for k in range(3)], receivers=[ep.Antenna()])
+
+
+def test_velocities_look_the_same_that_turn_the_phase_by_a_whole_turn_from_chirp_to_chirp():
+    """lambda / (2 T) with T between chirps of a transmitter, or between slots where folds were tried."""
+    radar = three_in_turns()
+    assert ambiguity_of(radar) == pytest.approx(radar.waveform.wavelength / (2 * 3 * 30e-6))
+    assert ambiguity_of(radar, folds=1) == pytest.approx(radar.waveform.wavelength / (2 * 30e-6))
+    velocities = np.array([-13.0, -4.9, 0.0, 4.9, 5.1, 27.0])
+    assert folded(velocities, 10.0) == pytest.approx([-3.0, -4.9, 0.0, 4.9, -4.9, -3.0])
+    for none_or_all in (np.inf, 0.0):
+        assert np.array_equal(folded(velocities, none_or_all), velocities)
+
+
+@pytest.mark.parametrize("polarization, is_mixed", [
+    ((0, 0, -1), False), ((0, 0.06, 0.9981983), False), ((0, 1, 0), True), ((0, 0.6, 0.8), True)])
+def test_channels_of_antennas_with_another_polarisation_are_mixed(polarization, is_mixed):
+    """Of one end or the other; a sign is none, as an antenna turned by half a turn about its boresight has."""
+    pair = [ep.Antenna(), ep.Antenna((0, 0.01, 0), polarization=polarization)]
+    for ends in ({"transmitters": pair}, {"receivers": pair}):
+        assert mixes_polarisations(three_in_turns().replace(**ends)) == is_mixed
+    assert not mixes_polarisations(three_in_turns().replace(receivers=pair[1:]))  # one pair, such as VH

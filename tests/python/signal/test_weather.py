@@ -68,6 +68,16 @@ def test_the_air_is_saturated_as_tables_of_steam_say():
     assert gas.saturation_pressure(293.15, 1013.25) == pytest.approx(23.39 * 1.004, rel=2e-3)
 
 
+@pytest.mark.parametrize("humidity", [0.0, 0.5, 1.0])
+def test_vapour_is_a_part_of_the_pressure_of_the_air(humidity):
+    """Dalton: what 1013.25 hPa has beside the vapour, which has 611.2 and 2339 Pa times 1.004 at saturation, is dry."""
+    for temperature, saturated in ((273.15, 6.1121 * 1.0039), (293.15, 23.39 * 1.004)):
+        radar = build_radar(start_frequency=60e9, bandwidth=1e9)
+        found = ep.Weather(humidity=humidity, temperature=temperature).attenuation_db_per_km(radar)["gases"]
+        vapour, frequency = humidity * saturated, radar.waveform.centre_frequency
+        assert found == pytest.approx(gas.gas_attenuation(frequency, temperature, 1013.25 - vapour, vapour), rel=3e-4)
+
+
 def test_fog_absorbs_as_small_drops_of_water_do():
     """Rayleigh: 6 pi/lambda Im((eps - 1)/(eps + 2)) of the share of the volume that is water, in field attenuation."""
     for temperature in (273.15, 293.15):

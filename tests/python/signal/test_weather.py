@@ -78,6 +78,11 @@ def test_vapour_is_a_part_of_the_pressure_of_the_air(humidity):
         assert found == pytest.approx(gas.gas_attenuation(frequency, temperature, 1013.25 - vapour, vapour), rel=3e-4)
 
 
+def test_drops_fall_as_fast_as_was_measured():
+    """Gunn and Kinzer 1949: 4.03, 6.49, 8.06 and 9.09 m/s of 1, 2, 3 and 5 mm in still air at the ground."""
+    assert drops.fall_speeds([1.0, 2.0, 3.0, 5.0]) == pytest.approx([4.03, 6.49, 8.06, 9.09], abs=0.12)
+
+
 def test_fog_absorbs_as_small_drops_of_water_do():
     """Rayleigh: 6 pi/lambda Im((eps - 1)/(eps + 2)) of the share of the volume that is water, in field attenuation."""
     for temperature in (273.15, 293.15):

@@ -1,10 +1,12 @@
 """Codes of transmitters that send at once, and what undoes them."""
+import itertools
+
 import numpy as np
 import pytest
 
 import echopath as ep
 from echopath.base.radar.chirps import chirp_period, chirps_duration
-from echopath.transmit import doppler_division
+from echopath.transmit import code_signal, doppler_division
 from support.radars import build_radar
 
 C = ep.speed_of_light
@@ -31,13 +33,15 @@ def plates(*speeds, radar=None, azimuths=None):
     return ep.trace(scene, radar or array_radar(), num_rays=2000, max_bounces=1)
 
 
+@pytest.mark.parametrize("steps", [{}, {"frequency_steps": [0.0, 2e6, 5e6], "bandwidth_steps": [0.0, 3e6]}])
 @pytest.mark.parametrize("code", [dict(multiplexing="ddm"), dict(multiplexing="bpm"),
                                   dict(multiplexing="cdm", code_phases=np.pi * np.eye(3, 4)[::-1])])
-def test_what_receivers_have_is_the_sum_of_the_transmitters_by_their_codes(code):
-    radar = array_radar(num_chirps=8, **code)
+def test_what_receivers_have_is_the_sum_of_the_transmitters_by_their_codes(code, steps):
+    """All send the same chirp in a slot, with the steps of that slot."""
+    radar = array_radar(num_chirps=8, **code, **steps)
     paths = plates(3.0, radar=radar)
     slots = 8 * radar.num_slots
-    alone = [ep.synthesize(paths, build_radar([transmitter], radar.receivers, num_chirps=slots))
+    alone = [ep.synthesize(paths, build_radar([transmitter], radar.receivers, num_chirps=slots, **steps))
              for transmitter in radar.transmitters]
     slot = np.arange(slots)
     phases = {"ddm": lambda m: 2 * np.pi * m * slot / 4,
@@ -47,6 +51,15 @@ def test_what_receivers_have_is_the_sum_of_the_transmitters_by_their_codes(code)
     cube = ep.synthesize(paths, radar)
     assert cube.shape == (1, NUM_RX, slots, 64)
     assert np.max(np.abs(cube[0] - expected)) < 1e-6 * np.max(np.abs(expected))  # the tolerance of each synthesis
+
+
+def test_parts_of_real_samples_add_up_behind_a_code_of_phases():
+    """By what came before the chirps of the whole: of parts alone it would be another."""
+    random = np.random.default_rng(4)
+    parts, code = random.normal(size=(2, 2, 1, 6, 32)) + 0j, np.exp(1j * random.random((2, 6)))
+    whole = parts.sum(axis=0)
+    coded = [code_signal(part, code, True, whole) for part in parts]
+    assert sum(coded) == pytest.approx(code_signal(whole, code, True), abs=1e-10)
 
 
 @pytest.mark.parametrize("multiplexing", ["ddm", "bpm"])
@@ -137,6 +150,10 @@ def test_transmitters_have_noise_of_their_own_in_empty_cells(velocities, ranges)
     cells = np.arange(velocities * ranges).reshape(1, velocities, ranges)
     taken = np.sort([doppler_division._from_nearby(cells, tx) for tx in range(8)], axis=0)
     assert np.all(np.diff(taken, axis=0) > 0)
+    places = [np.stack(divmod(doppler_division._from_nearby(cells, tx)[0], ranges)) for tx in range(8)]
+    for first, second in itertools.combinations(places, 2):  # beyond the lobe of a cell along one axis, which are circles
+        apart = np.abs(first - second)
+        assert np.minimum(apart, np.array([velocities, ranges])[:, None, None] - apart).max(axis=0).min() >= doppler_division.LOBE
 
 
 def test_cells_are_weighted_one_two_one_with_their_neighbours():

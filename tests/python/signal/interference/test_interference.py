@@ -52,6 +52,19 @@ def test_another_radar_sends_with_the_errors_of_its_transmitters():
         ep.simulate(ep.Scene(interferers=[ep.Interferer(radar=wrong)]), victim(), num_rays=100)
 
 
+def test_codes_of_another_radar_turn_its_signal_as_they_turn_its_own_echoes():
+    """By e^{j phase} of the slot that is heard in each chirp, as synthesize has it of a radar's own codes."""
+    phases, settings = np.array([0.0, 0.4, 2.0, -1.1]), {"num_chirps": 4, "multiplexing": "cdm"}
+    receiver = victim(num_chirps=4)
+    plain = ep.interference(receiver, other(**settings, code_phases=[[0.0]]))
+    coded = ep.interference(receiver, other(**settings, code_phases=[phases.tolist()]))
+    heard = np.abs(plain[0, 0]) > 0.5 * np.abs(plain).max()
+    assert heard.any(axis=1).all()
+    for chirp, phase in enumerate(phases):
+        ratio = coded[0, 0, chirp, heard[chirp]] / plain[0, 0, chirp, heard[chirp]]
+        np.testing.assert_allclose(ratio, np.exp(1j * phase), atol=1e-9)
+
+
 def behind_a_running_filter(sender, *, finer=64, edge=256):
     """The signal of a sender in the receiver of `victim`, over its amplitude: mixed at many times the sampling rate, from long
     before the samples until long after them, and what an ideal filter leaves of it."""

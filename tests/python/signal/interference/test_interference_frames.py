@@ -50,6 +50,15 @@ def test_effects_switch_it_off_and_need_it_to_force_it_on():
         frame_of(street(), effects={"interference": True})
 
 
+def test_rain_weakens_the_direct_way_once():
+    """By the decibels per kilometre of one way of 40 m, those of the other radar's band."""
+    rain, one = ep.Weather(rain_mm_per_hour=150.0, humidity=1.0), ep.Interferer(radar=TONE, over="direct")
+    wet, clear = (frame_of(street(one, **settings), effects={"echoes of rain": False} if settings else {}).interference_cube
+                  for settings in ({"weather": rain}, {}))
+    lost_db = sum(rain.attenuation_db_per_km(TONE).values()) * 1e-3 * np.hypot(40, 3)
+    assert lost_db > 1.0 and np.abs(wet) == pytest.approx(10.0 ** (-lost_db / 20.0) * np.abs(clear), rel=1e-9)
+
+
 @pytest.mark.filterwarnings("ignore:interferers.0.. is never heard")
 def test_what_stands_in_the_direct_way_hides_it():
     both = [frame_of(street(ep.Interferer(radar=TONE, over="direct"), wall=wall)).interference_cube

@@ -150,3 +150,19 @@ def test_many_ways_are_the_sum_of_each(ratio, late, count):
     scale = np.sqrt(np.sum(np.abs(amplitude) ** 2))
     edges = (np.abs(fine - expected) > 5e-3 * scale) & (outside < 1.25 * RATE)
     assert np.count_nonzero(edges) <= 2  # a way whose end rounding puts on the next sample
+
+
+def test_antennas_that_look_aside_on_a_radar_that_pitches_look_there_in_the_world():
+    """Each turn in its order: the antenna's own nose up and left, then the radar's, about axes of the world."""
+    def looking(yaw, pitch):
+        c, s, n, m = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
+        return np.array([[c * n, -s, -c * m], [s * n, c, -s * m], [m, 0.0, n]])
+
+    antenna = ep.Antenna((0.1, 0.2, 0.3), yaw=0.3, pitch=0.4)
+    radar = build_radar((antenna,), (antenna,), position=(5, 6, 7), yaw=1.0, pitch=-0.7)
+    found = ep.interference_radar(radar, radar)
+    for one in (*found.transmitters, *found.receivers):
+        w, *axis = one.orientation
+        turned = [vector + 2 * np.cross(axis, np.cross(axis, vector) + w * vector) for vector in np.eye(3)]
+        assert np.transpose(turned) == pytest.approx(looking(1.0, -0.7) @ looking(0.3, 0.4), abs=1e-12)
+        assert one.position == pytest.approx([5, 6, 7] + looking(1.0, -0.7) @ [0.1, 0.2, 0.3])

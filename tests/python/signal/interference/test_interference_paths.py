@@ -4,6 +4,7 @@ import pytest
 
 import echopath as ep
 from echopath.signals.interference_paths import few_paths
+from support.hand_made import diffuse_paths
 from support.radars import build_radar
 
 C = ep.speed_of_light
@@ -59,6 +60,17 @@ def test_paths_that_add_up_as_fields_keep_their_field():
 def test_the_draw_is_that_of_the_seed():
     again = [few_paths(traced(5_000, is_rough=True, seed=seed))[0].weight.tobytes() for seed in (1, 1, 2)]
     assert again[0] == again[1] != again[2]
+
+
+@pytest.mark.parametrize("power, count", [([4.0, 1.0], 2), ([1.0, 0.5, 2e-3], 3), ([1.0, 0.5, 1e-3], 2)])
+def test_the_fewest_paths_that_hold_999_of_1000_stand_for_all(power, count):
+    """Of paths over a plate each, whose powers are these but for their common level."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(5, 0, 0), yaw=np.pi)
+    paths = diffuse_paths(scene, [[0]] * len(power), np.sqrt(power))
+    assert paths.power / paths.power[0] == pytest.approx(np.array(power) / power[0])
+    few, scale = few_paths(paths)
+    assert few.num_paths == count and np.all(scale == 1.0)
 
 
 def test_few_paths_are_all_there_and_none_is_none():

@@ -9,8 +9,8 @@ RATE, COUNT, CHIRPS = 20e6, 128, 16
 SUM = 1e-12  # of the largest sample: rounding of a sum of parts
 LINEAR = dict(phase_noise=ep.PhaseNoise(offsets=[1e4, 1e6], levels=[-70.0, -90.0]), frequency_error=(0.0, 1e9),
               coupling_db=[[0.0, -20.0], [-25.0, 0.0]], coupling_delay=1e-11, receiver_gain_db=[0.5, -0.5],
-              phase_drift=[0.1, 0.2], transmitter_gain_db=[-3.0, 0.0], high_pass=[2e5], low_pass=8e6, iq_gain_db=0.5,
-              iq_phase=0.05)
+              phase_drift=[0.1, 0.2], transmitter_gain_db=[-3.0, 0.0], transmitter_phase=[0.4, -0.7], high_pass=[2e5],
+              low_pass=8e6, iq_gain_db=0.5, iq_phase=0.05)
 ALL = LINEAR | dict(leakage_db=[[-60.0, -65.0], [-62.0, -60.0]], leakage_delay=1e-9, compression_dbm=-60.0,
                     dc_offset=(1e-6, 2e-6), adc={"bits": 10, "automatic_gain": True, "clock_jitter": 1e-11})
 ARRAY = {"num_samples": COUNT, "num_chirps": CHIRPS, "transmitters": [(0, 0, 0), (0, 0.004, 0)],

@@ -56,6 +56,7 @@ TOO_FAR = r"beyond the last range of the waveform, 38\.37 m"
 
 @pytest.mark.parametrize("places, some, told", [
     ([BEHIND], None, f"[0-9,]+ paths: they lie {NO_GAIN}"),
+    ([((-30, 0, 1), 0.0)], None, f"[0-9,]+ paths: they lie {NO_GAIN}"),  # ways of 60 m, which are ranges of 30 m
     ([FAR], None, f"[0-9,]+ paths: they lie {TOO_FAR}"),
     ([FAR], [0], f"1 path: it lies {TOO_FAR}"),
     ([BEHIND, FAR], None, f"[0-9,]+ paths: [0-9,]+ lie {TOO_FAR}; [0-9,]+ lie {NO_GAIN}"),

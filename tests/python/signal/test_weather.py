@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+import scipy.integrate
 import scipy.special
 
 import echopath as ep
@@ -81,6 +82,15 @@ def test_vapour_is_a_part_of_the_pressure_of_the_air(humidity):
 def test_drops_fall_as_fast_as_was_measured():
     """Gunn and Kinzer 1949: 4.03, 6.49, 8.06 and 9.09 m/s of 1, 2, 3 and 5 mm in still air at the ground."""
     assert drops.fall_speeds([1.0, 2.0, 3.0, 5.0]) == pytest.approx([4.03, 6.49, 8.06, 9.09], abs=0.12)
+
+
+def test_rain_weakens_its_own_echoes_there_and_back():
+    """The radar equation of a volume has e^{-4 a r} / r^2 of fields that lose a Np/m, from half a metre to the last range."""
+    radar, loss = build_radar(), 0.02
+    reached = [scipy.integrate.quad(lambda r: np.exp(-4.0 * a * r) / r**2, rain_echoes.NEAREST, radar.waveform.max_range)[0]
+               for a in (loss, 0.0)]
+    found = [rain_echoes.rain_power(radar, ep.Weather(rain_mm_per_hour=20.0), a) for a in (loss, 0.0)]
+    assert found[0] / found[1] == pytest.approx(reached[0] / reached[1], rel=1e-4)
 
 
 def test_fog_absorbs_as_small_drops_of_water_do():

@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli.info import _describe_radar
-from echopath.receiver.converter import noise_of_branch, step_text
+from echopath.receiver.converter import is_swamped, noise_of_branch, step_text
 from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 
@@ -117,6 +117,12 @@ def test_bad_receivers_are_refused_by_name(keywords, told):
 def test_tables_of_other_antennas_are_refused():
     with pytest.raises(ValueError, match=r"^receiver.leakage_db: must be of the shape \(1, 1\)"):
         received(tone(3), leakage_db=[[1.0, 2.0]])
+
+
+def test_steps_swamp_noise_that_is_less_than_what_rounding_adds():
+    """The rms of what is spread evenly over a step of 0.2."""
+    added = np.sqrt(np.mean(np.linspace(-0.1, 0.1, 100_001) ** 2))
+    assert is_swamped(0.99 * added, 0.2) and not is_swamped(1.01 * added, 0.2) and not is_swamped(0.0, 0.2)
 
 
 @pytest.mark.parametrize("real", [False, True])

@@ -38,6 +38,24 @@ def test_an_ideal_receiver_keeps_every_bit():
     np.testing.assert_array_equal(ep.receive(cube, radar.replace(receiver=ep.Receiver()), seed=5).cube, plain)
 
 
+def test_real_samples_have_the_offset_of_one_branch():
+    radar = build_radar(num_samples=32, num_chirps=2, real=True, receiver=ep.Receiver(dc_offset=(0.5, -0.25)))
+    np.testing.assert_array_equal(ep.receive(np.zeros((1, 1, 2, 32)), radar, seed=None).cube, np.full((1, 1, 2, 32), 0.5 + 0j))
+
+
+def test_codes_turn_leakage_as_they_turn_echoes():
+    """By e^{j phase} of the slot; two transmitters of equal leakage add up as their codes do."""
+    phases = np.array([[0.0, 0.4, 2.0], [1.0, -0.3, 2.5]])
+    receiver = ep.Receiver(leakage_db=[[-30.0], [-30.0]], leakage_delay=1e-9)
+    leaked = []
+    for code in (phases, np.zeros((2, 1))):
+        radar = build_radar([(0, 0, 0), (0, 0.01, 0)], num_samples=32, num_chirps=3, multiplexing="cdm", code_phases=code,
+                            receiver=receiver)
+        leaked.append(ep.receive(np.zeros((1, 1, 3, 32)), radar, seed=None).cube)
+    expected = np.exp(1j * phases).sum(axis=0)[:, None] * leaked[1] / 2.0
+    np.testing.assert_allclose(leaked[0], expected, atol=1e-12 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("receiver", [None, ep.Receiver()])
 def test_what_a_receiver_gives_is_not_what_it_was_given(receiver):
     """Also where nothing is done to the cube: a caller who goes on in one of them keeps the other."""

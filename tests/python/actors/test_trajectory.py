@@ -204,6 +204,34 @@ def test_lanes_lie_beside_each_other():
     np.testing.assert_allclose(lane.position([5.0, lane.length - 5.0], 1.0), [[5, 1, 0], [39, 35, 0]], atol=ROUNDING)
 
 
+def test_who_drives_against_the_points_changes_to_the_side_that_is_asked_for():
+    """Offsets are to the left of the line as its points go, +y, whichever way it is driven."""
+    back = ep.Lane([(0, 0), (200, 0)]).trajectory(speed=10.0, offset=-1.0, changes=[(50, 60, 3.5), (120, 40, 2.0)], reverse=True)
+    places = back.position(np.linspace(back.begin, back.end, 4001))
+    for distance, side in ((0.0, -1.0), (50.0, -1.0), (110.0, 3.5), (120.0, 3.5), (160.0, 2.0), (200.0, 2.0)):
+        assert np.interp(distance, 200.0 - places[:, 0], places[:, 1]) == pytest.approx(side, abs=1e-3)
+
+
+def test_rates_of_what_climbs_and_of_what_times_say_are_differences():
+    """Of the nose above the plane over the way, and of the velocity over time, on a hill that is passed by given times."""
+    hill = ep.Trajectory([(0, 0, 0), (10, 1, 6), (20, -1, 9), (30, 2, 4)], times=[0.0, 1.0, 4.0, 5.0], pitch=True)
+    path, step = hill._track.path, 1e-5
+    ways = np.linspace(1.0, path.length - 1.0, 17)
+    rate = (path.slopes(ways + step)[0] - path.slopes(ways - step)[0]) / (2 * step)
+    np.testing.assert_allclose(path.slopes(ways)[1], rate, atol=1e-6)
+    times = np.array([0.2, 0.8, 1.3, 2.5, 3.6, 4.7])
+    change = (hill.velocity(times + step) - hill.velocity(times - step)) / (2 * step)
+    np.testing.assert_allclose(hill.acceleration(times), change, atol=1e-3)
+
+
+@pytest.mark.parametrize("length, end", [(30.0, 6.0), (70.0, 10.0), (94.0, 12.0)])
+def test_speeds_over_time_end_where_the_path_does(length, end):
+    """2 t + t^2 / 2 for 10 s, which are 70 m, and 12 m/s from then on."""
+    one = ep.Trajectory([(0, 0), (length, 0)], speed=[(0.0, 2.0), (10.0, 12.0)], speed_over="time")
+    assert one.end == pytest.approx(end) and one.position(one.end)[0] == pytest.approx(length)
+    assert one.distance(4.0) == pytest.approx(2 * 4.0 + 0.5 * 4.0**2)
+
+
 def test_a_change_of_lanes_is_a_quintic():
     """Its largest sideways acceleration is 10 / sqrt(3) times offset (speed / length)^2."""
     speed, length, offset = 20.0, 60.0, 3.5

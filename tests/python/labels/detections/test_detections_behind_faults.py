@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.receiver.echo_gains import EchoGains
+from support.radars import build_radar
 from support.scenes.small_spheres import TARGETS, nearest
 
 FAULTS = {
@@ -95,3 +97,37 @@ def test_filters_do_not_count_as_missing_noise(spheres, receiver):
         ep.detect(ep.range_doppler(ep.receive(cube, radar, seed=1).cube, radar), radar)
     with pytest.warns(RuntimeWarning, match="holds no noise"):
         ep.detect(ep.range_doppler(ep.receive(cube, radar, seed=None).cube, radar), radar)
+
+
+# --- gains of echoes ---
+
+def gains_of(ranges=(1.0,), start_time=0.0, **faults):
+    settings = {name: faults.pop(name) for name in ("real", "num_chirps") if name in faults}
+    radar = build_radar(num_samples=64, receiver=ep.Receiver(**faults), **{"num_chirps": 2} | settings)
+    return radar, EchoGains(radar, np.asarray(ranges), start_time)
+
+
+@pytest.mark.parametrize("real", [False, True])
+def test_echoes_pass_the_filters_at_their_beat_frequencies(real):
+    """Butterworth's gain; the last sixteenth of the ranges of complex samples stands for frequencies below 0."""
+    corner, poles = 4e6, 3
+    radar, _ = gains_of(real=real)
+    ranges = radar.waveform.range_resolution * np.arange(32 if real else 64)
+    _, gains = gains_of(ranges, real=real, low_pass=corner, low_pass_poles=poles)
+    beat = np.arange(len(ranges)) * radar.waveform.sampling_rate / 64
+    beat[60:] -= radar.waveform.sampling_rate
+    assert gains.of_filters == pytest.approx(1.0 / np.sqrt(1.0 + (beat / corner) ** (2 * poles)))
+    assert gains.of("", 0, 0, np.arange(len(ranges))) == pytest.approx(gains.of_filters)
+
+
+def test_branches_leave_what_they_have_of_echoes_and_real_samples_have_one():
+    """(1 + g e^{jp}) / 2 of an echo stays where it is."""
+    for real, kept in ((False, abs(0.5 + 0.5 * 10**0.1 * np.exp(0.3j))), (True, 1.0)):
+        assert gains_of(real=real, iq_gain_db=2.0, iq_phase=0.3)[1].of("", 0, 0, 0) == pytest.approx(kept)
+
+
+def test_gains_that_drift_count_by_their_mean_square():
+    """Two chirps at 0.5 s and one interval later, at 40 dB/s."""
+    radar, gains = gains_of(start_time=0.5, gain_drift_db=[40.0])
+    times = 0.5 + np.array([0.0, radar.waveform.chirp_interval])
+    assert gains.of("", 0, 0, 0) == pytest.approx(np.sqrt(np.mean(10.0 ** (40.0 * times / 10.0))), rel=1e-12)

@@ -43,6 +43,16 @@ def test_real_samples_have_the_offset_of_one_branch():
     np.testing.assert_array_equal(ep.receive(np.zeros((1, 1, 2, 32)), radar, seed=None).cube, np.full((1, 1, 2, 32), 0.5 + 0j))
 
 
+@pytest.mark.parametrize("fault", [{"phase_noise": ep.PhaseNoise(offsets=[1e4, 1e6], levels=[-70.0, -90.0])},
+                                   {"adc": {"bits": 16, "automatic_gain": True, "clock_jitter": 1e-11}}])
+def test_frames_of_one_seed_have_faults_of_their_own_and_the_same_alone(fault):
+    """By the start of the frame, as their thermal noise has it, which lies far below."""
+    cube, radar = tone(33.3), one_channel(receiver=ep.Receiver(**fault))
+    first, again, later = (ep.receive(cube, radar, seed=5, start_time=time).cube for time in (0.1, 0.1, 0.2))
+    np.testing.assert_array_equal(first, again)
+    assert np.abs(later - first).max() > 1e-5 * np.abs(first).max()
+
+
 def test_codes_turn_leakage_as_they_turn_echoes():
     """By e^{j phase} of the slot; two transmitters of equal leakage add up as their codes do."""
     phases = np.array([[0.0, 0.4, 2.0], [1.0, -0.3, 2.5]])

@@ -50,6 +50,18 @@ def test_effects_switch_it_off_and_need_it_to_force_it_on():
         frame_of(street(), effects={"interference": True})
 
 
+def test_the_direct_way_has_its_sign_beside_paths_of_field_vectors():
+    """A receiver that is upside down has the opposite field of the direct way, as it has that of the paths over the ball."""
+    upside_down = ep.Antenna(polarization=(0, 0, -1))
+    for receiver, sign in ((ep.Antenna(), 1.0), (upside_down, -1.0)):
+        radar = victim(**SLOW, receivers=(receiver,))
+        both, paths = (frame_of(street(ep.Interferer(radar=TONE, over=over)), radar).interference_cube
+                       for over in ("both", "paths"))
+        assert paths.any()
+        by_size = ep.interference(radar, TONE)
+        np.testing.assert_allclose(both - paths, sign * by_size, atol=1e-9 * np.abs(by_size).max())
+
+
 def test_rain_weakens_the_direct_way_once():
     """By the decibels per kilometre of one way of 40 m, those of the other radar's band."""
     rain, one = ep.Weather(rain_mm_per_hour=150.0, humidity=1.0), ep.Interferer(radar=TONE, over="direct")

@@ -1,6 +1,7 @@
 """Diffraction into shadows: edges against Sommerfeld's half plane, and what hidden objects are said to send."""
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from scipy.special import fresnel, jv
 
 import echopath as ep
@@ -9,6 +10,7 @@ from echopath import _core
 FREQUENCY = 77e9
 WAVENUMBER = 2.0 * np.pi * FREQUENCY / 299792458.0
 OF_SOMMERFELD_DB = 1e-4  # the transition function's
+OF_ROUNDING = 1e-6  # of the field nothing hides
 BEFORE, BEHIND = 10.0, 8.0  # m, of the edge
 
 
@@ -48,6 +50,34 @@ def test_the_shadow_of_a_half_plane_is_sommerfelds(polarization, is_electric):
     assert 20.0 * np.log10(found["share"]) == pytest.approx(20.0 * np.log10(wanted), abs=OF_SOMMERFELD_DB)
     assert found["share"][0] == pytest.approx(0.5, abs=0.03)
     assert found["length"] == pytest.approx(BEFORE + BEHIND, rel=1e-9)
+
+
+def half_hidden_box(turn, shift):
+    """Ways to points on the faces of a box that a screen hides the half of, in a world that is turned and shifted."""
+    turned = np.eye(4)
+    turned[:3, :3], turned[:3, 3] = turn, shift
+    scene = ep.Scene()
+    placed = {"screen": (Rotation.identity(), (3.0, 0.2, 0.0)), "box": (Rotation.from_rotvec((0.4, -0.7, 0.5)), (7.0, -0.9, 0.1))}
+    for name, (own, place) in placed.items():
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = own.as_matrix(), place
+        size = (0.2, 1.0, 1.6) if name == "screen" else (0.6, 0.8, 0.5)
+        scene.add(ep.actors.box(size), name=name, material="metal", transform=turned @ pose)
+    corners = scene.world_vertices(1, 0.0)[scene.meshes[1].triangles]
+    weights = np.random.default_rng(1).dirichlet((1.0, 1.0, 1.0), 40)
+    points = np.concatenate([weights @ triangle for triangle in corners])
+    return _core.legs_around_edges(scene, time=0.0, frequency=FREQUENCY, antenna=turned[:3, 3], polarization=turn[:, 2],
+                                   points=points)
+
+
+def test_ways_do_not_depend_on_where_the_world_is():
+    """What comes along a box's own faces from its edges is no way: whether it is free would be the rounding's choice."""
+    here = half_hidden_box(np.eye(3), np.zeros(3))
+    assert np.count_nonzero((here["share"] > 0.0) & (here["share"] < 1.0)) > 50
+    for seed in range(4):
+        there = half_hidden_box(Rotation.random(random_state=seed).as_matrix(), np.array([20.0, -7.0, 3.0]) * seed)
+        assert there["share"] == pytest.approx(here["share"], abs=OF_ROUNDING)
+        assert np.array_equal(there["mesh_id"], here["mesh_id"])
 
 
 def board(half_width, low=-300.0, high=300.0):

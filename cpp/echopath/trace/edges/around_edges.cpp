@@ -15,7 +15,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kFaintest = 0.03;  // of the field of the strongest way: fainter ones are left out
+constexpr double kFaintest = 0.03;   // of the field of the strongest way: fainter ones are left out
+constexpr double kAlongFace = 1e-6;  // sine of the angle to a face below which a way runs along it
 
 // Holds an edge, relative to the antenna, and where the antenna stands beside it.
 struct EdgeSeen {
@@ -40,6 +41,13 @@ std::vector<EdgeSeen> opaque_edges(const Scene& scene, const PosedScene& pose, c
     for (const SharpEdge& edge : node.mesh->sharp_edges()) found.emplace_back(posed_edge(edge, scene, pose, id, origin));
   }
   return found;
+}
+
+// Returns whether the unit vector `departure` from the edge runs along a face of its wedge.
+bool runs_along_face(const Wedge& wedge, const Vec3& departure) {
+  return std::ranges::any_of(wedge.faces, [&](const WedgeFace& face) {
+    return std::abs(face.normal.dot(departure)) < kAlongFace && face.inward.dot(departure) > 0.0;
+  });
 }
 
 class AroundEdges {
@@ -130,7 +138,7 @@ class AroundEdges {
     const Vec3 arrival = at / in, departure = (point - at) / out;
     const Vec3 across = query_.polarization - arrival.dot(query_.polarization) * arrival;
     const double sine = axis_of(wedge).cross(arrival).norm();
-    if (across.norm() < 1e-9 || sine < 1e-3) return Eigen::Vector3cd::Zero();
+    if (across.norm() < 1e-9 || sine < 1e-3 || runs_along_face(wedge, departure)) return Eigen::Vector3cd::Zero();
     const double distance = in * out / (in + out);
     const Eigen::Matrix3cd matrix = diffraction_matrix(wedge, arrival, departure, wavenumber_ * distance);
     const double zone = std::sqrt(kTwoPi * distance / wavenumber_) / sine;  // by stationary phase along the edge

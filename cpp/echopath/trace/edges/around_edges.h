@@ -4,7 +4,8 @@
 // The field is that of the uniform theory of diffraction (em/edges/edge_shadow.h) about Keller's point of each edge, by
 // stationary phase along it; what comes around several edges, as those on both sides of a board, adds up with its phases.
 // All edges of bodies count as those of perfect conductors: the part that follows from the shadow, which is most of it near
-// the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none.
+// the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none. An edge sends nothing along
+// its own faces: what comes to their points from their own edges belongs to the body's echo, which its rays and edges make.
 #include <vector>
 
 #include "echopath/base/geometry.h"

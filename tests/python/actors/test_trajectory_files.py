@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.trajectories.files import geodesy
 from echopath.trajectories.files.geodesy import east_north_up
 from echopath.trajectories.files.smoothing import _solved, smoothed
 from support.files.floating_car_data import FCD
@@ -130,6 +131,14 @@ def test_units_in_brackets_are_taken(tmp_path):
     assert (since_1970.begin, since_1970.end) == pytest.approx((0.0, 1.5))
 
 
+@pytest.mark.parametrize("unit, told", [("m/s", "20"), ("km/h", "72"), ("mph", "44.73873"), ("knots", "38.87689")])
+def test_speeds_of_20_metres_a_second_may_be_in_any_unit(tmp_path, unit, told):
+    """A mile is 1609.344 m and a nautical one 1852 m."""
+    rows = f"t [s],x,y,speed [{unit}]\n0,0,0,{told}\n1,20,0,{told}\n3,60,0,{told}\n"
+    (one,) = ep.read_trajectories(write(tmp_path, "a.csv", rows)).values()
+    assert one.speed([0.0, 1.0]) == pytest.approx([20.0, 20.0], rel=1e-6)
+
+
 @pytest.mark.parametrize("columns, rows, words", [
     ("time,x,y,speed", "0,0,0,36\n1,10,0,36\n2,20,0,36\n", "'a' goes 72 m by its speeds and 20 m by its positions"),
     ("time,x,y,yaw", "0,0,0,90\n1,0,10,90\n2,0,20,90\n", "'a' has a yaw of up to 90 rad, .*call the column yaw_deg"),
@@ -152,6 +161,29 @@ def test_columns_that_the_positions_bear_out_are_taken_without_a_word(tmp_path):
     backs_up, wraps = "0,0,0,3.14\n1,5,0,3.14\n2,9,0,3.14\n", "0,0,0,3.1\n1,-5,0,-3.1\n2,-9,0,3.14\n3,-14,0,-3.1\n"
     for rows in (backs_up, wraps):
         ep.read_trajectories(write(tmp_path, "a.csv", f"time,x,y,yaw\n{rows}"))
+
+
+def test_a_file_that_is_placed_turns_its_yaws_too(tmp_path):
+    """What slides along +x of the file and looks to the left of that: by 0.5 rad more in the world."""
+    path = write(tmp_path, "a.csv", "t,x,y,yaw\n0,0,0,0.3\n1,10,0,0.3\n2,20,0,0.3\n")
+    (one,) = ep.read_trajectories(path, position=(1, 2, 3), yaw=0.5).values()
+    assert one.yaw(1.0) == pytest.approx(0.8)
+    np.testing.assert_allclose(one.position(1.0), [1 + 10 * np.cos(0.5), 2 + 10 * np.sin(0.5), 3], atol=1e-9)
+
+
+@pytest.mark.parametrize("during, is_there", [((-2.0, -0.1), False), ((-2.0, 0.0), True), ((2.0, 5.0), True), ((2.1, 5.0), False)])
+def test_who_is_there_at_an_end_of_a_span_is_on_the_way(tmp_path, during, is_there):
+    path = write(tmp_path, "a.csv", "t,x,y,id\n0,0,0,a\n2,20,0,a\n-9,0,9,b\n9,20,9,b\n")
+    assert ("a" in ep.read_trajectories(path, during=during)) == is_there
+
+
+def test_the_ellipsoid_is_that_of_wgs_84():
+    """Its eccentricity and minor axis as NIMA TR8350.2 has them, and the metres of a degree at the equator and at the poles."""
+    assert geodesy.SQUARED_ECCENTRICITY == pytest.approx(6.69437999014e-3, rel=1e-11)
+    assert geodesy.SEMI_MAJOR_AXIS * math.sqrt(1.0 - geodesy.SQUARED_ECCENTRICITY) == pytest.approx(6356752.3142, abs=1e-4)
+    for latitude, metres in ((0.0, 110574.3), (89.0, 111693.8)):
+        step = east_north_up(np.array([latitude + 0.5]), np.array([7.0]), np.zeros(1), (latitude - 0.5, 7.0, 0.0))[0]
+        assert np.hypot(step[1], step[2]) * np.radians(0.5) / np.sin(np.radians(0.5)) == pytest.approx(metres, rel=2e-5)
 
 
 def test_east_north_up_is_that_of_published_examples():

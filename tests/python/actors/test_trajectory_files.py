@@ -4,6 +4,7 @@ import math
 import re
 import warnings
 from fractions import Fraction
+from time import tzset
 
 import numpy as np
 import pytest
@@ -144,6 +145,7 @@ def test_speeds_of_20_metres_a_second_may_be_in_any_unit(tmp_path, unit, told):
     ("time,x,y,yaw", "0,0,0,90\n1,0,10,90\n2,0,20,90\n", "'a' has a yaw of up to 90 rad, .*call the column yaw_deg"),
     ("time,x,y,yaw", "0,0,0,-2\n1,10,0.1,1\n2,20,0.4,2\n3,30,0.9,4\n", "'a' has a yaw of up to 4 rad, .*call the column yaw_"),
     ("time,x,y,yaw_deg", "0,0,0,80\n1,10,1,90\n2,20,1,95\n3,30,0,100\n", "'a' has yaws .* clockwise from [+]y, as from north"),
+    ("time,x,y,yaw_deg", "0,0,0,105\n1,9.66,-2.59,105\n2,19.32,-5.18,105\n", "'a' has yaws .* clockwise from [+]y, as from no"),
     ("time,x,y,yaw_deg", "0,0,0,0\n1,9,2,-30\n2,15,9,-70\n3,16,18,-90\n", "'a' has yaws .* clockwise from [+]x;")])
 def test_columns_that_the_positions_contradict_are_told(tmp_path, columns, rows, words):
     with pytest.warns(RuntimeWarning, match=words):
@@ -163,6 +165,22 @@ def test_columns_that_the_positions_bear_out_are_taken_without_a_word(tmp_path):
         ep.read_trajectories(write(tmp_path, "a.csv", f"time,x,y,yaw\n{rows}"))
 
 
+def test_times_since_1970_count_from_the_first_of_all_objects(tmp_path):
+    rows = "t,x,y,id\n1767225600,0,0,a\n1767225602,9,0,a\n1767225601.5,0,5,b\n1767225604,9,5,b\n"
+    found = ep.read_trajectories(write(tmp_path, "a.csv", rows))
+    assert [(one.begin, one.end) for one in found.values()] == [(0.0, 2.0), (1.5, 4.0)]
+
+
+def test_times_of_no_zone_are_those_of_greenwich_wherever_they_are_read(tmp_path, monkeypatch):
+    rows = "time,x,y\n2026-05-01T12:00:00,0,0\n2026-05-01T12:00:01Z,9,0\n2026-05-01T14:00:02+02:00,18,0\n"
+    with monkeypatch.context() as patch:
+        patch.setenv("TZ", "America/New_York")
+        tzset()
+        (one,) = ep.read_trajectories(write(tmp_path, "a.csv", rows)).values()
+    tzset()
+    assert one.end == 2.0 and one.position(1.0)[0] == pytest.approx(9.0)
+
+
 def test_a_file_that_is_placed_turns_its_yaws_too(tmp_path):
     """What slides along +x of the file and looks to the left of that: by 0.5 rad more in the world."""
     path = write(tmp_path, "a.csv", "t,x,y,yaw\n0,0,0,0.3\n1,10,0,0.3\n2,20,0,0.3\n")
@@ -171,7 +189,8 @@ def test_a_file_that_is_placed_turns_its_yaws_too(tmp_path):
     np.testing.assert_allclose(one.position(1.0), [1 + 10 * np.cos(0.5), 2 + 10 * np.sin(0.5), 3], atol=1e-9)
 
 
-@pytest.mark.parametrize("during, is_there", [((-2.0, -0.1), False), ((-2.0, 0.0), True), ((2.0, 5.0), True), ((2.1, 5.0), False)])
+@pytest.mark.parametrize("during, is_there", [
+    ((-2.0, -0.1), False), ((-2.0, 0.0), True), ((2.0, 5.0), True), ((2.1, 5.0), False)])
 def test_who_is_there_at_an_end_of_a_span_is_on_the_way(tmp_path, during, is_there):
     path = write(tmp_path, "a.csv", "t,x,y,id\n0,0,0,a\n2,20,0,a\n-9,0,9,b\n9,20,9,b\n")
     assert ("a" in ep.read_trajectories(path, during=during)) == is_there

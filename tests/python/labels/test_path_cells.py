@@ -122,6 +122,9 @@ def test_a_rectangle_holds_what_a_loop_finds():
         inside = 10 <= cells.range_index[path] <= 300 and 3 <= cells.velocity_index[path] <= 40
         assert mask[path] == inside
     assert mask.any() and not mask.all()
+    seen = cells.range_index >= 0
+    ends = [(values[seen].min(), values[seen].max()) for values in (cells.range_index, cells.velocity_index)]
+    assert np.array_equal(cells.within(*ends), seen)  # both ends are in it
 
 
 def test_what_the_anti_alias_filter_removes_does_not_come_back_in_front():
@@ -134,6 +137,19 @@ def test_what_the_anti_alias_filter_removes_does_not_come_back_in_front():
     cube = ep.synthesize(paths)
     assert not cube.any() and paths.num_paths > 0
     assert np.all(ep.path_cells(paths, ep.range_doppler(cube, radar)).range_index == -1)
+
+
+def test_what_lies_nearer_to_the_end_of_the_ranges_than_to_the_last_cell_is_in_the_first():
+    """Of complex samples ranges are a circle; the echo is as strong there as the map has it."""
+    waveform = radar_of(False, 1).waveform
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+    for nearer, index in ((0.3, 0), (0.7, waveform.num_samples - 1)):
+        scene, distance = ep.Scene(), waveform.max_range - nearer * waveform.range_resolution
+        scene.add(ep.actors.plate(0.01, 0.01), name="plate", material=lambert(0.27), position=(distance, 0.0, 0.0))
+        paths = ep.trace(scene, radar, num_rays=30, max_bounces=1)
+        spectrum = ep.range_doppler(ep.synthesize(paths), radar)
+        strongest = np.argmax(np.abs(spectrum.values[0, 0]).max(axis=0))
+        assert strongest == index and np.all(ep.path_cells(paths, spectrum).range_index == index)
 
 
 def test_paths_that_bring_nothing_are_no_faster_than_what_moves():

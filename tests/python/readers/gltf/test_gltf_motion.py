@@ -100,6 +100,35 @@ def test_rest_is_where_the_file_has_it_and_motion_is_relative_to_it(tmp_path):
     assert np.array_equal(vertices_at(scene, 0.0)["box"], vertices_at(scene_of(at_rest), 0.0)["box"])
 
 
+def test_a_single_key_turns_a_node_where_it_stands(tmp_path):
+    """Which is no motion, but another place at rest than that of the file."""
+    file = box_file(translation=[1, 2, 3])
+    file.animation((0, "rotation", KEYS[:1], QUARTERS[1:2], "LINEAR"))
+    model = loaded(tmp_path, file)
+    assert model.nodes[0].motion is None
+    wanted = rotated(QUARTERS[1], BOX) + [1, 2, 3]
+    assert np.abs(vertices_at(scene_of(model), 1.0)["box"] - wanted[:, TO_SCENE]).max() < SINGLE
+
+
+def test_units_are_those_of_places_and_not_of_scales(tmp_path):
+    """Two metres a unit: of the box, of how a node moves and of a matrix, while twice as large is twice as large."""
+    file = box_file()
+    file.animation((0, "scale", KEYS, PLACES, "LINEAR"), (0, "translation", KEYS, PLACES, "LINEAR"))
+    wanted = 2.0 * (BOX * PLACES[1] + PLACES[1])
+    assert np.abs(vertices_at(scene_of(loaded(tmp_path, file, unit=2.0)), 1.0)["box"] - wanted[:, TO_SCENE]).max() < SINGLE
+    placed = box_file(matrix=[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1])
+    wanted = 2.0 * (BOX + [3, 4, 5])
+    assert np.abs(vertices_at(scene_of(loaded(tmp_path, placed, unit=2.0)), 0.0)["box"] - wanted[:, TO_SCENE]).max() < SINGLE
+
+
+def test_a_node_that_a_matrix_mirrors_moves_mirrored(tmp_path):
+    """x to the other side and z twice as long, wherever it goes."""
+    file = box_file(matrix=[-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 7, 7, 7, 1])
+    file.animation((0, "translation", KEYS, PLACES, "LINEAR"))
+    wanted = BOX * [-1, 1, 2] + PLACES[1]
+    assert np.abs(vertices_at(scene_of(loaded(tmp_path, file)), 1.0)["box"] - wanted[:, TO_SCENE]).max() < SINGLE
+
+
 def test_animations_go_by_name_with_loop_and_offset(tmp_path):
     file = box_file()
     file.animation((0, "translation", [0, 2], [[0, 0, 0], [4, 0, 0]], "LINEAR"), name="slide")

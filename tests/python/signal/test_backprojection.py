@@ -47,6 +47,16 @@ def test_a_point_keeps_its_amplitude_whatever_way_the_radar_goes(motion, interva
     assert image == pytest.approx(1.0, abs=BETWEEN_BINS)
 
 
+@pytest.mark.parametrize("real", [False, True])
+def test_what_is_farther_than_the_ranges_is_dark(real):
+    """Of real samples these end at half the sampling rate."""
+    radar = make_radar(real=real)
+    cube = np.random.default_rng(2).normal(size=(1, 1, 16, 32)) + (0 if real else 1j)
+    last = radar.waveform.max_range
+    near, far = (ep.backproject(cube, radar, radar.position + [share * last, 0.0, 0.0]) for share in (0.9, 1.1))
+    assert abs(near) > 0.0 and far == 0.0
+
+
 @pytest.mark.parametrize("arrangement", [{"num_tx": 2, "num_rx": 2}, {"real": True, "num_samples": 64}])
 def test_channels_and_real_samples_are_added_in_phase(arrangement):
     radar, point = make_radar(WOBBLING, num_chirps=4, **arrangement), np.array([4.0, 0.4, 0.3])

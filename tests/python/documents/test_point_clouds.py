@@ -103,6 +103,22 @@ def test_music_is_alike_wherever_an_echo_lies_on_the_axis_of_velocities():
     assert found == pytest.approx([5.0, 11.0], abs=1.0)  # a beam is 10 degrees wide
 
 
+def test_music_of_the_mirrored_array_too_parts_waves_of_one_phase_law():
+    """As of an echo and its mirror image: alone they are one source, and with the mirrored array's covariance they are two."""
+    wanted, azimuth = np.radians([-8.0, 7.0]), np.radians(np.arange(-25.0, 25.0, 0.1))
+    radar, places = array_map([])[0], np.arange(8) * HALF
+    waves = [np.exp(-2j * np.pi * places * np.sin(one) / radar.waveform.wavelength) for one in wanted]
+    field = waves[0] + 0.8j * waves[1]
+    law = np.random.default_rng(5).normal(size=(2, 16, 32))
+    noise = 1e-4 * np.random.default_rng(6).normal(size=(2, 8, 16, 32))
+    cube = field[:, None, None] * (law[0] + 1j * law[1]) + noise[0] + 1j * noise[1]
+    found = ep.music(ep.range_doppler(cube[None], radar, window="rect"), radar, azimuth, cells=[(8, 10)], num_sources=2,
+                     forward_backward=True)[0]
+    peaks = np.flatnonzero((found[1:-1] > found[:-2]) & (found[1:-1] > found[2:])) + 1
+    strongest = np.sort(azimuth[peaks[np.argsort(found[peaks])[-2:]]])
+    assert np.degrees(strongest) == pytest.approx(np.degrees(wanted), abs=0.3)
+
+
 def test_music_mirrors_an_array_by_its_places():
     """Whatever the order of its channels."""
     in_order, mixed = (music_of_strongest(*turning_waves(0.0, order=order), forward_backward=True)

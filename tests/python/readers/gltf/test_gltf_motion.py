@@ -110,6 +110,17 @@ def test_a_single_key_turns_a_node_where_it_stands(tmp_path):
     assert np.abs(vertices_at(scene_of(model), 1.0)["box"] - wanted[:, TO_SCENE]).max() < SINGLE
 
 
+def test_an_animation_lasts_as_long_as_its_longest_channel_and_the_last_of_keys_at_one_time_counts(tmp_path):
+    file = box_file()
+    twice = np.array([0.5, 1.0, 1.0, 2.0], np.float32)
+    file.animation((0, "scale", KEYS[:2], np.ones((2, 3), np.float32), "LINEAR"),
+                   (0, "translation", twice, PLACES[[0, 0, 1, 2]], "LINEAR"))
+    model = loaded(tmp_path, file)
+    assert model.duration == 2.0 and "of keys at the same time the last one counts" in model.notes
+    for time, wanted in ((1.0, PLACES[1]), (1.5, 0.5 * (PLACES[1] + PLACES[2])), (2.0, PLACES[2])):
+        assert np.abs(vertices_at(scene_of(model), time)["box"] - (BOX + wanted)[:, TO_SCENE]).max() < SINGLE
+
+
 def test_units_are_those_of_places_and_not_of_scales(tmp_path):
     """Two metres a unit: of the box, of how a node moves and of a matrix, while twice as large is twice as large."""
     file = box_file()

@@ -1130,6 +1130,11 @@ class ChirpSequence:
         m/s, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the argument.
         """
     @property
+    def band(self) -> tuple[float, float]:
+        """
+        (lowest, highest) Hz, of all chirps with their steps
+        """
+    @property
     def bandwidth(self) -> float:
         """
         Hz, sampled
@@ -1298,7 +1303,8 @@ class Antenna:
     yaw: rad about the radar's z, left positive, as in scene.add: where the boresight points, +x of the antenna's frame
     pitch: rad, -pi/2 to pi/2, up positive: then about the antenna's own +y, which stays level
     orientation: [4] unit quaternion (w, x, y, z), radar from antenna, instead of yaw and pitch, for antennas that are rolled, too
-    pattern: Isotropic(gain), CosinePower(exponent), GaussianBeam(...), GainTable(...) or load_antenna(path); None is Isotropic(1)
+    pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GaussianBeam(...), GainTable(...) or load_antenna(path); None is
+        Isotropic(1)
     polarization: [3] unit vector in the antenna's frame
     Antennas of equal arguments are equal, and pickle.
     Raises ValueError or TypeError naming the argument. Warns (RuntimeWarning) of a yaw beyond a turn, which looks like degrees.
@@ -3294,7 +3300,8 @@ def GaussianBeam(*, azimuth: float, elevation: float, peak_gain: float | None = 
 
     azimuth, elevation: rad, whole widths at half the power, from 1e-6 to pi
     peak_gain: linear, None for that of a beam without losses, which is the most: 16 ln 2/(azimuth elevation) of narrow ones
-    There is no gain behind, nor beyond 2.6 widths, 81 dB below the peak: for side lobes take a table.
+    There is no gain behind, nor beyond 2.6 widths, 81 dB below the peak: for side lobes take a table. Beams of more than 69 degrees
+    end at 90 degrees aside, 6.8 dB below the peak for 120 degrees.
     Returns an AntennaPattern, a table. Raises TypeError or ValueError naming the argument.
     """
 def Isotropic(gain: float = 1.0) -> AntennaPattern:

@@ -19,6 +19,8 @@ namespace {
 
 // A chirp may fill its slot: num_samples / sampling_rate may round above the interval by an ulp or two.
 constexpr double kSlotTolerance = 1e-9;
+// Chirps that are looked at where they repeat after more of them.
+constexpr size_t kMostUnlike = size_t{1} << 22;
 // Of the sine of phases that are meant as signs, multiples of pi.
 constexpr double kSignRounding = 1e-12;
 
@@ -109,6 +111,20 @@ void ChirpSequence::validate() const {
 }
 
 double ChirpSequence::wavelength() const { return kSpeedOfLight / centre_frequency(); }
+
+FrequencyBand ChirpSequence::band() const {
+  const auto repeated = [](const std::vector<double>& steps, size_t chirp) {
+    return steps.empty() ? 0.0 : steps[chirp % steps.size()];
+  };
+  const size_t period = std::lcm(std::max<size_t>(frequency_steps.size(), 1), std::max<size_t>(bandwidth_steps.size(), 1));
+  FrequencyBand band{start_frequency + repeated(frequency_steps, 0), 0.0};
+  for (size_t chirp = 0; chirp < std::min(period, kMostUnlike); ++chirp) {
+    const double start = start_frequency + repeated(frequency_steps, chirp);
+    band.lowest = std::min(band.lowest, start);
+    band.highest = std::max(band.highest, start + bandwidth + repeated(bandwidth_steps, chirp));
+  }
+  return band;
+}
 
 double ChirpSequence::mean_interval() const {
   if (extra_idle.empty()) return chirp_interval;

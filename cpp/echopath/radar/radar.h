@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "echopath/base/frequency_band.h"
 #include "echopath/base/geometry.h"
 #include "echopath/motion/motion.h"
 #include "echopath/radar/gain_table.h"
@@ -30,6 +31,7 @@ struct ChirpSequence {
   double chirp_duration() const { return num_samples / sampling_rate; }             // s, sampled
   double window_centre() const { return 0.5 * (num_samples - 1) / sampling_rate; }  // s after the first sample
   double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }     // Hz
+  FrequencyBand band() const;                                                       // of all chirps
   double wavelength() const;                                                        // m, at the centre frequency
   double mean_interval() const;                                                     // s, between neighbouring slots
   double slot_start(int64_t slot) const;                                            // s after the first slot's

@@ -111,11 +111,18 @@ class Renewer {
                      now = at_time(path, scratch.posed, scene_at_);
     if (now.is_as(then)) return;
     if (!paths_.jones.empty()) {
-      field.matrix = coefficients_.matrix(now);
+      field.matrix = matrix_now(paths_.jones[field.path], coefficients_.matrix(then), coefficients_.matrix(now));
       return;
     }
     const std::complex<double> recorded = coefficients_.product(then);
     if (std::norm(recorded) > 0) field.gain = coefficients_.product(now) / recorded;
+  }
+
+  // Changes the recorded matrix by as much as the path's changes: at the rims of smooth bodies, and where axes were carried
+  // from antenna to antenna, the record is not what the hits make of a wave to the last digit.
+  static JonesMatrix matrix_now(JonesMatrix recorded, const JonesMatrix& then, const JonesMatrix& now) {
+    for (size_t i = 0; i < recorded.size(); ++i) recorded[i] += now[i] - then[i];
+    return recorded;
   }
 
   static PathAtTime at_time(const LocalPath& path, const std::vector<PosedHit>& posed, const PosedScene& scene) {

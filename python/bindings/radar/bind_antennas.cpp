@@ -104,7 +104,8 @@ position: [3] m, in the radar's frame
 yaw: rad about the radar's z, left positive, as in scene.add: where the boresight points, +x of the antenna's frame
 pitch: rad, -pi/2 to pi/2, up positive: then about the antenna's own +y, which stays level
 orientation: [4] unit quaternion (w, x, y, z), radar from antenna, instead of yaw and pitch, for antennas that are rolled, too
-pattern: Isotropic(gain), CosinePower(exponent), GaussianBeam(...), GainTable(...) or load_antenna(path); None is Isotropic(1)
+pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GaussianBeam(...), GainTable(...) or load_antenna(path); None is
+    Isotropic(1)
 polarization: [3] unit vector in the antenna's frame
 Antennas of equal arguments are equal, and pickle.
 Raises ValueError or TypeError naming the argument. Warns (RuntimeWarning) of a yaw beyond a turn, which looks like degrees.)");

@@ -153,7 +153,8 @@ void bind_patterns(py::module_& m) {
 
 azimuth, elevation: rad, whole widths at half the power, from 1e-6 to pi
 peak_gain: linear, None for that of a beam without losses, which is the most: 16 ln 2/(azimuth elevation) of narrow ones
-There is no gain behind, nor beyond 2.6 widths, 81 dB below the peak: for side lobes take a table.
+There is no gain behind, nor beyond 2.6 widths, 81 dB below the peak: for side lobes take a table. Beams of more than 69 degrees
+end at 90 degrees aside, 6.8 dB below the peak for 120 degrees.
 Returns an AntennaPattern, a table. Raises TypeError or ValueError naming the argument.)");
   define(m, "GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
          py::arg("phase") = py::none(), py::arg("normalize") = false,

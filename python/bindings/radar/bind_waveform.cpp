@@ -72,6 +72,13 @@ bandwidth above start_frequency or below 5 kHz and of a chirp_interval above 1 s
       .def_property_readonly("chirp_duration", &ChirpSequence::chirp_duration, "s, sampled")
       .def_property_readonly("window_centre", &ChirpSequence::window_centre, "s from the first sample to the middle")
       .def_property_readonly("centre_frequency", &ChirpSequence::centre_frequency, "Hz")
+      .def_property_readonly(
+          "band",
+          [](const ChirpSequence& self) {
+            const FrequencyBand band = self.band();
+            return std::pair(band.lowest, band.highest);
+          },
+          "(lowest, highest) Hz, of all chirps with their steps")
       .def_property_readonly("wavelength", &ChirpSequence::wavelength, "m, at the centre frequency")
       .def_property_readonly("range_resolution", &ChirpSequence::range_resolution, "m, c / (2 bandwidth)")
       .def_property_readonly("max_range", &ChirpSequence::max_range, "m, unambiguous")

@@ -25,7 +25,7 @@ py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material
   std::vector<Layer> layers = material->layers;
   if (*behind) std::ranges::reverse(layers);
   const LayerStack stack(layers, *frequency);
-  const SheetModel sheet(*material, *frequency, *bandwidth);
+  const SheetModel sheet(*material, *frequency, {*frequency, *frequency + *bandwidth});
   const auto count = std::ssize(*incidence);
   py::array_t<std::complex<double>> out({py::ssize_t{5}, count});
   auto rows = out.mutable_unchecked<2>();

@@ -60,15 +60,14 @@ def _steps(case: Case):
     return bool(names), ", ".join(names) or "all chirps are alike"
 
 
-@rule("one level over the band", "ChirpSequence.bandwidth")
+@rule("levels that follow the wavelength over the band", "ChirpSequence.bandwidth")
 def _levels(case: Case):
-    waveform = case.radar.waveform
-    last = waveform.start_frequency + waveform.bandwidth + max(waveform.frequency_steps, default=0.0)
-    fall = 20.0 * math.log10(last / waveform.start_frequency)
+    lowest, highest = case.radar.waveform.band
+    fall = 20.0 * math.log10(highest / lowest)
     if fall < TOLD_LEVELS_DB:
-        return False, f"the square of the wavelength falls by {fall:.2g} dB from the start to the end"
-    return True, ("rough surfaces and planes by images send as at the start of the chirp all over its band, at whose end "
-                  f"antennas receive {fall:.1f} dB less; physical optics follows the wavelength")
+        return True, f"the square of the wavelength falls by {fall:.2g} dB from its lowest to its highest frequency"
+    return False, ("rough surfaces and planes by images send as at the start of the first chirp all over the band, over which "
+                   f"antennas lose {fall:.1f} dB; physical optics follows the wavelength")
 
 
 @rule("faults of the receiver", "Radar.receiver")

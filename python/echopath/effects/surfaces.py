@@ -91,8 +91,8 @@ def _widths(case: Case):
     narrow = case.coherent[np.array(_core.mesh_widths(case.scene, case.coherent, case.time)) < least]
     if len(narrow) == 0:
         return True, f"none with a specular share is {limit}"
-    return False, (f"{case.named(narrow)}, {limit}: without currents around them echoes are off by 1 dB and more, at a twelfth "
-                   "of a wavelength by 9 dB")
+    return False, (f"{case.named(narrow)}, {limit}: without the currents around them metal rods are off by up to 4 dB at a sixth "
+                   "of a wavelength, 9 dB at a twelfth")
 
 
 @rule("check of the tessellation")

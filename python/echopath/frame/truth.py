@@ -54,7 +54,7 @@ def truth(frame: Described | Iterable[Frame] | Iterable[FrameMaps] | Iterable[Tr
 
 def _truth_of(frame, objects, number: int) -> Truth:
     """What a frame keeps, or what follows from its paths."""
-    if isinstance(frame, Truth) and len(np.unique(frame.time)) > 1:
+    if isinstance(frame, Truth) and len(np.unique(frame.frame)) > 1:
         raise refused(ValueError, "frame", "the Truth of one frame", frame)
     kept = frame if isinstance(frame, Truth) else None if isinstance(frame, _core.Paths) else frame.kept_truth
     if kept is not None and objects is None:

@@ -49,7 +49,8 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
         return power.max(axis=0) if combine == "peak" else power.sum(axis=0) / spread
 
     power = columns.mapped(lambda cube, one: column(_core.range_doppler(cube, one, window, zero_pad)))
-    noise = (columns.noise(column, window, zero_pad) if combine == "peak" else
+    is_drawn = combine == "peak" or is_coded(columns.radar)  # what undoes a code leaves more of it near the ends of a frame
+    noise = (columns.noise(column, window, zero_pad) if is_drawn else
              columns.noise_of_cell(window) * np.count_nonzero(inside) / spread)
     velocities = empty.velocity[inside]
     return RangeTime(times=columns.times, range=empty.range.copy(), power=power, combine=combine, window=window,

@@ -68,9 +68,10 @@ def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0,
     times the power that the uniform theory of diffraction brings around edges, as those on both sides of a board, to each of
     its hidden points, from the first transmitter and back to the first receiver, with their gains toward the strongest edge.
     The points are 256, spread over the object's area; what is hidden on less of it may be missed. Edges are those of all
-    bodies that keep their shape, as of perfect conductors; the part of the shadow is that of any body. Waves around two edges,
-    one behind the other, those along a face from its own edge, and what the objects' own shadows let pass, are left out; levels
-    are good to some 3 dB where an object is much smaller than its distance from the corner, and `resolved`.
+    bodies that keep their shape, as of perfect conductors; the part of the shadow is that of any body. Waves around two
+    edges, one behind the other, those along a face from its own edge, also to what is flush with it, and what the objects'
+    own shadows let pass, are left out; levels are good to some 3 dB where an object is much smaller than its distance from
+    the corner, and `resolved`.
     scene, radar: of the frame, without what is absent from it (`SceneNode.lifetime`); time: s, of its middle
     num_rays: for the level of each object alone
     progress: callable (stage, fraction), True for bars, or None

@@ -173,11 +173,13 @@ def test_times_since_1970_count_from_the_first_of_all_objects(tmp_path):
 
 def test_times_of_no_zone_are_those_of_greenwich_wherever_they_are_read(tmp_path, monkeypatch):
     rows = "time,x,y\n2026-05-01T12:00:00,0,0\n2026-05-01T12:00:01Z,9,0\n2026-05-01T14:00:02+02:00,18,0\n"
-    with monkeypatch.context() as patch:
-        patch.setenv("TZ", "America/New_York")
+    try:
+        with monkeypatch.context() as patch:
+            patch.setenv("TZ", "America/New_York")
+            tzset()
+            (one,) = ep.read_trajectories(write(tmp_path, "a.csv", rows)).values()
+    finally:
         tzset()
-        (one,) = ep.read_trajectories(write(tmp_path, "a.csv", rows)).values()
-    tzset()
     assert one.end == 2.0 and one.position(1.0)[0] == pytest.approx(9.0)
 
 

@@ -439,8 +439,10 @@ def test_what_a_loop_kept_of_its_frames_is_the_truth_of_all():
     assert kept.time - kept.time[0] == pytest.approx(starts)
     points = [position[None] for position in kept.position]
     assert set(ep.track(points, kept.time, truth=kept, truth_distance=5.0).object) == {"car"}
-    with pytest.raises(ValueError, match="frame: must be the Truth of one frame, got Truth"):
-        ep.truth([kept, kept])
+    at_one_time = ep.truth([traced[0], traced[0]])
+    for several in (kept, at_one_time):
+        with pytest.raises(ValueError, match="frame: must be the Truth of one frame, got Truth"):
+            ep.truth([several, several])
     with pytest.raises(ValueError, match="frame: must be a Frame for objects of a call, which need its paths, got Truth"):
         ep.truth([ep.truth(traced[0])], {"all": "*"})
 

@@ -143,6 +143,21 @@ def test_the_range_behind_a_wall_is_that_of_its_transmission_over_the_whole_band
     assert found == pytest.approx(known, abs=0.005)
 
 
+@pytest.mark.parametrize("start, step", [(3e9, 0.25e9), (4.75e9, -0.25e9)])
+def test_the_delay_of_a_wall_is_that_over_the_band_of_all_chirps_whether_they_step_up_or_down(start, step):
+    wall = ep.Layer(0.2, 3.91 - 0.05j)
+    chirps = ep.ChirpSequence(start_frequency=start, bandwidth=0.25e9, num_samples=64, num_chirps=8, chirp_interval=1e-3,
+                              frequency_steps=step * np.arange(8))
+    assert chirps.band == (3e9, 5e9)
+    radar = make_radar().replace(waveform=chirps)
+    free, behind = (np.min(echo_of_ball(make_scene(pane), radar).lengths([0.0]))
+                    for pane in (None, ep.Material(layers=[wall])))
+    band = np.linspace(3e9, 5e9, 500)
+    phase = np.unwrap(np.angle(airy(0.0, wall, band)[0][1] * np.exp(2j * np.pi * band / ep.speed_of_light * wall.thickness)))
+    delay = -(phase[-1] - phase[0]) / 2e9 * ep.speed_of_light / (2 * np.pi)
+    assert behind - free == pytest.approx(2.0 * delay, abs=1e-4)
+
+
 def peak_of(beat, chirps, zero_pad=64):
     """Range in m of the strongest place of a beat signal."""
     profile = np.abs(np.fft.fft(beat * np.hanning(beat.size), beat.size * zero_pad))[:beat.size * zero_pad // 2]

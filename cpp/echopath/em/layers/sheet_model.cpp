@@ -8,22 +8,25 @@
 namespace echopath {
 namespace {
 
-constexpr double kLeastBand = 1e-6;    // of the frequency, over which the delay at this frequency alone is told
+constexpr double kLeastBand = 1e-6;    // of a frequency, over which the delay at this frequency alone is told
 constexpr double kLeastOffset = 0.1;   // wavelengths
 constexpr double kLeastField = 1e-12;  // of a polarisation's square: what lies along the direction has no mode
 
+double width_of(const FrequencyBand& band) { return std::max(band.highest - band.lowest, kLeastBand * band.lowest); }
+
 }  // namespace
 
-SheetModel::SheetModel(const Material& material, double frequency, double bandwidth)
-    : band_(std::max(bandwidth, kLeastBand * frequency)), at_(material.layers, frequency),
-      last_(material.layers, frequency + band_) {}
+SheetModel::SheetModel(const Material& material, double frequency, const FrequencyBand& band)
+    : at_(material.layers, frequency), lowest_(material.layers, band.lowest),
+      highest_(material.layers, band.lowest + width_of(band)), begins_band_(frequency == band.lowest),
+      turn_(kSpeedOfLight / (kTwoPi * width_of(band))) {}
 
 SheetPassage SheetModel::passage(double cos_incidence) const {
   LayerPhases first, last;
   const LayerTransmission at = at_.over_free_space(cos_incidence, &first);
-  last_.over_free_space(cos_incidence, &last);
-  const double turn = kSpeedOfLight / (kTwoPi * band_);  // m of length per rad
-  return {at.te, at.tm, turn * (first.te - last.te), turn * (first.tm - last.tm), at_.offset(cos_incidence)};
+  if (!begins_band_) lowest_.over_free_space(cos_incidence, &first);
+  highest_.over_free_space(cos_incidence, &last);
+  return {at.te, at.tm, turn_ * (first.te - last.te), turn_ * (first.tm - last.tm), at_.offset(cos_incidence)};
 }
 
 double te_share(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {

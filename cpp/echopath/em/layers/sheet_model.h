@@ -7,6 +7,7 @@
 // straight line by `offset`. The phase of the transmission has this to first order; what is left is k offset^2 / (2
 // length), the detour of a wave that meets the far end of the leg all the same, and it is added where the offset exceeds a
 // tenth of a wavelength.
+#include "echopath/base/frequency_band.h"
 #include "echopath/base/geometry.h"
 #include "echopath/em/layers/layer_stack.h"
 
@@ -24,8 +25,9 @@ inline constexpr double kMinSineOfModes = 1e-9;
 
 class SheetModel {
  public:
-  // `material` has layers; the band of `bandwidth` (Hz) begins at `frequency` (Hz), at which fields and offsets are told.
-  SheetModel(const Material& material, double frequency, double bandwidth);
+  // `material` has layers; fields and offsets are told at `frequency` (Hz), delays over the band, or at its lowest frequency
+  // where it has no width.
+  SheetModel(const Material& material, double frequency, const FrequencyBand& band);
   // cos_incidence in [0, 1] is taken from the normal, of either side: both have the same passage.
   SheetPassage passage(double cos_incidence) const;
   // Returns the phase in rad that a wave turns by within the layers and back, straight through: about the rate at which a
@@ -33,8 +35,9 @@ class SheetModel {
   double most_phase() const { return at_.most_phase(); }
 
  private:
-  double band_;           // Hz
-  LayerStack at_, last_;  // at the first and at the last frequency of the band
+  LayerStack at_, lowest_, highest_;  // at the frequency, and at both ends of the band
+  bool begins_band_;                  // the frequency is the lowest one
+  double turn_;                       // m of length per rad between both ends
 };
 
 // Returns the share of the TE mode in the power of a wave that travels along `direction` with a polarisation, which need not

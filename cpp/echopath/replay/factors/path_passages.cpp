@@ -12,12 +12,6 @@ namespace {
 constexpr size_t kManyPasses = 4096;  // as many as it costs to make a table
 constexpr double kBeside = 0.5;       // of a triangle's edges: so far beside it a curved surface is followed
 
-// Returns by how much (Hz) the highest frequency of all chirps lies above the start frequency.
-double band_of_frame(const ChirpSequence& waveform) {
-  const auto most = [](const std::vector<double>& steps) { return steps.empty() ? 0.0 : std::ranges::max(steps); };
-  return waveform.bandwidth + most(waveform.frequency_steps) + most(waveform.bandwidth_steps);
-}
-
 // Returns the unit vector across the ray that leads toward the normal through its point of entry.
 Vec3 toward_foot(const Vec3& direction, const Vec3& normal) {
   const Vec3 ahead = direction.dot(normal) > 0.0 ? normal : Vec3(-normal), across = ahead - ahead.dot(direction) * direction;
@@ -37,7 +31,7 @@ RecordSheets::RecordSheets(const PathPreparer& of, const ChirpSequence& waveform
     std::optional<Sheet>& sheet = of_mesh[pass.hit.mesh_id];
     if (sheet) continue;
     const Material& material = *paths.scene->node_of(pass.hit.mesh_id).material;
-    const SheetModel model(material, waveform.start_frequency, band_of_frame(waveform));
+    const SheetModel model(material, waveform.start_frequency, waveform.band());
     sheet = Sheet{model, std::nullopt};
     if (paths.passes.size() > kManyPasses) sheet->table.emplace(model);
   }

@@ -5,7 +5,8 @@
 // stationary phase along it; what comes around several edges, as those on both sides of a board, adds up with its phases.
 // All edges of bodies count as those of perfect conductors: the part that follows from the shadow, which is most of it near
 // the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none. An edge sends nothing along
-// its own faces: what comes to their points from their own edges belongs to the body's echo, which its rays and edges make.
+// its own faces: what comes to their points from their own edges belongs to the body's echo, which its rays and edges make;
+// what comes to other bodies that are flush with them is left out.
 #include <vector>
 
 #include "echopath/base/geometry.h"

@@ -1,20 +1,19 @@
 #pragma once
 // Holds what rays need to know of each mesh of a scene.
-#include <map>
 #include <vector>
 
-#include "echopath/em/surface/surface_response.h"
 #include "echopath/trace/mirrors/mirrors.h"
+#include "echopath/trace/scatter/surface_models.h"
 
 namespace echopath {
 
 class SurfaceTable {
  public:
   SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency);
-  const SurfaceModel& model(uint32_t mesh_id) const { return models_[model_of_[mesh_id]]; }
+  const SurfaceModel& model(uint32_t mesh_id) const { return models_.front(mesh_id); }
   // Returns the model for a wave that meets the surface from the side of `normal`.
   const SurfaceModel& model(const Hit& hit, const Vec3& normal) const {
-    return backs_.empty() || !is_met_from_behind(hit, normal) ? model(hit.mesh_id) : backs_.at(model_of_[hit.mesh_id]);
+    return models_.from(hit.mesh_id, [&] { return is_met_from_behind(hit, normal); });
   }
   bool is_mirror(uint32_t mesh_id) const { return mirror_of_.is_mirror(mesh_id); }
   // Returns the index of the flagged mirror on which a hit lies; -1 on other meshes.
@@ -30,13 +29,10 @@ class SurfaceTable {
   bool has_lobes() const { return has_lobes_; }
 
  private:
-  void add_model(const Material& material, double frequency);
   bool is_met_from_behind(const Hit& hit, const Vec3& normal) const;
 
   const EmbreeScene& geometry_;
-  std::vector<SurfaceModel> models_;        // one for all meshes of a material
-  std::vector<uint32_t> model_of_;          // [mesh ID]
-  std::map<uint32_t, SurfaceModel> backs_;  // of sheets of several layers, by their model
+  SurfaceModels models_;
   MirrorIndex mirror_of_;
   std::vector<double> smooth_width_;
   bool has_smooth_ = false, has_lobes_ = false, may_scatter_ = false;

@@ -68,8 +68,8 @@ class PassFinder {
       : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(sheets.origin()),
         polarization_(paths.mode_polarization()) {
     for (const uint32_t id : sheets.ids()) {
-      models_.emplace(id, SheetModel(*paths.scene->node_of(id).material, paths.radar.waveform.start_frequency,
-                                     paths.radar.waveform.bandwidth));
+      const double frequency = paths.radar.waveform.start_frequency;  // of the fields, which alone count here
+      models_.emplace(id, SheetModel(*paths.scene->node_of(id).material, frequency, {frequency, frequency}));
     }
   }
 

@@ -1,7 +1,6 @@
 #include "echopath/validity/legs/coefficients.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "echopath/em/polarization/mirrored_fields.h"
 #include "echopath/trace/mirrors/mirrors.h"
@@ -42,30 +41,21 @@ bool PathAtTime::is_as(const PathAtTime& other) const {
 }
 
 Coefficients::Coefficients(const Paths& paths, double frequency)
-    : is_polarized_(!paths.jones.empty()), polarization_(paths.mode_polarization()) {
-  std::unordered_map<const Material*, uint32_t> index;
-  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-    const Material& material = *paths.scene->node_of(id).material;
-    const auto [entry, is_new] = index.try_emplace(&material, static_cast<uint32_t>(sides_.size()));
-    if (is_new) sides_.push_back({{material, frequency, SheetSide::kFront}, {material, frequency, SheetSide::kBack}});
-    of_mesh_.push_back(entry->second);
-  }
-}
+    : models_(*paths.scene, frequency), is_polarized_(!paths.jones.empty()), polarization_(paths.mode_polarization()) {}
 
 // The matrix of a polarised path turns with the surfaces, whatever they are made of.
 bool Coefficients::follow_angles(const LocalPath& path) const {
   if (path.diffuse != 0 || path.edge >= 0 || path.count == 0) return false;
   if (is_polarized_) return true;
   for (int k = 0; k < path.count; ++k) {
-    if (!sides(path, k).front.is_constant()) return true;
+    if (!models_.front(path.hits[k].mesh_id).is_constant()) return true;
   }
   return false;
 }
 
 // The normals of posed hits are those of their triangles' winding.
 const SurfaceModel& Coefficients::model(const PathAtTime& at, int k, const Vec3& direction) const {
-  const Sides& both = sides(at.path, k);
-  return direction.dot(at.hits[k].normal) < 0 ? both.front : both.back;
+  return models_.from(at.path.hits[k].mesh_id, [&] { return direction.dot(at.hits[k].normal) > 0; });
 }
 
 std::complex<double> Coefficients::product(const PathAtTime& at) const {

@@ -1,11 +1,10 @@
 #pragma once
 // Tells what the hits of a coherent path make of a wave at another time than that of the trace.
 #include <complex>
-#include <vector>
 
 #include "echopath/em/polarization/jones.h"
-#include "echopath/em/surface/surface_response.h"
 #include "echopath/replay/posed/local_paths.h"
+#include "echopath/trace/scatter/surface_models.h"
 
 namespace echopath {
 
@@ -31,14 +30,9 @@ class Coefficients {
   JonesMatrix matrix(const PathAtTime& at) const;
 
  private:
-  struct Sides {
-    SurfaceModel front, back;
-  };
-  const Sides& sides(const LocalPath& path, int k) const { return sides_[of_mesh_[path.hits[k].mesh_id]]; }
   const SurfaceModel& model(const PathAtTime& at, int k, const Vec3& direction) const;
 
-  std::vector<Sides> sides_;       // one for all meshes of a material
-  std::vector<uint32_t> of_mesh_;  // [mesh ID], indexes sides_
+  SurfaceModels models_;
   bool is_polarized_;
   Vec3 polarization_;  // by which the scalar model tells modes apart
 };

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 
 def ambiguity_of(radar: Any, folds: int = 0) -> float:
-    """m/s, by which radial velocities differ that look the same.
+    """m/s, by which radial velocities differ that look the same; of a single chirp, to which all do, the width of its axis.
 
     folds: as of `estimate_angles`; where some were tried, transmitters in turns tell velocities apart from slot to slot
     """

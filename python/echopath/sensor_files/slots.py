@@ -122,19 +122,19 @@ def _profile_of(lines: Lines, chirp: Command, plan: FramePlan) -> Command:
     number = chirp["profile"] if plan.forced_profile < 0 else plan.forced_profile
     for profile in reversed(lines.of("profileCfg")):
         if profile["profile"] == number:
-            _check_profile(profile)
+            _check_profile(profile, chirp)
             return profile
     raise chirp.error(f"profile: must be that of a profileCfg, got {number}")
 
 
-def _check_profile(profile: Command) -> None:
+def _check_profile(profile: Command, chirp: Command) -> None:
     for name in ("start_ghz", "ramp_end_us", "slope_mhz_us", "num_samples", "rate_ksps"):
         if not profile[name] > 0:
             raise profile.error(f"{name}: must be positive, got {profile[name]:g}")
     for name in ("idle_us", "adc_start_us", "gain_db"):
         if profile[name] < 0:
             raise profile.error(f"{name}: must be at least 0, got {profile[name]:g}")
-    sampled = profile["adc_start_us"] + 1e3 * profile["num_samples"] / profile["rate_ksps"]
+    sampled = profile["adc_start_us"] + chirp["adc_start_us"] + 1e3 * profile["num_samples"] / profile["rate_ksps"]
     if sampled > profile["ramp_end_us"] * (1.0 + 1e-9):
         raise profile.error(f"ramp_end_us: must be at least {sampled:.6g}, where the last sample is taken, got "
                             f"{profile['ramp_end_us']:g}")

@@ -94,6 +94,28 @@ def test_chirps_that_differ_become_steps(written):
     assert waveform.extra_idle == pytest.approx((2e-6, 0.0)) and waveform.chirp_interval == pytest.approx(INTERVAL)
 
 
+def test_slopes_and_converters_of_chirps_add_to_those_of_their_profile(written):
+    """The second chirp rises by 70.2 MHz/us and is sampled 7.5 us after its start, 50.5 us after the first and 45.5 us before."""
+    text = CONFIGURATION.replace("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 1e6 200 2 1.5 4")
+    waveform = ep.load_radar(written(text)).waveform
+    assert waveform.slope == pytest.approx(SLOPE) and waveform.start_frequency == pytest.approx(START)
+    assert waveform.frequency_steps == pytest.approx((0.0, 1e6 + 70.2e12 * 7.5e-6 - 70e12 * 6e-6), rel=1e-6)
+    assert waveform.bandwidth_steps == pytest.approx((0.0, 0.2e12 * COUNT / RATE), rel=1e-6)
+    assert waveform.chirp_interval == pytest.approx(45.5e-6) and waveform.extra_idle == pytest.approx((5e-6, 0.0))
+
+
+@pytest.mark.parametrize("command", ["profileCfg 0 60 7 6 40 0 0 65 1 128 5000 0 0 30", "chirpCfg 0 1 0 0 -5000 0 0 1"])
+def test_of_two_lines_for_one_profile_or_chirp_the_later_counts(written, command):
+    assert ep.load_radar(written(CONFIGURATION + command + "\n")).waveform.slope == pytest.approx(65e12)
+
+
+def test_a_chirp_is_sampled_within_its_ramp(written):
+    """The last sample of the second chirp would be taken 41.6 us after its start, whose ramp ends after 40 us."""
+    text = CONFIGURATION.replace("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 10 4")
+    with pytest.raises(ep.FileError, match="ramp_end_us: must be at least 41.6, where the last sample is taken, got 40"):
+        ep.load_radar(written(text))
+
+
 def test_signs_of_two_transmitters_are_bpm(written):
     text = CONFIGURATION.replace(" 0 0 0 0 1\n", " 0 0 0 0 5\n").replace(" 0 0 0 0 4\n", " 0 0 0 0 5\n") + "bpmCfg -1 1 0 1\n"
     radar = ep.load_radar(written(text))
@@ -111,6 +133,38 @@ def test_back_off_and_phase_shifters_are_gains_and_phases_of_the_transmitters(wr
         (corner(), radar.replace(receiver=None)), (corner(), radar)))
     np.testing.assert_allclose(shifted[0], plain[0] * 10 ** (-3 / 20), rtol=1e-12)
     np.testing.assert_allclose(shifted[1], plain[1] * 1j * 10 ** (-10 / 20), rtol=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore:board. .* sends from")
+def test_the_bytes_of_a_profile_are_those_of_each_device_of_a_cascade(written):
+    others = ("profileCfg", "channelCfg", "chirpCfg", "frameCfg")
+    lines = [line for line in CONFIGURATION.splitlines() if not line.startswith(others)]
+    lines += [f"profileCfg 0 60 7 6 40 {0x0A0003} 0 70 1 128 5000 0 0 30", "channelCfg 15 4095 0", "frameCfg 0 11 4 0 100 1 0"]
+    lines += [f"chirpCfg {i} {i} 0 0 0 0 0 {1 << i}" for i in range(12)]
+    radar = ep.load_radar(written("\n".join(lines)), "AWR2243_cascade")
+    assert radar.receiver.transmitter_gain_db == 4 * (-3.0, 0.0, -10.0)
+
+
+def test_a_frame_is_of_the_chirps_that_it_names(written):
+    """One of two, from another one than the first; or two of one transmitter, which are one after the other twice as many."""
+    second = ep.load_radar(written(CONFIGURATION.replace("frameCfg 0 1", "frameCfg 1 1")))
+    assert (len(second.transmitters), second.waveform.num_chirps) == (1, 32)
+    assert second.transmitters[0].position[1] == pytest.approx(4 * 0.5 * C / 62e9)
+    both = ep.load_radar(written(CONFIGURATION.replace("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 1")))
+    assert (len(both.transmitters), both.waveform.num_chirps) == (1, 64)
+
+
+def test_a_sub_frame_has_time_for_its_chirps(written):
+    """From its first sample to its last are 31 times 47 us and 127 times 0.2 us."""
+    text = ADVANCED.replace("subFrameCfg 0 -1 0 2 16 20 0 1 1 20", "subFrameCfg 0 -1 0 2 16 1 0 1 1 1")
+    with pytest.raises(ep.FileError, match="period_ms: must be at least 1.4824, the time of its chirps, got 1"):
+        ep.load_radar(written(text))
+
+
+def test_the_gain_is_in_the_lower_bits_of_its_number(written):
+    """Bits 0 to 5; the two above them choose the gain before the mixer (mmWave radar interface control, profile)."""
+    radar = ep.load_radar(written(profileCfg=f"profileCfg 0 60 7 6 40 0 0 70 1 128 5000 0 0 {0xC0 + 30}"))
+    assert radar.receiver.adc.gain_db == 30.0
 
 
 def of_two_profiles(name, values, mask):

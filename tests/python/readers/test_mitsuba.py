@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import echopath as ep
 
@@ -31,9 +32,19 @@ def test_steps_of_a_transform_are_applied_one_after_the_other(tmp_path):
     assert np.allclose(vertices, [[11, -2, 1], [11, 2, 1], [9, 2, 1], [9, -2, 1]], atol=ROUNDING)
 
 
+def test_turns_about_any_axis_are_right_handed(tmp_path):
+    turn = Rotation.from_rotvec(35.0 * np.array([1.0, -2.0, 2.0]) / 3.0, degrees=True)
+    found = corners(mitsuba(tmp_path, rectangle('<rotate x="1" y="-2" z="2" angle="35"/>')))
+    assert np.allclose(found, turn.apply([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]), atol=ROUNDING)
+
+
 def test_a_matrix_and_looking_at_a_point(tmp_path):
     matrix = rectangle('<matrix value="0 0 1 5  1 0 0 6  0 1 0 7  0 0 0 1"/>')
     assert np.allclose(corners(mitsuba(tmp_path, matrix))[0], [5, 5, 6])
+    turn = rectangle('<matrix value="0 0 1  1 0 0  0 1 0"/>')
+    assert np.allclose(corners(mitsuba(tmp_path, turn))[0], [0, -1, -1])
+    level = rectangle('<lookat origin="0, 0, 0" target="3, 0, 0"/>')  # ahead +x, up +y, left -z
+    assert np.allclose(corners(mitsuba(tmp_path, level))[1], [0, -1, -1])
     look = rectangle('<lookat origin="1, 2, 3" target="1, 5, 3" up="0, 0, 1"/>')  # ahead +y, left -x, up +z
     assert np.allclose(corners(mitsuba(tmp_path, look)), [[2, 2, 2], [0, 2, 2], [0, 2, 4], [2, 2, 4]])
 

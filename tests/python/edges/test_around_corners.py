@@ -294,6 +294,9 @@ def test_a_wall_whose_middle_is_hidden_has_the_share_of_the_shadow(radar):
         scene.add(ep.Mesh(corners, np.array([(0, 1, 2), (0, 2, 3)])), name=name, material="metal")
     (told,) = ep.around_corners(scene, radar, num_rays=500)
     assert told.name == "wall" and told.hidden_share == pytest.approx(4.0 * 16.0 / 200.0, abs=0.03)
+    scene.remove("screen")
+    level = ep.received_power(ep.trace(scene, radar, num_rays=500, max_bounces=1, edges=True)).power
+    assert told.loss_db == pytest.approx(10.0 * np.log10(told.hidden_share * level / told.power), abs=0.5)
 
 
 def test_channels_differ_by_the_lengths_of_their_ways():
@@ -340,9 +343,11 @@ def test_gains_are_those_toward_the_corner(radar):
     assert turned.power / plain.power == pytest.approx(ahead ** (2 * exponent), rel=0.02)
     gained = 20.0 * exponent * np.log10(ahead / straight)
     assert plain.loss_db - turned.loss_db == pytest.approx(gained, abs=0.2)
+    one_way = radar.replace(receivers=beams.receivers)
     powers = [np.sum(np.abs(ep.synthesize_around_corners(scene, each.replace(
-        waveform=radar.waveform.replace(num_samples=256)), num_rays=500)) ** 2) for each in (radar, beams)]
+        waveform=radar.waveform.replace(num_samples=256)), num_rays=500)) ** 2) for each in (radar, beams, one_way)]
     assert powers[1] / powers[0] == pytest.approx(ahead ** (2 * exponent), rel=0.02)
+    assert powers[2] / powers[0] == pytest.approx(ahead ** exponent, rel=0.02)
 
 
 @pytest.mark.parametrize("driving", ["radar", "building"])

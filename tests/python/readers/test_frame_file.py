@@ -92,7 +92,7 @@ def test_rates_of_a_smooth_curve_are_written_once_and_read_under_both_names(tmp_
     scene = ep.Scene()
     for name, after in (("smooth", rates), ("jumping", jump)):
         curve = ep.Curve([0.0, 1.0, 2.0], np.cumsum(rates, axis=0), "hermite", in_tangents=rates, out_tangents=after)
-        scene.add(ep.actors.box(0.2), name=name, material="metal", motion=ep.CurveMotion(curve))
+        scene.add(ep.actors.box(0.2), name=name, material="metal", motion=ep.CurveMotion(curve, period=2.0, offset=0.7))
     ep.trace(scene, build_radar(), num_rays=10).save(tmp_path / "paths.h5")
     with h5py.File(tmp_path / "paths.h5") as file:
         smooth, jumping = ({name: motion["translation"][name] for name in ("in_tangents", "out_tangents")}

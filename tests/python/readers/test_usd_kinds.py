@@ -113,9 +113,11 @@ def test_what_changes_its_visibility_stays_as_at_first_and_that_is_told(tmp_path
         loaded(tmp_path, mesh.replace('0: "inherited", 5: "invisible"', '0: "invisible", 5: "inherited"'))
 
 
-@pytest.mark.parametrize("scheme, cage", [("catmullClark", True), ("loop", True), ("none", False)])
+@pytest.mark.parametrize("scheme, cage", [("catmullClark", True), ("loop", True), ("none", False), ("", False)])
 def test_of_a_subdivision_surface_the_cage_is_taken_and_that_is_told(tmp_path, scheme, cage):
-    model, _ = loaded(tmp_path, f'def Mesh "box"\n{{\n    uniform token subdivisionScheme = "{scheme}"\n{TRIANGLE}}}\n')
+    """A mesh that does not say is taken as it stands."""
+    said = f'    uniform token subdivisionScheme = "{scheme}"\n' if scheme else ""
+    model, _ = loaded(tmp_path, f'def Mesh "box"\n{{\n{said}{TRIANGLE}}}\n')
     assert model.nodes[0].smooth is cage
     assert any("control cage" in note for note in model.notes) is cage
 
@@ -168,6 +170,36 @@ def test_at_rest_a_stage_is_as_in_its_first_frame(tmp_path):
     matrix = np.array(UsdGeom.Xformable(stage.GetPrimAtPath("/cart")).GetLocalTransformation(4.0)).T
     wanted = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) @ matrix[:3, :3].T + matrix[:3, 3]
     assert np.allclose(scene.world_vertices(0, 0.0), wanted, atol=SINGLE)
+
+
+def test_triangles_of_parts_know_their_faces_of_the_file_and_their_materials_what_sensors_are_told(tmp_path):
+    """A face of two corners, and two squares side by side, the second of a part of its own."""
+    _, scene = loaded(tmp_path, '''def Material "paint_7"
+{
+    custom string omni:simready:nonvisual:base = "aluminum"
+}
+def Mesh "face" (
+    prepend apiSchemas = ["MaterialBindingAPI"]
+)
+{
+    int[] faceVertexCounts = [2, 4, 4]
+    int[] faceVertexIndices = [0, 1, 0, 1, 2, 3, 1, 4, 5, 2]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)]
+    rel material:binding = </paint_7>
+    def GeomSubset "second"
+    {
+        uniform token elementType = "face"
+        uniform token familyName = "materialBind"
+        int[] indices = [2]
+    }
+}
+''')
+    found = {mesh.name.rpartition("/")[2]: mesh for mesh in scene.meshes}
+    assert len(found) == 2 and {mesh.material_name for mesh in found.values()} == {"metal"}
+    for name, mesh in found.items():
+        face, left = (2, 1.0) if name == "second" else (1, 0.0)
+        assert mesh.mesh.original_triangle.tolist() == [face, face]
+        assert mesh.mesh.vertices[mesh.mesh.triangles][..., 0].min() == left
 
 
 def test_the_front_of_a_left_handed_mesh_is_where_its_corners_go_clockwise(tmp_path):

@@ -143,6 +143,39 @@ def test_a_blade_that_points_at_the_radar_in_mid_frame_is_as_fast_as_one_that_st
         assert not bodies_faster_than(6.1, scene, radar, 0.0)
 
 
+def arm(length):
+    """From an axle along +y, thin."""
+    return quad((0.0, 0.0, -0.01), (0.0, length, -0.01), (0.0, length, 0.01), (0.0, 0.0, 0.01))
+
+
+def turning(scene, name, length, yaw, **keywords):
+    """An arm that makes 30 rad/s; with yaw 0 its end comes straight to the radar with 30 times its length."""
+    scene.add(arm(length), name=name, material="metal", yaw=yaw, motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, 30.0)),
+              **keywords)
+
+
+def test_what_comes_faster_at_the_end_of_a_frame_has_that_speed():
+    """The end of an arm that makes a quarter of a turn begins at rest and comes at last with 6 m/s."""
+    chirps = ep.ChirpSequence(num_chirps=1024, chirp_interval=pi / 60.0 / 1024)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+    scene, middle = ep.Scene(), radar.middle_of_frame(0.0)
+    turning(scene, "arm", 0.2, -pi / 4.0 - 30.0 * middle, position=(50.0, 0.0, 0.0))
+    (body,) = bodies_faster_than(5.0, scene, radar, middle)
+    assert body.speed == pytest.approx(-6.0, rel=0.03, abs=0)
+
+
+def test_of_parts_that_come_and_go_the_fastest_counts_and_of_a_body_that_stands_its_moving_part():
+    radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=16)
+    scene = ep.Scene()
+    turning(scene, "mill", 0.2, 0.0, position=(50.0, 0.0, 0.0))
+    scene.add(arm(0.16), name="other", parent="mill", material="metal", yaw=pi)
+    scene.add(arm(1.0), name="gate", material="metal", position=(20.0, 0.0, 0.0))
+    scene.add(arm(1.0), name="leaf", parent="gate", material="metal", motion=ep.LinearMotion(velocity=(4.5, 0.0, 0.0)))
+    mill, leaf = bodies_faster_than(4.0, scene, radar, 0.0)
+    assert (mill.name, mill.as_whole, leaf.name, leaf.as_whole) == ("mill", False, "gate/leaf", True)
+    assert (mill.speed, leaf.speed) == (pytest.approx(-6.0, rel=0.01, abs=0), pytest.approx(4.5, rel=0.01, abs=0))
+
+
 def test_what_is_far_slower_than_the_map_tells_is_looked_at_thrice(monkeypatch):
     """In the middle of a frame and at its ends, and not at the eight times of what may be too fast."""
     radar = build_radar([(0, 0, 0.5)], [(0, 0, 0.5)], num_samples=16, num_chirps=16)

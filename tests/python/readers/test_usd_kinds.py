@@ -161,6 +161,26 @@ def test_what_quaternions_turn_about_a_pivot_goes_round_it(tmp_path):
         assert np.allclose(scene.world_vertices(0, code / 10), wanted, atol=6e-3), code  # 6 m (1 - cos 2.5 degrees)
 
 
+@pytest.mark.parametrize("deforms", [False, True])
+def test_the_time_of_the_scene_is_that_of_the_stage_after_its_start(tmp_path, deforms):
+    """The stage starts with code 5, 10 of which are 1 s; what moves does so from 0.5 s before that to 1.5 s behind it."""
+    end = "[(10, 0, 0), (11, 0, 0), (10, 1, 0)]"
+    face = TRIANGLE
+    if deforms:
+        face = TRIANGLE.replace("points = [", "points.timeSamples = { 0: [").replace(", 1, 0)]", f", 1, 0)], 20: {end} }}")
+    else:
+        face += """    double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 20: (10, 0, 0) }
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+"""
+    head = HEAD.replace("startTimeCode = 0", "startTimeCode = 5").replace("endTimeCode = 10", "endTimeCode = 25")
+    (tmp_path / "stage.usda").write_text(f'{head}def Mesh "face"\n{{\n{face}}}\n')
+    for offset in (0.0, 0.4):
+        scene = ep.Scene()
+        scene.add(ep.load_model(tmp_path / "stage.usda", offset=offset), name="m")
+        found = [scene.world_vertices(0, time - offset)[0, 0] for time in (-0.7, 0.0, 0.5, 1.3, 2.5)]
+        assert found == pytest.approx([0.0, 2.5, 5.0, 9.0, 10.0], abs=10.0 * SINGLE)
+
+
 def test_at_rest_a_stage_is_as_in_its_first_frame(tmp_path):
     """Transforms as the points are, whatever samples lie before it."""
     (tmp_path / "stage.usda").write_text(HEAD.replace("startTimeCode = 0", "startTimeCode = 4") + MOVING)

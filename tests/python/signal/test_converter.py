@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli.info import _describe_radar
-from echopath.receiver.converter import is_swamped, noise_of_branch, step_text
+from echopath.receiver.converter import is_swamped, jittered, noise_of_branch, step_text
 from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 
@@ -80,6 +80,15 @@ def test_jitter_makes_noise_by_the_square_of_the_frequency():
     out = ep.receive(tone(cell, 1.0, 64), radar, seed=3).cube
     noise = np.mean(np.abs(out - tone(cell, 1.0, 64)) ** 2)
     assert db(noise) == pytest.approx(20 * np.log10(2 * np.pi * cell * RATE / COUNT * jitter), abs=LEVEL)
+
+
+def test_receivers_are_sampled_at_one_instant_and_chirps_at_others():
+    adc = ep.Adc(clock_jitter=50e-12)
+    cube = np.repeat(np.repeat(tone(200, 1.0, 4), 2, axis=0), 3, axis=1)
+    sent, other = jittered(cube, one_channel(4).waveform, adc, np.random.default_rng(1)) - cube
+    np.testing.assert_array_equal(sent, np.broadcast_to(sent[:1], sent.shape))
+    for one, another in ((sent, other), (sent[:, 0], sent[:, 1])):
+        assert np.all(one != another)
 
 
 def test_the_same_seed_gives_the_same_bits_and_frames_differ():

@@ -8,6 +8,8 @@ import pytest
 
 import echopath as ep
 from echopath.receiver.echo_gains import EchoGains
+from echopath.signals.beside import leakage_map
+from echopath.transmit import signal_shape
 from support.radars import build_radar
 from support.scenes.small_spheres import TARGETS, nearest
 
@@ -131,3 +133,14 @@ def test_gains_that_drift_count_by_their_mean_square():
     radar, gains = gains_of(start_time=0.5, gain_drift_db=[40.0])
     times = 0.5 + np.array([0.0, radar.waveform.chirp_interval])
     assert gains.of("", 0, 0, 0) == pytest.approx(np.sqrt(np.mean(10.0 ** (40.0 * times / 10.0))), rel=1e-12)
+
+
+def test_leakage_has_the_errors_of_the_transmitters_already_and_echoes_get_them():
+    """Behind transmitters of -6 dB and receivers of 3 dB, as the receiver gives both."""
+    radar, gains = gains_of(leakage_db=[[-20.0]], transmitter_gain_db=[-6.0], receiver_gain_db=[3.0])
+    nothing = np.zeros(signal_shape(radar), complex)
+    leaked = ep.receive(nothing, radar, seed=None).cube
+    echo = ep.receive(nothing + 1.0, radar, seed=None).cube - leaked
+    alone = np.abs(leakage_map(radar, "hann", 1).values)
+    assert np.abs(ep.range_doppler(leaked, radar, window="hann").values) == pytest.approx(gains.of("leakage", 0, 0, 0) * alone)
+    assert np.abs(echo) == pytest.approx(gains.of("", 0, 0, 0))

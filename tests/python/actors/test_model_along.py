@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.readers.played import PlayedCurve
 from support.files.gltf_files import BOX, BOX_SIDES, GltfFile, rig_file
 from support.files.scene_text import ANTENNAS, WAVEFORM
 
@@ -107,6 +108,38 @@ def test_bones_that_go_ahead_do_so_along_the_trajectory_whatever_the_offset(tmp_
     lower, upper = (world(model, name, [0.0, 0.5])[:, :2] for name in ("lower", "upper"))
     assert np.abs(lower - [[0, 0], [1.5, 0]]).max() < 0.1
     assert upper[1, 1] < -0.1  # the file's -x, the right of who looks along its z
+
+
+EVEN, WAY_OF_TURN = ep.Trajectory([(0, 0), (12, 0)], speed=3.0), 1.5  # two loops in a second
+
+
+def test_what_is_played_has_the_rates_of_what_it_plays():
+    """A smooth curve of one wave, and its cosine: at the keys too, where radial velocities would tell wrong tangents."""
+    keys = np.linspace(0.0, 1.2, 49)
+    wave = 2.0 * np.pi / 1.2
+    values, rates = (np.outer(one, [0.0, 1.0, 0.0]) for one in (np.sin(wave * keys), wave * np.cos(wave * keys)))
+    played = PlayedCurve(ep.Curve(keys, values, "hermite", in_tangents=rates, out_tangents=rates), 1.2, False)
+    curve = played.along(EVEN, WAY_OF_TURN)
+    motion, step = ep.CurveMotion(curve), 1e-5
+    times = np.concatenate([curve.times[(curve.times > 0.1) & (curve.times < 3.9)][::7], np.linspace(0.2, 3.8, 50)])
+    places = [[motion.at(time + late)[1, 3] for late in (-step, step)] for time in times]
+    found = np.diff(places, axis=1)[:, 0] / (2.0 * step)
+    assert found == pytest.approx(4.0 * np.pi * np.cos(4.0 * np.pi * times), abs=0.005 * 4.0 * np.pi)
+
+
+def test_what_turns_round_once_in_a_loop_goes_on_in_the_next_ones():
+    """Its quaternions end with the other sign than they begin with."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 5)
+    values = np.stack([np.cos(0.5 * angles), 0.0 * angles, 0.0 * angles, np.sin(0.5 * angles)], axis=-1)
+    curve = PlayedCurve(ep.Curve(np.linspace(0.0, 1.0, 5), values, "linear"), 1.0, True).along(EVEN, WAY_OF_TURN)
+    assert len(curve.times) < 1000
+    motion, step = ep.CurveMotion(rotation=curve), 1e-5
+    for time in np.linspace(0.01, 2.2, 111):
+        turn = 4.0 * np.pi * time
+        before, now, after = (motion.at(time + late)[:2, 0] for late in (-step, 0.0, step))
+        assert now == pytest.approx([np.cos(turn), np.sin(turn)], abs=2e-4)
+        rate = (after - before) / (2.0 * step)
+        assert rate == pytest.approx(4.0 * np.pi * np.array([-np.sin(turn), np.cos(turn)]), abs=0.02 * 4.0 * np.pi)
 
 
 def test_what_cannot_go_along_is_refused(tmp_path):

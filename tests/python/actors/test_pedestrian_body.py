@@ -3,6 +3,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.actors.human.anthropometry import Proportions
+from echopath.actors.human.foot import Sole
 from support.scenes.pedestrians import HEIGHT, rotation
 
 SEGMENTS = [   # parent part, its child, length as a share of the height (Drillis and Contini)
@@ -77,3 +79,25 @@ def test_parts_are_smooth_bodies_of_cloth_and_skin(person):
     assert {name for name, material in by_material.items() if material == "skin"} == {
         "head", "neck", "arm_left/hand", "arm_right/hand"}
     assert set(by_material.values()) == {"clothing", "skin"}
+
+
+def test_feet_are_a_step_width_apart():
+    """Of the height, where they stand."""
+    walker = ep.actors.pedestrian(height=HEIGHT, speed=1.4)
+    sides = [next(part for part in walker.parts if part.name == f"leg_{side}/foot").motion.translations[:, 1]
+             for side in ("left", "right")]
+    assert np.median(sides[0]) - np.median(sides[1]) == pytest.approx(Proportions(HEIGHT).step_width, rel=0.1)
+
+
+def test_a_foot_in_the_air_turns_without_a_jump_of_its_height_its_slope_and_its_bend():
+    """Where the polynomial about the level foot meets the arcs of heel and toe: second differences on both sides."""
+    sole, lowest, highest, step = Sole.of(Proportions(HEIGHT)), -0.3, 0.2, 1e-5
+
+    def height(pitch):
+        return sole.ankle_clear_of_floor(np.asarray(pitch), lowest, highest)
+
+    for end in (lowest, highest):
+        bends = [height(end + side * 2 * step) - 2 * height(end + side * step) + height(end) for side in (-1, 1)]
+        slopes = [side * (height(end + side * step) - height(end)) for side in (-1, 1)]
+        assert bends[0] / step**2 == pytest.approx(bends[1] / step**2, rel=0.01)
+        assert slopes[0] / step == pytest.approx(slopes[1] / step, abs=2 * step)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.actors.following import Repeated, _steering
 from support.drives import WALK
 
 RADIUS = 8.0
@@ -323,3 +324,20 @@ def test_steps_that_no_legs_reach_are_refused_with_their_time():
     with pytest.raises(ValueError, match=r"^trajectory: must be one along which the legs of a person of 1.78 m, .*, reach the "
                        r"ground, got '[34]\.\d+ m/s at 3\.\d+ s'$"):
         ep.actors.pedestrian(trajectory=way)
+
+
+def test_wheels_steer_at_the_rate_at_which_their_angle_changes():
+    """Into the bend of DRIVE, at 7 m/s: differences of the angle over time."""
+    times, step = np.linspace(DRIVE.begin + 3.5, DRIVE.end - 1.0, 200), 1e-5
+    before, after = (_steering(DRIVE._track, times + late, 2.7)[0] for late in (-step, step))
+    rates = _steering(DRIVE._track, times, 2.7)[1]
+    assert np.abs(rates).max() > 0.1 and rates == pytest.approx((after - before) / (2.0 * step), abs=1e-3)
+
+
+def test_what_is_asked_for_at_other_times_is_worked_out_for_these():
+    def curves(times):
+        return np.stack([np.sin(times), np.cos(times)])
+
+    repeated = Repeated(curves)
+    for times in (np.array([0.0, 1.0, 2.0]), np.array([2.0, 0.5, 1.0, 3.0]), np.array([])):
+        np.testing.assert_array_equal(repeated.anew()(times), curves(times))

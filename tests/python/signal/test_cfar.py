@@ -131,6 +131,15 @@ def test_noise_behind_filters_is_the_sum_of_what_each_sample_sends(receiver, rea
     assert shape == pytest.approx(expected[:len(shape)], rel=0, abs=1e-12 * expected.max())
 
 
+def test_the_image_of_noise_comes_from_the_opposite_frequency():
+    """(1 - g e^{jp}) / 2 of what a narrow notch leaves there, cell by cell."""
+    notch, branches = dict(high_pass=[3e5, 3e5]), dict(iq_gain_db=6.0, iq_phase=0.4)
+    plain, found = (noise_shape(ep.range_doppler(np.zeros((1, 1, 2, 256), complex), radar), radar) for radar in (
+        build_radar(num_chirps=2, num_samples=256, receiver=ep.Receiver(**faults)) for faults in (notch, notch | branches)))
+    own, image = (abs(0.5 + sign * 0.5 * 10.0 ** 0.3 * np.exp(0.4j)) ** 2 for sign in (1, -1))
+    assert found == pytest.approx(own * plain + image * plain[-np.arange(256)], rel=1e-9)
+
+
 def test_each_row_of_the_benchmark_has_its_verdict():
     row = {"map": "hann", "method": "ca", "rate": 1e-3, "cells": 1000, "false_alarms": 1, "ratio": 1.0,
            "standard_error": 0.0}

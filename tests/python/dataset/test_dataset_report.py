@@ -10,6 +10,8 @@ import pytest
 from echopath import dataset
 from echopath.cli import main
 from echopath.dataset import report
+from echopath.dataset.statistics import _error_db
+from echopath.paths.resolution import Interval
 
 
 class _Page(HTMLParser):
@@ -86,3 +88,8 @@ def test_numbers_that_were_drawn_have_no_empty_axes_beside_them(monkeypatch):
 def test_each_writer_takes_the_opened_dataset(tmp_path, writer):
     with pytest.raises(TypeError, match="dataset: must be a Dataset of ep.dataset.open"):
         getattr(dataset, writer)(tmp_path, tmp_path / "out")
+
+
+@pytest.mark.parametrize("low, high, db", [(0.5, 1.25, 3.0103), (0.8, 4.0, 6.0206), (0.0, 1.5, float("inf"))])
+def test_an_interval_reaches_as_far_as_its_farther_side(low, high, db):
+    assert _error_db(Interval(1.0, low, high)) == pytest.approx(db, abs=1e-4)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.scene.sheets import passed_field
 from support.behind_sheets import (
     CHIRPS,
     FORMULA,
@@ -39,6 +40,23 @@ def test_a_slab_is_that_of_airy_at_all_angles():
     for one, other in ((found.te_reflection, r_te), (found.tm_reflection, r_tm), (found.te_transmission, t_te),
                        (found.tm_transmission, t_tm)):
         assert np.max(np.abs(one - other)) < FORMULA
+
+
+def test_at_brewsters_angle_a_slab_without_losses_passes_what_is_tm_whole():
+    """And of what is TE what Airy's sum leaves; both by their shares of the power, and on a way by where the field points."""
+    slab, angle = ep.Material(layers=[ep.Layer(0.3e-3, 4.0)]), np.arctan(2.0)
+    found = ep.sheet_coefficients(slab, frequency=FREQUENCY, incidence=angle)
+    phase = 2.0 * np.pi * FREQUENCY / ep.speed_of_light * 0.3e-3 * np.sqrt(4.0 - 0.8)
+    face = 0.6 ** 2  # of TE: (1 - 4) / (1 + 4), at this angle
+    of_te = (1.0 - face) ** 2 / abs(1.0 - face * np.exp(-2j * phase)) ** 2
+    for te_share in (0.0, 0.3, 1.0):
+        assert found.passed_power(te_share) == pytest.approx([te_share * of_te + 1.0 - te_share], rel=1e-9)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="slab", material=slab, yaw=angle)
+    for polarization, passed in (((0, 0, 1), of_te), ((0, 1, 0), 1.0), ((0, 3, 4), 0.36 + 0.64 * of_te)):
+        left = passed_field(scene, time=0.0, begin=np.array([-1.0, 0.1, 0.0]), end=np.array([1.0, 0.1, 0.0]), frequency=FREQUENCY,
+                            polarization=np.array(polarization, float) / np.linalg.norm(polarization))
+        assert left ** 2 == pytest.approx(passed, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["glass_pane", "painted_bumper", "plasterboard_wall", "wooden_door", "garment", "curtain",

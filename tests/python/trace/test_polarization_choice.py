@@ -125,3 +125,5 @@ def test_metal_walls_beside_upright_antennas_need_no_field_vectors():
     (effect,) = [one for one in ep.effects(scene, build_radar(transmitters=[slanted], receivers=[slanted]))
                  if one.name == "polarised fields"]
     assert effect.modelled and effect.reason == "flagged mirrors of metal whose normals lie along the polarisation: wall"
+    lying = ep.KeyframeMotion(times=[0.0, 1.0], translations=np.zeros((2, 3)), rotations=[[np.sqrt(0.5), np.sqrt(0.5), 0, 0]] * 2)
+    assert model_of(scene, build_radar(motion=lying)) == "jones"  # on its side, with upright fields of its own along the normal

@@ -1,6 +1,7 @@
 """Intervals of received powers hold the true value, and what the rays do not know is named, at most with what would help."""
 import csv
 import dataclasses
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -14,6 +15,8 @@ from echopath.bench.physics import targets
 from echopath.bench.physics.closed_forms import WAVELENGTH
 from echopath.cli import main, report
 from echopath.frame_file import LeftOut
+from echopath.paths.resolution import _times_the_rays, unmet_interval
+from echopath.paths.visibility import visibility_in_trace
 from support.radars import build_radar
 from support.scenes.coarse_bodies import coarse_bodies
 
@@ -355,3 +358,30 @@ def test_an_echo_whose_power_is_next_to_nothing_is_named_as_others_are():
     paths = paths_at(low)
     assert 0.0 < ep.received_power(paths).power < 3e-323
     assert [one.name for one in ep.unresolved(paths)] == ["plate"]
+
+
+@pytest.mark.parametrize("below_db, above_db, resolved", [(0.29, 0.29, True), (0.35, 0.0, False), (0.0, 0.35, False)])
+def test_a_power_is_resolved_that_is_known_to_three_tenths_of_a_decibel_on_either_side(below_db, above_db, resolved):
+    interval = ep.Interval(2e-9, 2e-9 * 10.0 ** (-0.1 * below_db), 2e-9 * 10.0 ** (0.1 * above_db))
+    assert interval.resolved is resolved
+
+
+@pytest.mark.parametrize("material, falls", [(ep.Material(reflectivity=0.5, scattering=1.0), 4.0), (ep.Material.metal(), 16.0)])
+def test_what_rays_may_have_missed_is_three_cells_of_theirs_large(material, falls):
+    """Four times the rays leave a quarter of the area, to which rough echoes go, and those of a mirror as its square."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(3.0, 3.0), name="plate", material=material, position=(20, 0, 0), yaw=np.pi)
+    radar = build_radar()
+    highs = []
+    for num_rays in (4000, 16000):
+        paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=1)
+        highs.append(unmet_interval(paths, visibility_in_trace(paths, radar)[0]).high)
+    assert highs[0] / highs[1] == pytest.approx(falls, rel=0.05)
+
+
+@pytest.mark.parametrize("bias, chance, times", [(0.0, 0.5, 100.0), (10.0, 0.5, 100.0), (30.0, 0.25, 30.0), (0.5, 0.01, 2.0)])
+def test_rays_that_resolve_a_power_mend_bias_as_their_number_and_chance_as_its_root(bias, chance, times):
+    """Both over what a resolved power may have, 10^0.03 - 1 of it; twice the standard error counts."""
+    wanted = 2e-9 * (10.0 ** 0.03 - 1.0)
+    power = SimpleNamespace(power=2e-9, low=1e-9, bias_of_rays=bias * wanted, chance=10.0 * chance * wanted)
+    assert _times_the_rays(power) == pytest.approx(times)

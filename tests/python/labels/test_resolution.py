@@ -379,6 +379,18 @@ def test_what_rays_may_have_missed_is_three_cells_of_theirs_large(material, fall
     assert highs[0] / highs[1] == pytest.approx(falls, rel=0.05)
 
 
+def test_no_more_can_have_been_missed_than_a_mirror_without_end_sends():
+    """By Friis over twice the distance, and the 36 m^2 that a rough plate of the size would have at most."""
+    scene, distance = ep.Scene(), 20.0
+    scene.add(ep.actors.plate(3.0, 3.0), name="plate", material=ep.Material.metal(), position=(distance, 0, 0), yaw=np.pi)
+    radar = build_radar()
+    paths = ep.trace(scene, radar, num_rays=100, max_bounces=1)
+    high = unmet_interval(paths, visibility_in_trace(paths, radar)[0]).high
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    of_mirror = radar.transmit_power * (wavelength / (4.0 * np.pi * 2.0 * distance)) ** 2
+    assert of_mirror < high < of_mirror * (1.0 + 37.0 / (np.pi * distance ** 2))
+
+
 @pytest.mark.parametrize("bias, chance, times", [(0.0, 0.5, 100.0), (10.0, 0.5, 100.0), (30.0, 0.25, 30.0), (0.5, 0.01, 2.0)])
 def test_rays_that_resolve_a_power_mend_bias_as_their_number_and_chance_as_its_root(bias, chance, times):
     """Both over what a resolved power may have, 10^0.03 - 1 of it; twice the standard error counts."""

@@ -174,3 +174,18 @@ def test_distances_are_those_of_the_nearest_triangles(seed):
     placed = corners @ linear.T + pose[:3, 3]
     expected = [distance_to_triangles(np.asarray(end), placed) for end in ends]
     assert [seen.transmitter.distance, seen.receiver.distance] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("hidden_end", ["transmitters", "receivers"])
+def test_an_object_is_seen_as_well_as_by_the_end_that_sees_less(hidden_end):
+    """A screen stands between one of both ends and a small plate."""
+    places = {"transmitters": (0.0, 0.0, 0.0), "receivers": (0.0, 4.0, 0.0)}
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.2, 0.2), name="plate", material="metal", position=(10, 0, 0), yaw=np.pi)
+    scene.add(ep.actors.plate(1.0, 1.0), name="screen", material="metal", yaw=np.pi,
+              position=0.7 * np.array([10.0, 0.0, 0.0]) + 0.3 * np.array(places[hidden_end]))
+    radar = ep.Radar(ep.ChirpSequence(), **{end: [ep.Antenna(place)] for end, place in places.items()})
+    (seen,) = ep.visibility(scene, radar, ["plate"])
+    assert seen.visible_share == 0.0 and set(seen.occluders) == {"screen"}
+    assert max(seen.transmitter.visible_share, seen.receiver.visible_share) == 1.0
+    assert seen.distance == pytest.approx(0.5 * (10.0 + np.hypot(10.0, 3.9)))

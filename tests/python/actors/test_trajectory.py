@@ -424,6 +424,14 @@ def test_changes_beyond_the_end_of_the_lane_are_refused(changes):
     assert lane.trajectory(speed=5.0, changes=[(20, 40, 2.0)]).position(1e3)[1] == pytest.approx(2.0)
 
 
+def test_changes_follow_each_other():
+    lane = ep.Lane([(0, 0), (60, 0)])
+    with pytest.raises(ValueError, match="^changes: must be rows .*, each behind the one before, got"):
+        lane.trajectory(speed=5.0, changes=[(10, 20, 2.0), (25, 10, 0.0)])
+    both = lane.trajectory(speed=5.0, changes=[(10, 20, 2.0), (30, 10, 0.5)])
+    assert both.position(1e3)[1] == pytest.approx(0.5)
+
+
 def test_offsets_beyond_the_middle_of_a_curve_are_refused():
     with pytest.raises(ValueError, match="offset: .*radius"):
         ep.Lane([(0, 0), (40, 0), (40, 40)], turn_radius=5.0).trajectory(speed=5.0, offset=6.0)

@@ -424,6 +424,19 @@ def test_changes_beyond_the_end_of_the_lane_are_refused(changes):
     assert lane.trajectory(speed=5.0, changes=[(20, 40, 2.0)]).position(1e3)[1] == pytest.approx(2.0)
 
 
+def test_the_largest_radius_between_two_turns_is_told():
+    """Each right angle takes its radius of the 10 m between them."""
+    with pytest.raises(ValueError, match=r"turn_radius: must fit between points\[1\] .* where 5 m is the largest, got 6"):
+        ep.Trajectory([(0, 0), (20, 0), (20, 10), (40, 10)], speed=5.0, turn_radius=6.0)
+
+
+def test_between_places_of_a_table_the_acceleration_is_constant_beside_other_limits():
+    """Mean of both speeds over 100 m."""
+    for limits in ({}, {"lateral_acceleration": 3.0}):
+        drive = ep.Trajectory([(0, 0), (100, 0)], speed=[(0, 2.0), (100, 10.0)], **limits)
+        assert drive.end - drive.begin == pytest.approx(100.0 / 6.0, rel=1e-9)
+
+
 def test_changes_follow_each_other():
     lane = ep.Lane([(0, 0), (60, 0)])
     with pytest.raises(ValueError, match="^changes: must be rows .*, each behind the one before, got"):

@@ -66,5 +66,14 @@ def code_signal(separate: np.ndarray, code: np.ndarray, real: bool, whole: np.nd
     Returns [1, rx, slots, sample] in sqrt(W).
     """
     turns = real and np.any(code.imag)
-    sent = np.einsum("trks,tk->rks", continued(separate, whole) if turns else separate, code, optimize=True)[None]
+    sent = _summed(continued(separate, whole) if turns else separate, code)[None]
     return as_samples(sent, real) if turns else sent
+
+
+def _summed(separate: np.ndarray, code: np.ndarray) -> np.ndarray:
+    """Adds up all transmitters, each times its code: [rx, slots, sample]. One at a time needs no copy of all of them."""
+    sent = np.zeros(separate.shape[1:], np.complex128)
+    turned = np.empty_like(sent)
+    for alone, phases in zip(separate, code):
+        sent += np.multiply(alone, phases[:, None], out=turned)
+    return sent

@@ -69,8 +69,10 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
 def _check_times(times, detections) -> None:
     if len(times) != len(detections):
         raise ValueError(f"times: must have one for each of the {len(detections)} frames of detections, got {len(times)}")
-    if np.any(np.diff(times) <= 0.0):
-        raise ValueError(f"times: must ascend, got {times}")
+    late = np.flatnonzero(np.diff(times) <= 0.0)
+    if len(late):
+        raise ValueError(f"times: must ascend, with all points of one time in one frame, got {times[late[0] + 1]:g} after "
+                         f"{times[late[0]]:g}")
 
 
 def _check_truth(truth: Truth | None, times) -> None:

@@ -409,7 +409,7 @@ def test_tracks_become_a_table():
 
 @pytest.mark.parametrize("arguments, told", [
     ({"times": [0.0]}, "times: must have one for each of the 2 frames of detections, got 1"),
-    ({"times": [1.0, 1.0]}, "times: must ascend"),
+    ({"times": [1.0, 1.0]}, "times: must ascend, with all points of one time in one frame, got 1 after 1"),
     ({"detections": [np.zeros((1, 4)), []]}, "detections: must be an array"), ({"range_std": 0.0}, "range_std: must be"),
     ({"truth": 3}, "truth: must be a Truth")])
 def test_wrong_arguments_are_named(arguments, told):

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "cpp/support/any_threads.h"
+#include "cpp/support/sanitized.h"
 #include "echopath/spectrum/angle/estimate_angles.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"
@@ -217,6 +219,26 @@ TEST(EstimateAngles, DoesNotDependOnTheNumberOfThreads) {
     const AngleEstimates found = estimate_angles(map, radar, cells, search_grid(radar));
     return std::pair(found.azimuth, found.power);
   });
+}
+
+// Bytes of memory that the process had in use at most, so far.
+int64_t peak_memory() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return int64_t{usage.ru_maxrss} * 1024;
+}
+
+// An imaging radar of 48 x 48 antennas has 1.6 GB of such phases; copies of them would fill a common machine.
+TEST(EstimateAngles, PhasesOfAllDirectionsAreKeptOnce) {
+  if (test::kIsSanitized) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  const Radar radar = plane_radar(20, 20);
+  RangeDoppler map = testing::empty_map(radar);
+  testing::add_wave(map, radar, direction(0.2, 0.1), 1.0, 3, 2);
+  const AngleGrid grid = search_grid(radar);
+  const double phases = 16.0 * 400.0 * static_cast<double>(grid.azimuth.size() * grid.elevation.size());
+  const int64_t before = peak_memory();
+  EXPECT_EQ(estimate_angles(map, radar, {{3, 2}}, grid, {}).cell.size(), 1u);
+  EXPECT_LT(static_cast<double>(peak_memory() - before), 1.4 * phases);
 }
 
 TEST(EstimateAngles, NoCellsGiveNoEstimates) {

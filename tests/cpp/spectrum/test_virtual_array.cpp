@@ -225,7 +225,7 @@ TEST(DefaultAngles, AreThereUpToTwoHundredThousand) {
 TEST(SteeringVectors, AreRefusedWhereTheyWouldFillTheMemory) {
   const VirtualArray pair = virtual_array(radar_with({Vec3::Zero()}, line(2, Vec3(0, kHalf, 0))));
   const std::vector<double> axis(10'000, 0.0);
-  EXPECT_THROW(steering_vectors(pair, AngleGrid{axis, axis}), std::invalid_argument);
+  EXPECT_THROW(beam_directions(pair, AngleGrid{axis, axis}), std::invalid_argument);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "echopath/base/lanes/simd.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 constexpr int kColumns = BeamKernel::kColumns;
 constexpr int kElements = 4;    // added per pass over the columns
 constexpr int kFewColumns = 4;  // fewer do not fill a block
+// Counts the directions whose steering vectors are there at a time besides those that are kept.
+constexpr int64_t kDirectionsAtATime = 256;
 
 // Adds four elements, each times its weight, to `out`.
 ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_im, const double* re, const double* im,
@@ -50,13 +53,23 @@ ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, Sp
 
 }  // namespace
 
-BeamKernel::BeamKernel(const Eigen::MatrixXcd& steering)
-    : steering_(steering), padded_((steering.rows() + kElements - 1) / kElements * kElements),
-      re_(steering.cols() * padded_), im_(steering.cols() * padded_) {
-  for (int64_t d = 0; d < num_directions(); ++d) {
-    for (int64_t e = 0; e < num_elements(); ++e) {
-      re_[d * padded_ + e] = steering(e, d).real();
-      im_[d * padded_ + e] = -steering(e, d).imag();
+BeamKernel::BeamKernel(const VirtualArray& array, const std::vector<Vec3>& directions)
+    : num_elements_(std::ssize(array.elements)), num_directions_(std::ssize(directions)),
+      padded_((num_elements_ + kElements - 1) / kElements * kElements), re_(num_directions_ * padded_),
+      im_(num_directions_ * padded_) {
+  const auto set = [&](int64_t begin, int64_t end) {
+    set_rows(begin, steering_vectors(array, {directions.begin() + begin, directions.begin() + end}));
+  };
+  if (num_directions_ > kDirectionsAtATime) parallel_for_chunks(num_directions_, kDirectionsAtATime, set);
+  else set(0, num_directions_);
+}
+
+void BeamKernel::set_rows(int64_t first, const Eigen::MatrixXcd& steering) {
+  for (int64_t d = 0; d < steering.cols(); ++d) {
+    const int64_t row = (first + d) * padded_;
+    for (int64_t e = 0; e < num_elements_; ++e) {
+      re_[row + e] = steering(e, d).real();
+      im_[row + e] = -steering(e, d).imag();
     }
   }
 }
@@ -74,10 +87,19 @@ void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, 
                                  SplitComplex{re.data(), im.data()}, combine, power.data());
 }
 
+Eigen::MatrixXd BeamKernel::squares_of_few(const Eigen::MatrixXcd& columns) const {
+  const Eigen::MatrixXd re = columns.real(), im = columns.imag();
+  const auto weights_re = rows(re_).leftCols(num_elements_), weights_im = rows(im_).leftCols(num_elements_);
+  Eigen::MatrixXd out_re = weights_re * re, out_im = weights_re * im;
+  out_re.noalias() -= weights_im * im;
+  out_im.noalias() += weights_im * re;
+  return out_re.cwiseAbs2() + out_im.cwiseAbs2();
+}
+
 Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, Combine combine, const Job* job) const {
   const bool is_sum = combine == Combine::kSum;
   if (columns.cols() < kFewColumns) {
-    const Eigen::MatrixXd squares = (steering_.adjoint() * columns).cwiseAbs2();
+    const Eigen::MatrixXd squares = squares_of_few(columns);
     return is_sum ? Eigen::VectorXd(squares.rowwise().sum()) : Eigen::VectorXd(squares.rowwise().maxCoeff());
   }
   std::vector<double> squares(num_directions() * kColumns);

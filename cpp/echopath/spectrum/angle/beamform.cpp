@@ -53,7 +53,7 @@ BeamKernel::Powers capon_strip(const BeamSource& source, const BeamKernel& beams
 // Returns the powers [directions, num_cells].
 std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, BeamMethod method,
                            const std::vector<Strip>& strips, int64_t num_cells, Job* job) {
-  const BeamKernel beams(steering_vectors(source.array(), angles));
+  const BeamKernel beams(source.array(), beam_directions(source.array(), angles));
   std::vector<double> power(beams.num_directions() * num_cells);
   if (job) job->start(std::ssize(strips));
   parallel_for(std::ssize(strips), [&](int64_t task) {

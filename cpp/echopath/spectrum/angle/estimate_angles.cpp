@@ -40,7 +40,8 @@ struct CellPeaks {
 class PeakSearch {
  public:
   PeakSearch(const BeamSource& source, const AngleGrid& angles, const EstimateOptions& options)
-      : source_(source), angles_(angles), options_(options), beams_(steering_vectors(source.array(), angles)) {}
+      : source_(source), angles_(angles), options_(options),
+        beams_(source.array(), beam_directions(source.array(), angles)) {}
 
   // `beside`: by how much the echo is faster than its cell, in spans of the velocity axis.
   CellPeaks find(const Cell& cell, double beside) const {
@@ -175,7 +176,7 @@ class PeakSearch {
     peak.azimuth = std::clamp(peak.azimuth + across, angles_.azimuth.front(), angles_.azimuth.back());
     peak.elevation = std::clamp(peak.elevation + up, angles_.elevation.front(), angles_.elevation.back());
     const Vec3 toward = direction(peak.azimuth, peak.elevation);
-    peak.power = beam.power(BeamKernel(steering_vectors(source_.array(), {toward})))[0];
+    peak.power = beam.power(BeamKernel(source_.array(), {toward}))[0];
     return peak;
   }
 

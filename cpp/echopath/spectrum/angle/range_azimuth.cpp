@@ -93,7 +93,7 @@ RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const An
   if (choice.velocity) result.velocity = map.velocity[rows.begin];
   const bool is_sum = !choice.velocity && choice.combine == Combine::kSum;
   const double scale = is_sum ? share_of_sum(map, radar.waveform.num_chirps) : 1.0;
-  const BeamKernel beams(steering_vectors(source.array(), angles));
+  const BeamKernel beams(source.array(), beam_directions(source.array(), angles));
   const Picture picture{source, beams, rows, choice.velocity.has_value(), choice.combine, job};
   const int64_t num_ranges = std::ssize(map.range);
   const int64_t num_azimuths = std::ssize(angles.azimuth);

@@ -17,7 +17,7 @@ constexpr double kTellingExtent = 0.1;           // wavelengths; directions of l
 constexpr double kEndfire = 0.1;                 // sine between an array's line and the boresights along it
 constexpr double kAligned = 0.01;                // rad, off the direction across its line: antennas that look that way
 constexpr double kMostSteps = 1e5;               // of a default axis, to either side
-constexpr double kMostTerms = 134217728.0;       // of steering vectors: 4 GiB with the copy that beams are formed from
+constexpr double kMostTerms = 134217728.0;       // of steering vectors: 2 GiB
 
 void require_axis(const std::vector<double>& axis, const char* name, double limit, const char* rule) {
   require(!axis.empty(), name, "must have at least one angle", axis.size());
@@ -129,12 +129,12 @@ std::vector<double> default_elevations(const VirtualArray& array, double largest
   return angles_of(elevation_axis(array, largest_step), 0.0, "elevation", array.extent().z());
 }
 
-Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles) {
+std::vector<Vec3> beam_directions(const VirtualArray& array, const AngleGrid& angles) {
   const double terms = static_cast<double>(array.elements.size()) * static_cast<double>(angles.azimuth.size()) *
                        static_cast<double>(angles.elevation.size());
   require(terms <= kMostTerms, "azimuth, elevation", "must have at most 134,217,728 directions times elements of the array",
           terms);
-  return steering_vectors(array, angles.directions());
+  return angles.directions();
 }
 
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions) {

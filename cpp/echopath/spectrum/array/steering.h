@@ -36,8 +36,9 @@ bool tells_elevations(const VirtualArray& array);
 // Returns e^{-j k (x - centre).u} [elements, directions], for the far field, exact positions and the centre frequency's
 // wavelength.
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions);
-// Returns steering vectors for the directions of a grid. Raises invalid_argument where elements times directions pass 2^27.
-Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles);
+// Returns the directions of a grid, for beams of an array. Raises invalid_argument where elements times directions pass
+// 2^27.
+std::vector<Vec3> beam_directions(const VirtualArray& array, const AngleGrid& angles);
 
 // Returns weights [elements] of a window over the rows and the columns of the array's grid, whose sum is 1. Here windows are
 // symmetric and nowhere zero: cosines are sampled half-way between the steps.

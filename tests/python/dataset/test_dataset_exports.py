@@ -108,6 +108,18 @@ def test_the_same_call_goes_on_after_a_kill(made, tmp_path, name):
         write(name, dataset.open(made["all"]), tmp_path / "out")
 
 
+def test_frames_of_one_chirp_tell_no_velocity_over_ground(tmp_path):
+    """A target at rest beside a radar at 4 m/s is not said to move: all velocities look the same to one chirp."""
+    text = TEMPLATE.format(keep="all", walker=BOX.replace("speed = -1.0", "")).replace("num_chirps = 64", "num_chirps = 1")
+    (tmp_path / "still.toml").write_text(text.replace("[radar.waveform]", "[radar]\nspeed = 4.0\n[radar.waveform]"))
+    list(dataset.make(tmp_path / "still.toml", tmp_path / "made"))
+    dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    with h5py.File(tmp_path / "out" / "data" / "sequence_1" / "radar_data.h5") as file:
+        points, ground = file["radar_data"][:], file["odometry"][:]
+    assert len(points) >= 2 and ground["vx"] == pytest.approx(4.0)
+    assert not points["vr"].any() and not points["vr_compensated"].any()
+
+
 def test_remade_frames_go_to_other_processes(made):
     frames = dataset.open(made["labels"]).remade()
     first = frames[0].frame.cube

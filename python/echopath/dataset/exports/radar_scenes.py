@@ -73,10 +73,10 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
     the radar equation with the gains of the first antennas, not finite for leakage at 0 m), vr and vr_compensated (m/s, receding
     positive; the second without the radar's own motion, the smallest of those that look the same, with `folds` in [detections]
-    to the transmitters in turns), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
-    clutter), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its
-    class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its
-    object.
+    to the transmitters in turns; 0 of frames of one chirp, to which all do), x_cc, y_cc (m, car frame), x_seq, y_seq (m,
+    world), uuid, track_id ("" of what is static or clutter), label_id; and behind them ghost_label, the label of the Radar
+    Ghost Dataset (Kraus et al. 2021): 1000 times its class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the
+    background. A ghost has the track and the label_id of its object.
     Ranges and azimuths count from where sensors.json has the sensor in the car: between transmitters and receivers
     (`Detections.centre`). odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame, and
     behind them vy (m/s), which is not 0 where the radar's frame does not look to where it drives: x_cc is ahead of the car
@@ -140,7 +140,8 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
     rows["rcs"] = cross_sections_dbsm(found, radar, time)
     rows["vr"] = found.velocity
-    rows["vr_compensated"] = folded(found.velocity - _own_velocity(found, pose), ambiguity)
+    if radar.waveform.num_chirps > 1:  # else all velocities look the same, of which 0 is the smallest
+        rows["vr_compensated"] = folded(found.velocity - _own_velocity(found, pose), ambiguity)
     rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
     rows["uuid"] = [_identity(number, index) for index in range(len(found))]
     rows["track_id"] = ["" if kind == "static" else _identity(scene, name) for kind, name in zip(kinds, found.object)]

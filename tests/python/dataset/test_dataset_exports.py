@@ -44,6 +44,7 @@ num_rays = 1000
 """
 PERSON = 'actor = "pedestrian"'
 BOX = 'actor = "box"\nparameters = {size = [0.4, 0.4, 1.7]}\nmaterial = "metal"\nspeed = -1.0'  # one mesh: its files are short
+BALL = 'actor = "sphere"\nparameters = {radius = 0.5}\nmaterial = "metal"\nsmooth = true'
 EXPORTS = {"carrada": "Carrada", "radar_scenes": "data", "osi": "traces"}  # module: folder that it writes
 ENDED = """
 import os, sys
@@ -110,13 +111,13 @@ def test_the_same_call_goes_on_after_a_kill(made, tmp_path, name):
 
 def test_frames_of_one_chirp_tell_no_velocity_over_ground(tmp_path):
     """A target at rest beside a radar at 4 m/s is not said to move: all velocities look the same to one chirp."""
-    text = TEMPLATE.format(keep="all", walker=BOX.replace("speed = -1.0", "")).replace("num_chirps = 64", "num_chirps = 1")
+    text = TEMPLATE.format(keep="all", walker=BALL).replace("num_chirps = 64", "num_chirps = 1")
     (tmp_path / "still.toml").write_text(text.replace("[radar.waveform]", "[radar]\nspeed = 4.0\n[radar.waveform]"))
     list(dataset.make(tmp_path / "still.toml", tmp_path / "made"))
     dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
     with h5py.File(tmp_path / "out" / "data" / "sequence_1" / "radar_data.h5") as file:
         points, ground = file["radar_data"][:], file["odometry"][:]
-    assert len(points) >= 2 and ground["vx"] == pytest.approx(4.0)
+    assert len(points) > 0 and ground["vx"] == pytest.approx(4.0)
     assert not points["vr"].any() and not points["vr_compensated"].any()
 
 

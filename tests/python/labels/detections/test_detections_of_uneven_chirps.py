@@ -39,6 +39,32 @@ def test_the_field_of_a_single_path_is_that_of_its_signal_at_all_velocities(slot
             np.testing.assert_allclose(turn * model, exact, rtol=0.0, atol=MODEL * np.abs(values).max())
 
 
+# Place in m, velocity in m/s, changes of the waveform: 90 m/s^2 outward turn the phase by 1.4 cycles between the middle of the
+# frame and its ends; slopes that differ by 1.3 % turn it by 14 degrees at 106 m.
+LONG_WAYS = {"speeds up": ((10.0, 0.0, 0.0), (0.0, 30.0, 0.0), SLOTS["staggered"]),
+             "far": ((106.0, 4.0, 0.0), (20.0, 0.0, 0.0), dict(bandwidth=1.5e8, bandwidth_steps=(0.0, 2e6)))}
+
+
+@pytest.mark.parametrize("place, velocity, changes", LONG_WAYS.values(), ids=LONG_WAYS)
+def test_the_field_of_what_speeds_up_or_is_far_is_that_of_its_signal(place, velocity, changes):
+    radar = with_waveform(radar_with(receivers=1, transmitters=2, num_chirps=128, chirp_interval=60e-6), **changes)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material=lambert(0.3), position=place,
+              motion=ep.LinearMotion(velocity=velocity))
+    paths = ep.trace(scene, radar, num_rays=300, max_bounces=1)
+    spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar)
+    echoes, chosen = echo_fields(paths, spectrum), np.argmax(np.abs(paths.amplitude))
+    alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == chosen), radar, method="direct")
+    values = ep.range_doppler(alone, radar).values.reshape(2, *spectrum.values.shape[2:])
+    far = cells_of(paths, spectrum).range_index[chosen]
+    cells = [(row, far + beside) for row in range(0, values.shape[1], 3) for beside in (0, 1, 2)]
+    exact = np.array([values[:, *cell] for cell in cells])
+    model = np.array([field[:, index == chosen].sum(axis=1) for index, field in map(echoes.fields, cells)])
+    turns = np.sum(model.conj() * exact, axis=1, keepdims=True)  # of both fields of a cell: where samples begin
+    np.testing.assert_allclose(model * turns / np.maximum(np.abs(turns), 1e-300), exact, rtol=0.0,
+                               atol=MODEL * np.abs(values).max())
+
+
 @pytest.mark.parametrize("slots", SLOTS.values(), ids=SLOTS)
 def test_detections_have_the_strongest_family_of_their_cells_and_the_paths_behind_them(slots):
     scene = ep.Scene()

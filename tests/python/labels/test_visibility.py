@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.paths.visibility import _KEPT, appearing_in_frame, visibility_in_trace
+from echopath.paths.visibility import _KEPT, FRAME_PLACES, appearing_in_frame, visibility_in_trace
 from echopath.tracing.traces import keep_geometry
 from support.radars import build_radar
 
@@ -103,6 +103,23 @@ def test_what_appears_within_a_frame_leaves_the_next_trace_as_it_is():
     for one, other in ((paths.mesh_id, again.mesh_id), (paths.u, again.u), (paths.v, again.v)):
         np.testing.assert_array_equal(one, other)
     np.testing.assert_array_equal(again.weight, paths.weight)
+
+
+@pytest.mark.parametrize("width, appears", [(0.05, True), (0.01, False)])
+@pytest.mark.parametrize("share", FRAME_PLACES)
+def test_what_a_gap_shows_at_one_place_of_the_frame_appears(share, width, appears):
+    """A gap that passes at 400 m/s shows 1/6 of a plate at one place that is looked at, and nothing at others; of a narrow one
+    3 % are no sight. Its shadow at the plate's distance is 10/6 as wide."""
+    radar = build_radar(num_samples=16, sampling_rate=1e6, num_chirps=256)
+    middle, scene = -400.0 * share * radar.frame_duration, ep.Scene()
+    for name, (begin, end) in {"left": (-30.0, middle - 0.5 * width), "right": (middle + 0.5 * width, 30.0)}.items():
+        scene.add(ep.actors.plate(end - begin, 2.0), name=name, material="metal", position=(6.0, 0.5 * (begin + end), 0.0),
+                  motion=ep.LinearMotion(velocity=(0.0, 400.0, 0.0)))
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(10.0, 0.0, 0.0))
+    (seen,) = ep.visibility(scene, radar, {"plate": "plate"}, time=share * radar.frame_duration)
+    assert seen.visible_share == pytest.approx(width * (10.0 / 6.0) / 0.5, abs=0.004)
+    paths = ep.trace(scene, radar, num_rays=100)
+    assert appearing_in_frame(paths, radar, {"plate"}) == ({"plate"} if appears else set())
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.001, -0.004, 0.05, 0.5])

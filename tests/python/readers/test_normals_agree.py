@@ -85,6 +85,16 @@ def usda() -> bytes:
     return f'#usda 1.0\n(\n    metersPerUnit = 1\n    upAxis = "Z"\n)\n{mesh}'.encode()
 
 
+def usda_with_dropped_faces() -> bytes:
+    """The same behind an edge and a hole, which are no faces, and whose normals tell nothing."""
+    text, counts = usda().decode(), "    int[] faceVertexCounts = ["
+    more = {counts: "2, 3, ", "faceVertexIndices = [": "0, 1, 3, 9, 30, ",
+            "normals = [": "(1, 0, 0), (0, 0, -1), (0, 0, 1), (0, -1, 0), (-1, 0, 0), "}
+    for name, values in more.items():
+        text = text.replace(name, name + values, 1)
+    return text.replace(counts, f"    int[] holeIndices = [1]\n{counts}").encode()
+
+
 def write_all(folder) -> list:
     files = {"normals.obj": obj_normals, "groups.obj": obj_groups, "tin.ply": ply, "tin.glb": glb, "tin.usda": usda}
     for name, content in files.items():
@@ -127,6 +137,18 @@ def test_normals_of_every_format_make_the_same_smooth_surface_with_the_same_edge
         model = ep.load_model(path, materials={"*": ROUGH})
         assert [node.smooth for node in model.nodes] == [True], path.name
         assert_same(path.name, echoes(model), expected)
+
+
+def test_normals_of_faces_that_are_dropped_are_dropped_with_them(tmp_path):
+    meshes = []
+    for name, content in (("whole", usda), ("more", usda_with_dropped_faces)):
+        (tmp_path / f"{name}.usda").write_bytes(content())
+        (node,) = ep.load_model(tmp_path / f"{name}.usda", materials={"*": ROUGH}).nodes
+        meshes.append((node.mesh.vertices, node.mesh.triangles, node.smooth))
+    rings = 4 * AROUND + AROUND + 1  # sides and lid are cut from the shoulder, so that its two rings are there twice
+    for ours, theirs in zip(*meshes):
+        np.testing.assert_array_equal(ours, theirs)
+    assert len(meshes[1][0]) == rings and meshes[1][2]
 
 
 def test_a_mitsuba_shape_may_ask_for_facets(tmp_path):

@@ -299,6 +299,22 @@ def test_a_wall_whose_middle_is_hidden_has_the_share_of_the_shadow(radar):
     assert told.loss_db == pytest.approx(10.0 * np.log10(told.hidden_share * level / told.power), abs=0.5)
 
 
+def test_the_level_of_a_tilted_plate_is_that_of_its_own_edges(radar):
+    """First order of edge theory for waves along the upright edges (Ross 1966), seven times the level of the face alone here."""
+    side, tilt, place = 0.05, 0.8, np.array((30.0, -2.6, 1.0))
+    scene = ep.Scene()
+    building(scene)
+    scene.add(ep.actors.plate(side, side), name="plate", material="metal", position=place,
+              yaw=tilt - np.arctan2(2.6, 30.0))
+    told = next(one for one in ep.around_corners(scene, radar, num_rays=20_000) if one.name == "plate")
+    assert told.hidden_share == 1.0 and told.resolved
+    wavelength = 299792458.0 / radar.waveform.centre_frequency
+    turn = 2.0 * np.pi / wavelength * side * np.sin(tilt)
+    section = side ** 2 / np.pi * (np.cos(turn) ** 2 + (np.sin(turn) / np.sin(tilt)) ** 2)
+    level = radar.transmit_power * wavelength ** 2 * section / ((4.0 * np.pi) ** 3 * np.hypot(*place[:2]) ** 4)
+    assert 10.0 * np.log10(told.power / level) + told.loss_db == pytest.approx(0.0, abs=0.5)  # edges of 7 wavelengths
+
+
 def test_channels_differ_by_the_lengths_of_their_ways():
     """A speck that drives away behind the corner, seen by two transmitters in turn and two receivers: about the upright edge the
     ways are straight when its two sides are laid flat."""

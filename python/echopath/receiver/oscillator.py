@@ -6,8 +6,9 @@ filter that turns frequency f by pi f^2 / slope brings each beat frequency forwa
 opposite all echoes are multiplied by one function m, which has gone through the filter too: a tone f then comes out as
 m(t - f / slope) times the tone, exactly. All delays cost a few transforms of a chirp.
 
-A chirp of N samples is worked on at twice its sampling rate, over two of its durations: the signal repeats, and the
-oscillator has its past in the first half, which is bent so that it goes on from the end of the second.
+A chirp of N samples is worked on at P times its sampling rate, over two of its durations: the signal repeats, and the
+oscillator has its past in the first half, which is bent so that it goes on from the end of the second. P is 2, and more where
+frequency errors are large: what they make of the band must not fold, or its delays were others.
 """
 from __future__ import annotations
 
@@ -24,6 +25,7 @@ SLOTS_AT_ONCE = 16
 _LINES_THAT_GO_ON = 10
 _MANY_SLOW_LINES = 1 << 15  # of a frame, beyond which fewer of a chirp go on: idle times between chirps fold them all alike
 _MOST_SLOW_LINES = 1 << 21  # of which a frame has its noise in a gigabyte
+_LARGEST_ERROR = 31.0  # sampling rates, of the frequency within a chirp: P is 64 then
 _OVERSAMPLING = 32  # of the slow part of the phase noise, which is interpolated by straight lines
 
 
@@ -40,7 +42,9 @@ class Oscillator:
         self.is_ideal = self._noise is None and not self._error
         self._count = radar.waveform.num_samples
         if not self.is_ideal:
-            self._phase = self._phases(generator)  # [T, C or 1, 4 N], rad
+            self._rate = self._times_sampling_rate()
+            self._size = 2 * self._rate * self._count
+            self._phase = self._phases(generator)  # [T, C or 1, 2 P N], rad
 
     def mixed(self, cube: np.ndarray) -> np.ndarray:
         """The cube [T, rx, C, sample] with what the oscillator does to the echoes in it, by their beat frequencies."""
@@ -53,7 +57,7 @@ class Oscillator:
     def leaked(self, delay: float) -> np.ndarray:
         """An echo of a delay (s) and amplitude 1 with what it does to it: complex, as a cube takes it, [T, 1, C or 1, sample].
         What the filter before the converter cuts off is missing."""
-        frequency = np.fft.fftfreq(4 * self._count, 0.5 / self._waveform.sampling_rate)
+        frequency = self._line_distance * _lines(self._size)
         past = np.fft.ifft(np.fft.fft(np.exp(-1j * self._phase)) * np.exp(-2j * np.pi * frequency * delay))
         # The tone does not repeat as the oscillator does: a filter would make a line at the edge of the band of its step.
         beat = self._slots.slope[..., None] * delay
@@ -62,8 +66,8 @@ class Oscillator:
         return (leaked_tone(self._waveform, self._slots, delay, time) * turn)[:, None]
 
     def _of_pieces(self, cube, work) -> np.ndarray:
-        """A cube whose chirps are worked on some at a time: work(spectrum [rx, C, 4 N], phase [C or 1, 4 N] in rad, slope
-        [C or 1, 1] in Hz/s) -> signal [rx, C, 4 N]"""
+        """A cube whose chirps are worked on some at a time: work(spectrum [rx, C, 2 P N], phase [C or 1, 2 P N] in rad, slope
+        [C or 1, 1] in Hz/s) -> signal [rx, C, 2 P N]"""
         made = np.empty(cube.shape, np.complex128)
         for tx in range(cube.shape[0]):
             for begin in range(0, cube.shape[2], SLOTS_AT_ONCE):
@@ -74,31 +78,32 @@ class Oscillator:
         return made
 
     def _spectrum(self, chirps):
-        """Of chirps [rx, C, N], sent twice, at twice the sampling rate, [rx, C, 4 N]."""
+        """Of chirps [rx, C, N], sent twice, at P times the sampling rate, [rx, C, 2 P N]."""
         cells, signed = _cells(self._count, self._waveform.real)
-        spectrum = np.zeros((*chirps.shape[:-1], 4 * self._count), np.complex128)
-        spectrum[..., 2 * signed] = 4.0 * np.fft.fft(analytic(chirps, self._waveform.real))[..., cells]
+        spectrum = np.zeros((*chirps.shape[:-1], self._size), np.complex128)
+        spectrum[..., 2 * signed] = 2.0 * self._rate * np.fft.fft(analytic(chirps, self._waveform.real))[..., cells]
         return spectrum
 
     def _mixed_chirps(self, spectrum, phase, slope):
-        frequency = np.fft.fftfreq(4 * self._count, 0.5 / self._waveform.sampling_rate)
-        forward = np.exp(1j * np.pi / slope * frequency ** 2)
-        common = np.fft.ifft(np.fft.fft(np.exp(-1j * phase)) * forward)
-        return np.fft.ifft(np.fft.fft(np.fft.ifft(spectrum * forward) * common) / forward) * np.exp(1j * phase)
+        highest = self._size // 2 + self._middle
+        forward = np.exp(1j * np.pi / slope * (self._line_distance * np.arange(highest + 1)) ** 2)
+        of_phase, of_band = (forward[..., np.abs(_lines(self._size, middle))] for middle in (0, self._middle))
+        common = np.fft.ifft(np.fft.fft(np.exp(-1j * phase)) * of_phase)
+        return np.fft.ifft(np.fft.fft(np.fft.ifft(spectrum * of_band) * common) / of_band) * np.exp(1j * phase)
 
     def _passed(self, signal, beat=0.0):
-        """The second half of [..., 4 N] at the sampling rate, complex, without what lies outside the band once it is turned by a
-        beat frequency in Hz, a number or [..., 1]."""
+        """The second half of [..., 2 P N] at the sampling rate, complex, without what lies outside the band once it is turned by
+        a beat frequency in Hz, a number or [..., 1]."""
         count = self._count
-        line = np.fft.fftfreq(4 * count, 0.25 / count) + beat / self._line_distance
+        line = _lines(self._size) + beat / self._line_distance
         # A mixer of real samples folds what lies below 0, and its filter is as wide there.
         lowest = 1 - count if self._waveform.real else -2 * int(count * NEGATIVE_SHARE)
         in_band = (line >= lowest) & (line < lowest + 2 * count)
-        return np.fft.ifft(np.fft.fft(signal) * in_band)[..., 2 * count::2]
+        return np.fft.ifft(np.fft.fft(signal) * in_band)[..., self._rate * count::self._rate]
 
     def _phases(self, generator) -> np.ndarray:
-        time, count = self._time, self._count
-        phase = np.zeros((self._slots.begin.shape[0], 1, 4 * count))
+        time = self._time
+        phase = np.zeros((self._slots.begin.shape[0], 1, self._size))
         for power, coefficient in enumerate(self._error):
             phase = phase + 2.0 * np.pi * coefficient * time ** (power + 1) / (power + 1)
         if self._noise is not None:
@@ -106,15 +111,39 @@ class Oscillator:
         phase = _bent(phase, self._past(time))
         return phase if self._noise is None else phase + self._fast_noise(generator)
 
+    def _times_sampling_rate(self) -> int:
+        """P: even, so that the band and the largest frequency error on both sides of it find room. Raises ValueError for one
+        that takes too many samples."""
+        sampling_rate = self._waveform.sampling_rate
+        duration = self._count / sampling_rate
+        time = np.linspace(-min(self._longest_past, duration), duration, 2 * self._count + 2)
+        largest = float(np.abs(np.polynomial.polynomial.polyval(time, self._error or (0.0,))).max())
+        most = _LARGEST_ERROR * sampling_rate
+        if largest > most:
+            raise ValueError(f"receiver.frequency_error: must be at most {most:.4g} Hz within a chirp of this sampling rate, got "
+                             f"{largest:.4g} Hz")
+        highest = 1.0 - NEGATIVE_SHARE - 0.5 * self._middle / self._count
+        return 2 * int(np.ceil(highest + largest / sampling_rate))
+
+    @property
+    def _middle(self) -> int:
+        """The line about which those of the turned band lie: errors find as much room below the band as above it, and noise
+        below the nearest echoes, of which it leaves least, as above them."""
+        return 0 if self._noise is not None else int(self._count * (1.0 - 2.0 * NEGATIVE_SHARE))
+
     @property
     def _time(self) -> np.ndarray:
-        """[4 N] s after the first sample, which is in the middle."""
-        return (np.arange(4 * self._count) - 2 * self._count) * 0.5 / self._waveform.sampling_rate
+        """[2 P N] s after the first sample, which is in the middle."""
+        return (np.arange(self._size) - self._rate * self._count) / (self._rate * self._waveform.sampling_rate)
 
     def _past(self, time) -> int:
         """Index of the first sample of the past that an echo can have come from."""
-        longest = self._waveform.sampling_rate / np.min(self._slots.slope)
-        return int(np.clip(np.searchsorted(time, -1.25 * longest) - 2, 2, 2 * self._count))
+        return int(np.clip(np.searchsorted(time, -self._longest_past) - 2, 2, self._rate * self._count))
+
+    @property
+    def _longest_past(self) -> float:
+        """s, a quarter more than the longest delay of an echo in the band."""
+        return 1.25 * self._waveform.sampling_rate / np.min(self._slots.slope)
 
     @property
     def _line_distance(self) -> float:
@@ -133,11 +162,10 @@ class Oscillator:
         return int(min(_LINES_THAT_GO_ON, 2 * self._count, max(0.0, _MANY_SLOW_LINES / slow_lines - 0.5)))
 
     def _fast_noise(self, generator):
-        """[T, C, 4 N] rad: each chirp's own, at the offsets of its lines less what the slow noise has of them."""
+        """[T, C, 2 P N] rad: each chirp's own, at the offsets of its lines less what the slow noise has of them."""
         numbers = np.arange(1, 2 * self._count + 1)
         share = 1.0 - self._share_that_goes_on(self._line_distance * numbers)
-        return _noise_of_lines(self._noise, numbers, self._line_distance, 4 * self._count, self._slots.begin.shape, generator,
-                               share)
+        return _noise_of_lines(self._noise, numbers, self._line_distance, self._size, self._slots.begin.shape, generator, share)
 
     def _share_that_goes_on(self, offset):
         """Of the power of the noise at offsets in Hz: all to half a line, which falls by a half cosine to nothing."""
@@ -147,7 +175,7 @@ class Oscillator:
         return np.cos(0.5 * np.pi * np.clip((offset / self._line_distance - 0.5) / lines, 0.0, 1.0)) ** 2
 
     def _slow_noise(self, generator, time):
-        """[T, C, 4 N] rad, of one oscillator that goes on through the frame."""
+        """[T, C, 2 P N] rad, of one oscillator that goes on through the frame."""
         duration = self._duration
         highest = (self._lines_that_go_on + 0.5) * self._line_distance
         if highest * duration > _MOST_SLOW_LINES:
@@ -165,6 +193,11 @@ def _of_chirps(values, tx: int, piece: slice):
     """Those of a transmitter and some chirps among values [T or 1, C or 1, ...]."""
     of_tx = values[tx if len(values) > 1 else 0]
     return of_tx[piece] if len(of_tx) > 1 else of_tx
+
+
+def _lines(size: int, middle: int = 0) -> np.ndarray:
+    """Signed numbers of the lines of a transform [size], of which the band about a middle one is told apart."""
+    return (np.arange(size) - middle + size // 2) % size + middle - size // 2
 
 
 def _cells(count: int, real: bool):
@@ -186,7 +219,7 @@ def _noise_of_lines(mask, numbers, distance: float, size: int, shape: tuple, gen
 
 
 def _bent(phase: np.ndarray, past: int) -> np.ndarray:
-    """Phase [..., 4 N] whose first `past` values lead from its end to the rest by a cubic, so that it can repeat."""
+    """Phase [..., 2 P N] whose first `past` values lead from its end to the rest by a cubic, so that it can repeat."""
     x = np.arange(1, past + 1) / (past + 1)
     end, end_slope = phase[..., -1:], phase[..., -1:] - phase[..., -2:-1]
     begin, slope = phase[..., past:past + 1], phase[..., past + 1:past + 2] - phase[..., past:past + 1]

@@ -168,6 +168,33 @@ def test_a_curved_frequency_law_bends_the_phase_of_an_echo():
     assert found - found[0] == pytest.approx(wanted - wanted[0], abs=SHARE * np.ptp(wanted))
 
 
+@pytest.mark.parametrize("cell, error", [(400, (-5e6,)), (20, (2.5e7,)), (20, (-1e8, 0.1 * SLOPE)), (60, (0.0, 0.03 * SLOPE)),
+                                         (400, (0.0, -0.01 * SLOPE))])
+def test_frequency_errors_beyond_the_sampling_rate_do_not_fold(cell, error):
+    """c0 + c1 t turns an echo by 2 pi (c0 d + c1 (t d - d^2 / 2)); at 20 MHz these were off by radians."""
+    delay, time = cell * RATE / COUNT / SLOPE, np.arange(COUNT) / RATE
+    constant, rate = (*error, 0.0)[:2]
+    wanted = tone(cell)[0, 0, 0] * np.exp(2j * np.pi * (constant * delay + rate * delay * (time - 0.5 * delay)))
+    inner = slice(COUNT // 8, -COUNT // 8)  # the signal is taken to repeat, which its ends feel
+    np.testing.assert_allclose(received(tone(cell), frequency_error=error).cube[0, 0, 0, inner], wanted[inner], atol=SHARE)
+
+
+def test_frequency_errors_that_take_too_many_samples_are_refused():
+    with pytest.raises(ValueError, match="^receiver.frequency_error: must be at most 6.2e\\+08 Hz within a chirp"):
+        received(tone(20), frequency_error=(0.0, 1e15))
+
+
+def test_a_frequency_that_is_off_turns_the_leakage_by_its_delay():
+    """By 2 pi (c0 d + c1 (t d - d^2 / 2)), as an echo."""
+    error, delay, time = (5e6, 0.01 * SLOPE), 20e-9, np.arange(COUNT) / RATE
+    silent = np.zeros((1, 1, 8, COUNT))
+    off, steady = (received(silent, leakage_db=[[-30.0]], leakage_delay=delay, frequency_error=law).cube[0, 0, 0]
+                   for law in (error, ()))
+    wanted = steady * np.exp(2j * np.pi * delay * (error[0] + error[1] * (time - 0.5 * delay)))
+    inner = slice(COUNT // 8, -COUNT // 8)  # the signal is taken to repeat, which its ends feel
+    np.testing.assert_allclose(off[inner], wanted[inner], atol=SHARE * np.abs(steady[0]))
+
+
 def test_leakage_is_an_echo_of_its_level_and_delay():
     radar = one_channel(receiver=ep.Receiver(leakage_db=[[-30.0]], leakage_delay=1e-9), transmit_power=0.02)
     cube = ep.receive(np.zeros((1, 1, 8, COUNT)), radar, seed=None).cube[0, 0]

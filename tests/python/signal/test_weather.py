@@ -235,6 +235,35 @@ def test_rain_speckles_and_moves_with_the_wind():
     assert np.std(one_chirp) / np.mean(one_chirp) == pytest.approx(1.0, abs=0.2)
 
 
+def rain_power(radar, start_time=0.0, **settings):
+    """Mean over the cube, W."""
+    cube = rain_echoes.rain_cube(ep.Scene(weather=WET), radar, start_time=start_time, seed=1, **settings)
+    return np.mean(np.abs(cube) ** 2)
+
+
+def test_rain_sends_back_the_polarisation_that_it_meets():
+    """Spheres do: slanted antennas hear all of it, and those across them no more than the sides of a beam leave."""
+    up = math.sqrt(0.5)
+    slant, across = (ep.Antenna(pattern=ep.CosinePower(exponent=6.0), polarization=(0.0, y, up)) for y in (up, -up))
+    whole = rain_power(rain_radar())
+    alike, crossed = (rain_power(rain_radar().replace(transmitters=[slant], receivers=[one]), polarization="jones")
+                      for one in (slant, across))
+    assert alike == pytest.approx(whole, rel=0.02) and crossed < 0.02 * whole
+
+
+def test_rain_is_before_a_radar_that_has_turned():
+    turning = rain_radar().replace(motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, 0.5 * math.pi)))
+    # The speckle of a cube of some thousand cells varies by some percent.
+    assert rain_power(turning, start_time=1.0) == pytest.approx(rain_power(rain_radar()), rel=0.2)
+
+
+def test_each_frame_has_its_own_rain():
+    """The correlation of the phases of N independent drops is 1 / sqrt(N)."""
+    first, second = (np.angle(rain_echoes.rain_paths(ep.Scene(weather=WET), rain_radar(), start_time=time, seed=1).weight)
+                     for time in (0.0, 0.05))
+    assert abs(np.mean(np.exp(1j * (first - second)))) < 4.0 / math.sqrt(len(first))
+
+
 def test_rain_behind_a_wall_is_not_seen():
     scene = ep.Scene(weather=WET)
     scene.add(ep.Mesh([[20, -80, -80], [20, 80, -80], [20, 80, 80], [20, -80, 80]], [[0, 1, 2], [0, 2, 3]]), name="wall",

@@ -83,6 +83,15 @@ def test_what_moves_before_a_radar_that_drives_is_what_moves_in_the_world(tmp_pa
             assert np.abs(signal - 9.0).min() < 0.6 and np.abs(signal - far).min() < 0.6
 
 
+def test_a_large_wall_that_comes_nearer_is_as_near_as_its_middle():
+    """40 m x 40 m, 5 m away: at its middle it comes as fast as it goes, at its corners by the cosine of their angle."""
+    scene = ep.Scene()
+    scene.add(ep.Mesh([[5, -20, -20], [5, 20, -20], [5, 20, 20], [5, -20, 20]], [[0, 1, 2], [0, 2, 3]]), name="wall",
+              material="metal", motion=ep.LinearMotion((-1.0, 0.0, 0.0)))
+    corner = np.sqrt(5.0 ** 2 + 2 * 20.0 ** 2)
+    assert movers_at(scene, make_radar(), 0.0)[0] == pytest.approx([5.0, corner, -1.0, -5.0 / corner], rel=1e-3)
+
+
 def test_movers_are_what_moves_in_the_world_but_the_car_of_the_radar():
     scene, radar = ep.Scene(), make_radar(speed=12.0, position=(0.0, 0.0, 0.6))
     scene.add(ep.actors.box((4.0, 1.8, 1.5)), name="own", material="metal", position=(-1.9, 0.0, 0.0),

@@ -114,6 +114,22 @@ def test_the_field_of_a_single_path_is_that_of_its_signal(spacing, is_alike):
             np.testing.assert_allclose(turn * model, exact, rtol=0, atol=LINE * np.abs(values).max())
 
 
+def test_an_echo_that_goes_on_during_the_frame_is_in_all_cells_that_it_passes(movers):
+    """The strongest path of a plate that goes on by three cells, against its signal."""
+    radar, paths, signal = movers
+    spectrum = ep.range_doppler(signal, radar)
+    of_plate = np.char.startswith([paths.scene.meshes[mesh].name for mesh in paths.mesh_id[paths.offsets]], "plate")
+    chosen = np.argmax(np.where(of_plate, np.abs(paths.amplitude), 0.0))
+    alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == chosen), radar, method="direct")
+    values = ep.range_doppler(alone, radar).values[0, 0]
+    echoes, nearest_cell = EchoFields(paths, spectrum), ep.path_cells(paths, spectrum)
+    velocity, distance = (int(part[chosen]) for part in (nearest_cell.velocity_index, nearest_cell.range_index))
+    for far in range(-2, 3):
+        index, field = echoes.fields((velocity, distance + far))
+        model = field[0, index == chosen].sum()
+        assert abs(model) == pytest.approx(abs(values[velocity, distance + far]), abs=LINE * np.abs(values).max())
+
+
 def test_an_echo_counts_that_only_the_last_antennas_have_in_the_cell():
     """Seen from the first ones it is bins away from a stronger echo, which they alone have there."""
     radar, scene = radar_with(receivers=8, spacing=0.4), ep.Scene()

@@ -78,6 +78,17 @@ def test_what_no_path_makes_has_the_cells_where_it_is_the_most(spheres, with_pat
     assert found.range.max() == pytest.approx(0.6 * radar.waveform.max_range, abs=0.1)
 
 
+@pytest.mark.parametrize("name", ["interference", "jammer"])
+def test_cells_that_no_path_makes_the_most_of_are_of_no_object(spheres, name):
+    """A repeater that sends ten times the echoes has 100 / 101 of their power, whatever it is called."""
+    radar, paths, _ = spheres
+    echoes = ep.synthesize(paths, radar)
+    spectrum = ep.range_doppler(ep.add_noise(echoes + 10j * echoes, radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, beside={name: 10j * echoes}, paths=paths)
+    assert set(found.part) == {name} and set(found.object) == {""}
+    np.testing.assert_allclose(found.share, 100.0 / 101.0, atol=0.01)
+
+
 def test_labels_of_cells_are_taken_over(spheres):
     """Parts by their powers, objects and ghosts by the maps of their indices."""
     radar, _, spectrum = spheres

@@ -65,6 +65,16 @@ def test_codes_of_another_radar_turn_its_signal_as_they_turn_its_own_echoes():
         np.testing.assert_allclose(ratio, np.exp(1j * phase), atol=1e-9)
 
 
+@pytest.mark.parametrize("offset", [0.0, 8e-6])
+def test_frames_of_one_chirp_send_as_one_frame_of_many_does(offset):
+    """From 9 km away all that one frame sends is heard while the next one is sent, 30 us later."""
+    receiver = victim(num_chirps=8, chirp_interval=35e-6)
+    sent = {"slope_ratio": 0.2, "crossing": 5.3e-6, "distance": 30e-6 * C, "chirp_interval": 30e-6}
+    one, many = (ep.interference(receiver, other(**sent, num_chirps=count), offset=offset) for count in (1, 16))
+    assert np.count_nonzero(np.abs(many[0, 0]).max(axis=1) > 0.5 * np.abs(many).max()) > 3
+    np.testing.assert_allclose(one, many, atol=1e-9 * np.abs(many).max())
+
+
 def behind_a_running_filter(sender, *, finer=64, edge=256):
     """The signal of a sender in the receiver of `victim`, over its amplitude: mixed at many times the sampling rate, from long
     before the samples until long after them, and what an ideal filter leaves of it."""

@@ -10,6 +10,7 @@ import pytest
 import echopath as ep
 from echopath.trajectories.knots import curve_through
 from echopath.trajectories.path import SplinePath
+from echopath.trajectories.profile import Profile, hermite_coefficients, slopes_of
 from support.odd_values import is_named, refusals
 
 MICROMETRES = 10e-6      # m, what positions may err by, as the docstring says
@@ -76,6 +77,17 @@ def test_a_turn_has_the_length_and_the_rates_of_its_arc():
     np.testing.assert_allclose(turn.acceleration(middle), speed**2 / RADIUS * inward, atol=1e-9)
     np.testing.assert_allclose(turn.position(middle), center + RADIUS * np.array([1, -1, 0]) / np.sqrt(2), atol=ROUNDING)
     assert turn.yaw_rate(1.0) == 0.0
+
+
+@pytest.mark.parametrize("values", [[0.0, 0.1, 1.0], [1.0, 0.1, 0.0], [0.0, 1.0, 1.1], [0.0, 0.1, 1.0, 1.0, 5.0, 5.1]])
+def test_monotone_cubics_never_turn_back(values):
+    """The parabola at an end has a slope of the other sign where values change faster and faster from there."""
+    knots, values = np.arange(len(values), dtype=float), np.array(values)
+    slopes = slopes_of(knots, values)
+    curve = Profile(knots, hermite_coefficients(np.diff(knots), values, slopes))
+    found = curve.at(np.linspace(0.0, knots[-1], 1001))[0]
+    assert np.all(np.sign(values[-1] - values[0]) * np.diff(found) > -1e-12)
+    np.testing.assert_allclose(curve.at(knots)[0], values, atol=1e-12)
 
 
 def test_a_spline_through_a_circle_is_one():

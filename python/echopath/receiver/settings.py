@@ -179,7 +179,7 @@ class Receiver(Settings):
     """Faults of a receiver; what is not given is ideal. `echopath.receiver` has the order of the stages.
 
     phase_noise: PhaseNoise or a dict of its keywords; frequency_error: (c0, c1, ...), the frequency is off by c0 + c1 t +
-        c2 t^2 + ... Hz, t in s from the first sample of a chirp
+        c2 t^2 + ... Hz, by 31 sampling rates at most, t in s from the first sample of a chirp
     leakage_db: [tx, rx] dB of the transmit power that leaks into each receiver, after leakage_delay (s)
     coupling_db: [rx, rx] dB from receiver (row) to receiver (column) after coupling_delay (s); the diagonal counts for nothing
     transmitter_gain_db, transmitter_phase: [tx] dB and rad, errors of the chains; receiver_gain_db, receiver_phase: [rx],

@@ -79,6 +79,16 @@ def test_a_turn_has_the_length_and_the_rates_of_its_arc():
     assert turn.yaw_rate(1.0) == 0.0
 
 
+@pytest.mark.parametrize("turning", [0.0, 0.3, -0.8])
+def test_what_looks_elsewhere_than_it_goes_rolls_the_way_along_its_own_axis(turning):
+    """At 10 m/s along x with the yaw 0.5 + w t: the integral of 10 cos(0.5 + w t)."""
+    times, begin, speed = np.linspace(0.0, 4.0, 41), 0.5, 10.0
+    points = np.column_stack([speed * times, np.zeros_like(times)])
+    rolled = ep.Trajectory(points, times=times, yaw=begin + turning * times)._track.rolled.at(times)[0]
+    wanted = speed * times * np.sinc(0.5 * turning * times / np.pi) * np.cos(begin + 0.5 * turning * times)
+    np.testing.assert_allclose(rolled - rolled[0], wanted, atol=1e-5)
+
+
 @pytest.mark.parametrize("values", [[0.0, 0.1, 1.0], [1.0, 0.1, 0.0], [0.0, 1.0, 1.1], [0.0, 0.1, 1.0, 1.0, 5.0, 5.1]])
 def test_monotone_cubics_never_turn_back(values):
     """The parabola at an end has a slope of the other sign where values change faster and faster from there."""

@@ -79,6 +79,18 @@ def test_a_turn_has_the_length_and_the_rates_of_its_arc():
     assert turn.yaw_rate(1.0) == 0.0
 
 
+def test_a_radar_before_the_origin_swings_in_a_curve():
+    """Its velocity is that of the origin and, across, its distance times the yaw rate, at every time that its curve has."""
+    speed, ahead, step = 10.0, 2.2, 1e-5
+    motion = ep.Trajectory(circle(), speed=speed).motion((ahead, 0.0, 0.0))
+    times = motion.translation.times
+    for at in times[(times > 0.2 * times[-1]) & (times < 0.8 * times[-1])][::5]:
+        velocity = (motion.at(at + step) - motion.at(at - step))[:2, 3] / (2.0 * step)
+        c, s = np.cos(speed * at / RADIUS), np.sin(speed * at / RADIUS)
+        wanted = speed * np.array([c, s]) + ahead * speed / RADIUS * np.array([-s, c])
+        np.testing.assert_allclose(velocity, wanted, atol=1e-3)
+
+
 @pytest.mark.parametrize("turning", [0.0, 0.3, -0.8])
 def test_what_looks_elsewhere_than_it_goes_rolls_the_way_along_its_own_axis(turning):
     """At 10 m/s along x with the yaw 0.5 + w t: the integral of 10 cos(0.5 + w t)."""

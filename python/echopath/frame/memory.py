@@ -7,13 +7,14 @@ from .. import _core
 from ..base.text.counts import counted
 
 _BYTES = 16  # of a complex sample
-_CUBES = 3   # in memory while the map is made: the signal, that with noise, and what the transform reads
+_CUBES = 2   # in memory while the map is made: the signal and what the transform reads
 
 
-def require_memory(radar: _core.Radar, zero_pad: int) -> None:
+def require_memory(radar: _core.Radar, zero_pad: int, has_noise: bool) -> None:
     """Raises ValueError where making the map of a frame takes more than the memory of this machine."""
     waveform, channels = radar.waveform, len(radar.transmitters) * len(radar.receivers)
-    needed = _BYTES * channels * waveform.num_chirps * (_CUBES * waveform.num_samples + _cells_of_a_chirp(waveform, zero_pad))
+    cubes = _CUBES + has_noise  # the signal stays beside that with noise
+    needed = _BYTES * channels * waveform.num_chirps * (cubes * waveform.num_samples + _cells_of_a_chirp(waveform, zero_pad))
     there = machine_memory()
     if needed > there:
         size = (f"{counted(channels, 'channel')}, {counted(waveform.num_chirps, 'chirp')} and "

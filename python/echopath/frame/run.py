@@ -58,7 +58,7 @@ class FrameRun:
                  truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
         check_receiver(radar, trace.start_time, trace.start_time + radar.frame_duration)
-        require_memory(radar, signal.zero_pad)
+        require_memory(radar, signal.zero_pad, signal.noise_seed is not None)
         if signal.retrace != "never" and signal.keyframes > radar.waveform.num_chirps:
             raise refused(ValueError, "keyframes", f"at most the {radar.waveform.num_chirps} chirps of the frame",
                           signal.keyframes)

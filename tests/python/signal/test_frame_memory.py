@@ -31,17 +31,17 @@ def test_what_just_fits_is_taken(monkeypatch, zero_pad, fits):
     """A map of twice the cells along both axes has four times the cells."""
     monkeypatch.setattr(memory, "machine_memory", lambda: 16 * 64 * 8 * 5)
     if fits:
-        memory.require_memory(radar_of(64, 8), zero_pad)
+        memory.require_memory(radar_of(64, 8), zero_pad, True)
     else:
         with pytest.raises(ValueError, match="got 0 GB of 1 channel, 8 chirps and 64 samples$"):
-            memory.require_memory(radar_of(64, 8), zero_pad)
+            memory.require_memory(radar_of(64, 8), zero_pad, True)
 
 
 MEASURED = """
 import sys
 import echopath as ep
 from echopath.frame import memory
-zero_pad, real = int(sys.argv[1]), sys.argv[2] == "real"
+zero_pad, real, noise = int(sys.argv[1]), sys.argv[2] == "real", 1 if sys.argv[3] == "noise" else None
 def radar_of(num_chirps):
     return ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, sampling_rate=1e9, chirp_interval=1e-4, real=real,
                                      num_samples=2048, num_chirps=num_chirps),
@@ -49,23 +49,24 @@ def radar_of(num_chirps):
 scene = ep.Scene()
 scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(10.0, 0.0, 0.0))
 def most_memory(num_chirps):
-    return max(stage.peak_memory for stage in ep.simulate(scene, radar_of(num_chirps), num_rays=500, zero_pad=zero_pad).stages)
+    return max(stage.peak_memory for stage in ep.simulate(scene, radar_of(num_chirps), num_rays=500, zero_pad=zero_pad,
+                                                           noise_seed=noise).stages)
 before, most = most_memory(1), most_memory(256)
 for share in (0.95, 1.05):
     memory.machine_memory = lambda: share * (most - before)
     try:
-        memory.require_memory(radar_of(256), zero_pad)
+        memory.require_memory(radar_of(256), zero_pad, noise is not None)
         print("taken")
     except ValueError:
         print("refused")
 """
 
 
-@pytest.mark.parametrize("zero_pad, real", [(1, "complex"), (2, "complex"), (3, "real")])
+@pytest.mark.parametrize("zero_pad, real, noise", [(1, "complex", "none"), (2, "complex", "noise"), (3, "real", "noise")])
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the peak memory of a stage")
-def test_a_frame_is_refused_where_it_takes_more_memory_than_there_is(zero_pad, real):
+def test_a_frame_is_refused_where_it_takes_more_memory_than_there_is(zero_pad, real, noise):
     """Of what it was seen to take in a process of its own, by the system's count: with a twentieth less there is not enough,
     with a twentieth more there is. Of what does not move: it takes the least."""
-    told = subprocess.run([sys.executable, "-c", MEASURED, str(zero_pad), real], capture_output=True, text=True,
+    told = subprocess.run([sys.executable, "-c", MEASURED, str(zero_pad), real, noise], capture_output=True, text=True,
                           check=True)
     assert told.stdout.split() == ["refused", "taken"]

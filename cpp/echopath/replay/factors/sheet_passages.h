@@ -11,7 +11,7 @@ namespace echopath {
 
 class SheetPassages {
  public:
-  // Serves the record of the preparer, which must outlive it, played back at this wavelength (m). Raises invalid_argument.
+  // Serves the record of the preparer, which must outlive it, played back by this waveform. Raises invalid_argument.
   SheetPassages(const PathPreparer& preparer, const ChirpSequence& waveform) : sheets_(preparer, waveform) {}
   // Changes what was written for these paths, in the order of the places: lengths, and amplitudes where they were written.
   void apply(std::span<const int64_t> indices, const PosedNodes& nodes, const ChannelSpan& channels,

@@ -1571,7 +1571,7 @@ class RangeDoppler:
     @property
     def window(self) -> str | tuple[str, float] | tuple[str | tuple[str, float], str | tuple[str, float]]:
         """
-        as range_doppler takes it: a name or ("chebyshev", sidelobe level in dB) of both axes, or those of (range, velocity)
+        as range_doppler takes it: a name or ("chebyshev" or "taylor", sidelobe level in dB) of both axes, or those of (range, velocity)
         """
     @property
     def zero_pad(self) -> int:
@@ -3639,9 +3639,9 @@ def warn_of_turns(yaw: float) -> None:
     """
     Warns of a yaw (rad) beyond a turn, which looks like degrees.
     """
-def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray[numpy.float64]:
+def window(name: str, n: int, sidelobe_db: float | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Samples [n] of a window: cosines periodic; "chebyshev" symmetric, sidelobes `sidelobe_db` dB down.
+    Samples [n] of a window: cosines periodic; "chebyshev" and "taylor" symmetric, sidelobes `sidelobe_db` dB down (80 and 35 if not given).
     """
 DEFAULT_MAX_RAYS: int = 16777216
 HIGHEST_FREQUENCY: float = 100000000000000.0

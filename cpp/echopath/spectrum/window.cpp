@@ -13,8 +13,10 @@
 namespace echopath {
 namespace {
 
+constexpr double kUsualChebyshev = 80.0, kUsualTaylor = 35.0;  // dB
+
 // The names are in the order of WindowKind.
-const std::vector<std::string> kNames = {"rect", "hann", "hamming", "blackman_harris", "chebyshev"};
+const std::vector<std::string> kNames = {"rect", "hann", "hamming", "blackman_harris", "chebyshev", "taylor"};
 
 // Returns sum_k (-1)^k coefficients[k] cos(2 pi k (i + shift) / n).
 std::vector<double> cosine_window(int n, double shift, const std::vector<double>& coefficients) {
@@ -51,6 +53,29 @@ std::vector<double> chebyshev_window(int n, double sidelobe_db) {
     }
     samples[i] = sum;
   }
+  return samples;
+}
+
+// Taylor 1955: the spectrum has the nulls of an equal ripple, stretched a little, below the lobe `lobes`, and from there on
+// those of a window without taper. There are so many equal lobes as let the samples fall toward the ends of the window, and
+// no more than their cosines can be told apart.
+std::vector<double> taylor_window(int n, double sidelobe_db) {
+  const double a = std::acosh(std::pow(10.0, sidelobe_db / 20.0)) / kPi;
+  const int lobes = std::min(static_cast<int>(std::ceil(2.0 * a * a + 0.5)), n / 2 + 1);
+  const double factor = lobes * lobes / (a * a + (lobes - 0.5) * (lobes - 0.5));
+  std::vector<double> coefficients = {1.0};
+  for (int m = 1; m < lobes; ++m) {
+    double coefficient = m % 2 == 0 ? -1.0 : 1.0;
+    for (int k = 1; k < lobes; ++k) {
+      coefficient *= 1.0 - m * m / (factor * (a * a + (k - 0.5) * (k - 0.5)));
+      if (k != m) coefficient /= 1.0 - static_cast<double>(m * m) / (k * k);
+    }
+    coefficients.push_back(coefficient);
+  }
+  return cosine_window(n, 0.5, coefficients);
+}
+
+std::vector<double> scaled_to_one(std::vector<double> samples) {
   const double largest = *std::ranges::max_element(samples);
   for (double& sample : samples) sample /= largest;
   return samples;
@@ -65,25 +90,28 @@ std::vector<double> samples_of(const Window& window, int n, double shift) {
     case WindowKind::kHann: return cosine_window(n, shift, {0.5, 0.5});
     case WindowKind::kHamming: return cosine_window(n, shift, {0.54, 0.46});
     case WindowKind::kBlackmanHarris: return cosine_window(n, shift, {0.35875, 0.48829, 0.14128, 0.01168});
-    case WindowKind::kChebyshev: break;
+    case WindowKind::kChebyshev:
+    case WindowKind::kTaylor: break;
   }
   require(window.sidelobe_db >= 20.0 && window.sidelobe_db <= 300.0, "sidelobe_db", "must be in [20, 300]",
           window.sidelobe_db);
-  return chebyshev_window(n, window.sidelobe_db);
+  const auto samples = window.kind == WindowKind::kTaylor ? taylor_window : chebyshev_window;
+  return scaled_to_one(samples(n, window.sidelobe_db));
 }
 
 double sum_of(const std::vector<double>& samples) { return std::accumulate(samples.begin(), samples.end(), 0.0); }
 
 }  // namespace
 
-Window Window::named(const std::string& name, double sidelobe_db) {
+Window Window::named(const std::string& name, std::optional<double> sidelobe_db) {
   const auto found = std::ranges::find(kNames, name);
   if (found == kNames.end()) {
     const std::string meant = meant_name(name, kNames);
-    throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris or chebyshev, got '" + name +
+    throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris, chebyshev or taylor, got '" + name +
                                 "'; nearest: " + (meant.empty() ? nearest_names(name, kNames, 1).front() : meant));
   }
-  return {static_cast<WindowKind>(found - kNames.begin()), sidelobe_db};
+  const auto kind = static_cast<WindowKind>(found - kNames.begin());
+  return {kind, sidelobe_db.value_or(kind == WindowKind::kTaylor ? kUsualTaylor : kUsualChebyshev)};
 }
 
 std::string Window::name() const { return kNames.at(static_cast<size_t>(kind)); }

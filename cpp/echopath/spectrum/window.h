@@ -2,19 +2,24 @@
 // Computes tapering windows and their figures of merit (Harris, "On the use of windows for harmonic analysis with the
 // discrete Fourier transform", 1978).
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace echopath {
 
-enum class WindowKind { kRect, kHann, kHamming, kBlackmanHarris, kChebyshev };
+enum class WindowKind { kRect, kHann, kHamming, kBlackmanHarris, kChebyshev, kTaylor };
 
 struct Window {
   WindowKind kind = WindowKind::kHann;
-  double sidelobe_db = 80.0;  // kChebyshev only: level of all sidelobes below the main lobe, dB, positive
+  // dB, positive, below the main lobe: of kChebyshev the level of all sidelobes, of kTaylor that of the nearest ones, beyond
+  // which they fall with their number.
+  double sidelobe_db = 80.0;
 
-  // Takes "rect", "hann", "hamming", "blackman_harris" or "chebyshev"; raises invalid_argument naming the nearest.
-  static Window named(const std::string& name, double sidelobe_db = 80.0);
+  // Takes "rect", "hann", "hamming", "blackman_harris", "chebyshev" or "taylor"; raises invalid_argument naming the nearest.
+  // Without a level, Chebyshev's is 80 dB and Taylor's 35 dB.
+  static Window named(const std::string& name, std::optional<double> sidelobe_db = std::nullopt);
+  bool has_level() const { return kind == WindowKind::kChebyshev || kind == WindowKind::kTaylor; }
   std::string name() const;
   bool operator==(const Window&) const = default;
 };
@@ -30,8 +35,8 @@ struct MapWindows {
 };
 
 // Returns the samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin
-// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal
-// sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
+// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev and Taylor are symmetric (w[i] = w[n - 1 - i]), which
+// their sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
 std::vector<double> window_samples(const Window& window, int n);
 
 // Returns samples for few points in space: cosine windows are sampled at i + 1/2 instead of i, hence symmetric and nowhere

@@ -23,7 +23,7 @@ inline Window as_window(const py::object& value) {
 
 // The same back.
 inline py::object window_value(const Window& window) {
-  if (window.kind != WindowKind::kChebyshev) return py::str(window.name());
+  if (!window.has_level()) return py::str(window.name());
   return py::make_tuple(window.name(), window.sidelobe_db);
 }
 

@@ -12,7 +12,8 @@ from .number_rules import Rule, is_number
 from .shown import refused, writable
 
 WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
-Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or with its sidelobe level in dB
+LevelWindow = Literal["chebyshev", "taylor"]
+Window = WindowName | tuple[LevelWindow, float]                    # a name, or with its sidelobe level in dB
 MapWindow = Window | tuple[Window, Window]                         # of both axes of a map, or those of (range, velocity)
 
 LONGEST_NAME, LONGEST_PATH = 255, 4096  # bytes of the name of a file and of all folders with it
@@ -104,18 +105,19 @@ def file(argument: str, value) -> str:
 
 
 def window(argument: str, value):
-    """A window by its name, or ("chebyshev", sidelobe level in dB)."""
-    names = get_args(WindowName)
-    rule = ", ".join(f"'{name}'" for name in names) + " or ('chebyshev', sidelobe level in dB, 20 to 300)"
+    """A window by its name, or ("chebyshev" or "taylor", sidelobe level in dB)."""
+    names, with_level = get_args(WindowName), get_args(LevelWindow)
+    rule = (", ".join(f"'{name}'" for name in names)
+            + f" or ({' or '.join(map(repr, with_level))}, sidelobe level in dB, 20 to 300)")
     if isinstance(value, str):
-        if value not in (*names, "chebyshev"):
-            known = (*names, "chebyshev")
+        known = (*names, *with_level)
+        if value not in known:
             nearest = _core.meant_name(writable(value), known) or _core.nearest_names(writable(value), known, 1)[0]
             raise refused(ValueError, argument, f"{rule} (nearest: {nearest})", value)
         return str(value)
     if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and is_number(value[1])):
         raise refused(TypeError, argument, rule, value)
-    if value[0] != "chebyshev" or not 20.0 <= value[1] <= 300.0:
+    if value[0] not in with_level or not 20.0 <= value[1] <= 300.0:
         raise refused(ValueError, argument, rule, value)
     return str(value[0]), float(value[1])
 

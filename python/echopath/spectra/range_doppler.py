@@ -28,8 +28,8 @@ def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = Signa
 
     cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
     radar: that of the cube
-    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes; or a pair of
-        these, that of range and that of velocity, such as ("hann", ("chebyshev", 60))
+    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev" or "taylor", sidelobe level in dB), on both axes; or
+        a pair of these, that of range and that of velocity, such as ("hann", ("chebyshev", 60))
     zero_pad: 1 to 64, transforms of so many times the samples and chirps
     Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
     Raises TypeError or ValueError naming the argument, also where a sample is no finite number.

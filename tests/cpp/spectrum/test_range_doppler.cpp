@@ -77,7 +77,8 @@ TEST(RangeDoppler, EqualsTheSlowTransform) {
 TEST(RangeDoppler, PeakIsReceivedPowerInEveryChannelAndWindow) {
   const Radar radar = small_radar(2, 3);
   const auto cube = tones(radar, 4.0, 3.0);
-  const Window windows[] = {{WindowKind::kRect}, {WindowKind::kHann}, {WindowKind::kChebyshev, 60.0}};
+  const Window windows[] = {
+      {WindowKind::kRect}, {WindowKind::kHann}, {WindowKind::kChebyshev, 60.0}, {WindowKind::kTaylor, 35.0}};
   for (const Window& window : windows) {
     const RangeDoppler map = range_doppler(cube, radar, window);
     for (int c = 0; c < 6; ++c) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -60,20 +61,54 @@ TEST(Window, ChebyshevSidelobesAreEqualAndAsAskedFor) {
   }
 }
 
-TEST(Window, CosineWindowsArePeriodicAndChebyshevIsSymmetric) {
+// Taylor, "Design of line-source antennas for narrow beamwidth and low side lobes", 1955: null k of the pattern.
+double taylor_null(double level, int lobes, int k) {
+  if (k >= lobes) return k;
+  const double a = std::acosh(std::pow(10.0, level / 20.0)) / std::numbers::pi;
+  return lobes * std::hypot(a, k - 0.5) / std::hypot(a, lobes - 0.5);
+}
+
+// Tables of the pattern have 4 equal lobes at 30 dB, 6 at 35, 7 at 40.
+TEST(Window, TaylorHasThePublishedNulls) {
+  for (const auto& [level, lobes] : {std::pair(30.0, 4), std::pair(35.0, 6), std::pair(40.0, 7)}) {
+    const auto w = window_samples({WindowKind::kTaylor, level}, 1024);
+    for (int k = 1; k < 3 * lobes; ++k) {
+      const double null = taylor_null(level, lobes, k);
+      EXPECT_LT(level_db(w, null), level_db(w, null + 0.45) - 40.0) << level << " " << k;
+    }
+  }
+}
+
+TEST(Window, TaylorSidelobesAreAsAskedForAndFall) {
+  for (const int n : {64, 129}) {
+    for (const auto& [level, lobes] : {std::pair(25.0, 4), std::pair(35.0, 6), std::pair(60.0, 13)}) {
+      const auto w = window_samples({WindowKind::kTaylor, level}, n);
+      double worst = -1e9, last = -1e9;
+      for (double bin = taylor_null(level, lobes, 1); bin < 0.5 * n; bin += 0.01) worst = std::max(worst, level_db(w, bin));
+      for (double bin = 0.4 * n; bin < 0.5 * n; bin += 0.01) last = std::max(last, level_db(w, bin));
+      EXPECT_NEAR(worst, -level, 0.4) << n;  // the lobes that are moved stand a little lower
+      EXPECT_LT(last, -level - 3.0) << n;
+      EXPECT_GT(*std::ranges::min_element(w), 0.0) << n;
+    }
+  }
+}
+
+TEST(Window, CosineWindowsArePeriodicAndOthersSymmetric) {
   for (const int n : {16, 17}) {
     for (const auto kind : {WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris}) {
       const auto w = window_samples({kind}, n);
       for (int i = 1; i < n; ++i) EXPECT_NEAR(w[i], w[n - i], kRounding);
     }
-    const auto w = window_samples({WindowKind::kChebyshev, 60.0}, n);
-    for (int i = 0; i < n; ++i) EXPECT_NEAR(w[i], w[n - 1 - i], kRounding);
+    for (const auto kind : {WindowKind::kChebyshev, WindowKind::kTaylor}) {
+      const auto w = window_samples({kind, 60.0}, n);
+      for (int i = 0; i < n; ++i) EXPECT_NEAR(w[i], w[n - 1 - i], kRounding);
+    }
   }
 }
 
 TEST(Window, ShortWindowsHaveAPositiveSum) {
-  for (const auto kind :
-       {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris, WindowKind::kChebyshev}) {
+  for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
+                          WindowKind::kChebyshev, WindowKind::kTaylor}) {
     for (const int n : {1, 2, 3}) {
       EXPECT_GT(sum_of(window_samples({kind}, n)), 0.0) << static_cast<int>(kind) << " " << n;
     }

@@ -61,6 +61,7 @@ constexpr std::array kSynonyms = {
     Synonyms{"rect", "rectangular boxcar none uniform"},
     Synonyms{"blackman_harris", "blackman blackmanharris blackman-harris"},
     Synonyms{"chebyshev", "cheb dolph chebwin dolph-chebyshev"},
+    Synonyms{"taylor", "taylorwin"},
 };
 
 bool is_among(const std::vector<std::string>& words, std::string_view word) {

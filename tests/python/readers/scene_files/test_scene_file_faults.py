@@ -32,7 +32,7 @@ FAULTS = [
     (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
     (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),
     (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be 'rect', 'hann', 'hamming', 'blackman_harris' or "
-     "('chebyshev', sidelobe level in dB, 20 to 300) (nearest: hann), got 'hanning'"),
+     "('chebyshev' or 'taylor', sidelobe level in dB, 20 to 300) (nearest: hann), got 'hanning'"),
     (RADAR + "[spectrum]\nwindow = ['chebyshev', 1000]", "spectrum.window: must be 'rect', "),
     (RADAR + "[replay]\nkeyframes = 4", "replay.keyframes: needs retrace = \"invalid\" or \"always\", got 4"),
     (RADAR + "[spectrum]\nwindow = ['chebyshev', -3]", "spectrum.window: must be 'rect', "),

@@ -19,8 +19,6 @@ namespace {
 
 // A chirp may fill its slot: num_samples / sampling_rate may round above the interval by an ulp or two.
 constexpr double kSlotTolerance = 1e-9;
-// Chirps that are looked at where they repeat after more of them.
-constexpr size_t kMostUnlike = size_t{1} << 22;
 // Of the sine of phases that are meant as signs, multiples of pi.
 constexpr double kSignRounding = 1e-12;
 
@@ -113,17 +111,20 @@ void ChirpSequence::validate() const {
 double ChirpSequence::wavelength() const { return kSpeedOfLight / centre_frequency(); }
 
 FrequencyBand ChirpSequence::band() const {
-  const auto repeated = [](const std::vector<double>& steps, size_t chirp) {
-    return steps.empty() ? 0.0 : steps[chirp % steps.size()];
+  const std::vector<double> no_steps = {0.0};
+  const std::vector<double>& starts = frequency_steps.empty() ? no_steps : frequency_steps;
+  const std::vector<double>& widths = bandwidth_steps.empty() ? no_steps : bandwidth_steps;
+  // Of two lists that repeat, those steps meet in a chirp whose places agree modulo the lengths' greatest common divisor.
+  const size_t stride = std::gcd(starts.size(), widths.size());
+  const auto largest = [stride](const std::vector<double>& steps, size_t first) {
+    double out = steps[first];
+    for (size_t i = first; i < steps.size(); i += stride) out = std::max(out, steps[i]);
+    return out;
   };
-  const size_t period = std::lcm(std::max<size_t>(frequency_steps.size(), 1), std::max<size_t>(bandwidth_steps.size(), 1));
-  FrequencyBand band{start_frequency + repeated(frequency_steps, 0), 0.0};
-  for (size_t chirp = 0; chirp < std::min(period, kMostUnlike); ++chirp) {
-    const double start = start_frequency + repeated(frequency_steps, chirp);
-    band.lowest = std::min(band.lowest, start);
-    band.highest = std::max(band.highest, start + bandwidth + repeated(bandwidth_steps, chirp));
-  }
-  return band;
+  double highest = largest(starts, 0) + largest(widths, 0);
+  for (size_t first = 1; first < stride; ++first)
+    highest = std::max(highest, largest(starts, first) + largest(widths, first));
+  return {start_frequency + std::ranges::min(starts), start_frequency + bandwidth + highest};
 }
 
 double ChirpSequence::mean_interval() const {

@@ -10,7 +10,6 @@ from ..arguments.checks import ArrayLike, anything, array, checked, row_of_chann
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.process.callers import warn_user
-from ..base.radar.velocities import ambiguity_of
 from ..base.text.counts import counted
 from ..transmit.signals import chirp_of, step_names
 
@@ -155,5 +154,5 @@ def _range_index(beat, waveform, axis):
 def _velocity_index(velocity, axis, radar):
     """Nearest cell of each velocity in m/s, folded into the axis: i32 [P]."""
     count = len(axis)
-    step = ambiguity_of(radar) / count
+    step = 2.0 * radar.waveform.max_velocity(radar.num_slots) / count
     return ((np.rint(velocity / step).astype(np.int64) + count // 2) % count).astype(np.int32)

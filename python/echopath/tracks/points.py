@@ -57,9 +57,8 @@ class Carrier:
 
 
 def carrier_of(radar, time: float) -> Carrier:
-    """Of a radar at a time in s; frames of a single chirp tell no radial velocities."""
-    ambiguity = ambiguity_of(radar) if radar.waveform.num_chirps > 1 else 0.0
-    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity)
+    """Of a radar at a time in s."""
+    return Carrier(radar.world_from_radar(time), velocity_of_antennas(radar, time), ambiguity_of(radar))
 
 
 def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float | None,

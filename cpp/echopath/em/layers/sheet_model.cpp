@@ -17,14 +17,15 @@ double width_of(const FrequencyBand& band) { return std::max(band.highest - band
 }  // namespace
 
 SheetModel::SheetModel(const Material& material, double frequency, const FrequencyBand& band)
-    : at_(material.layers, frequency), lowest_(material.layers, band.lowest),
-      highest_(material.layers, band.lowest + width_of(band)), begins_band_(frequency == band.lowest),
-      turn_(kSpeedOfLight / (kTwoPi * width_of(band))) {}
+    : at_(material.layers, frequency), highest_(material.layers, band.lowest + width_of(band)),
+      turn_(kSpeedOfLight / (kTwoPi * width_of(band))) {
+  if (frequency != band.lowest) lowest_.emplace(material.layers, band.lowest);
+}
 
 SheetPassage SheetModel::passage(double cos_incidence) const {
   LayerPhases first, last;
   const LayerTransmission at = at_.over_free_space(cos_incidence, &first);
-  if (!begins_band_) lowest_.over_free_space(cos_incidence, &first);
+  if (lowest_) lowest_->over_free_space(cos_incidence, &first);
   highest_.over_free_space(cos_incidence, &last);
   return {at.te, at.tm, turn_ * (first.te - last.te), turn_ * (first.tm - last.tm), at_.offset(cos_incidence)};
 }

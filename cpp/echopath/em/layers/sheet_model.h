@@ -7,6 +7,8 @@
 // straight line by `offset`. The phase of the transmission has this to first order; what is left is k offset^2 / (2
 // length), the detour of a wave that meets the far end of the leg all the same, and it is added where the offset exceeds a
 // tenth of a wavelength.
+#include <optional>
+
 #include "echopath/base/frequency_band.h"
 #include "echopath/base/geometry.h"
 #include "echopath/em/layers/layer_stack.h"
@@ -35,8 +37,8 @@ class SheetModel {
   double most_phase() const { return at_.most_phase(); }
 
  private:
-  LayerStack at_, lowest_, highest_;  // at the frequency, and at both ends of the band
-  bool begins_band_;                  // the frequency is the lowest one
+  LayerStack at_, highest_;           // at the frequency, and at the upper end of the band
+  std::optional<LayerStack> lowest_;  // at the lower end, where the frequency is another
   double turn_;                       // m of length per rad between both ends
 };
 

@@ -78,4 +78,27 @@ inline std::span<const PosedHit> chain_of(const PosedHit* hits, int first, int l
 // Returns the leg between the hits `from` < `to` of a path, which are not images, over the mirrors between them.
 UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to);
 
+// Calls visit(k, arrival, departure) for the hits of a path in turn, with the unit directions of travel of a wave from
+// `start` to `end`. Images mirror what arrives; between other hits it runs straight over the images.
+template <class Visit>
+void for_each_hit(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end, const Visit& visit) {
+  Vec3 from = start, arrival;
+  for (int material = -1; material < path.count;) {
+    int next = material + 1;
+    while (next < path.count && path.is_image(next)) ++next;
+    const Vec3 to = next < path.count ? hits[next].point : end;
+    const UnfoldedLeg leg = unfolded_leg(hits, from, material + 1, next, to);
+    if (material >= 0) visit(material, arrival, leg.departure);
+    Vec3 way = leg.departure;
+    for (int k = material + 1; k < next; ++k) {
+      const Vec3 behind = hits[k].mirrored(way);
+      visit(k, way, behind);
+      way = behind;
+    }
+    arrival = leg.arrival;
+    from = to;
+    material = next;
+  }
+}
+
 }  // namespace echopath

@@ -94,28 +94,19 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
 void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
                   std::vector<double>& out) {
   if (path.edge >= 0) return;
-  int previous = path.first_material;
-  const auto set_arrival = [&](int k, const Vec3& travel) { out[2 * k] = -hits[k].normal.dot(travel); };
-  const auto set_departure = [&](int k, const Vec3& travel) { out[2 * k + 1] = hits[k].normal.dot(travel); };
-  set_arrival(previous, unfolded_leg(hits, start, 0, previous, hits[previous].point).arrival);
-  for (int k = previous + 1; k <= path.last_material; ++k) {
-    if (path.is_image(k)) continue;
-    const UnfoldedLeg leg = inner_leg(hits, previous, k);
-    set_departure(previous, leg.departure);
-    set_arrival(k, leg.arrival);
-    previous = k;
-  }
-  set_departure(previous, unfolded_leg(hits, hits[previous].point, previous + 1, path.count, end).departure);
+  for_each_hit(path, hits, start, end, [&](int k, const Vec3& arrival, const Vec3& departure) {
+    if (path.is_image(k)) return;
+    out[2 * k] = -hits[k].normal.dot(arrival);
+    out[2 * k + 1] = hits[k].normal.dot(departure);
+  });
 }
 
 // Writes the cosines of incidence of a wave that meets all hits of a path as images, in those places of [2 * hits].
 void fill_image_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
                         std::vector<double>& out) {
-  Vec3 way = (image_over_reversed(chain_of(hits, 0, path.count), end) - start).normalized();
-  for (int k = 0; k < path.count; ++k) {
-    out[2 * k] = std::min(1.0, std::abs(way.dot(hits[k].normal)));
-    way = hits[k].mirrored(way);
-  }
+  for_each_hit(path, hits, start, end, [&](int k, const Vec3& arrival, const Vec3&) {
+    out[2 * k] = std::min(1.0, std::abs(arrival.dot(hits[k].normal)));
+  });
 }
 
 // Returns by how much the coefficients of both modes differ between two cosines of incidence, over the larger of them.

@@ -7,33 +7,6 @@
 #include "echopath/trace/sbr/weight.h"
 
 namespace echopath {
-namespace {
-
-// Calls visit(k, arrival, departure) for the hits of a path in turn, with unit directions of travel. Images mirror what
-// arrives; between other hits waves run straight over the images.
-template <class Visit>
-void for_each_hit(const PathAtTime& at, const Visit& visit) {
-  const LocalPath& path = at.path;
-  Vec3 from = at.start, arrival;
-  for (int material = -1; material < path.count;) {
-    int next = material + 1;
-    while (next < path.count && path.is_image(next)) ++next;
-    const Vec3 to = next < path.count ? at.hits[next].point : at.end;
-    const UnfoldedLeg leg = unfolded_leg(at.hits, from, material + 1, next, to);
-    if (material >= 0) visit(material, arrival, leg.departure);
-    Vec3 way = leg.departure;
-    for (int k = material + 1; k < next; ++k) {
-      const Vec3 behind = at.hits[k].mirrored(way);
-      visit(k, way, behind);
-      way = behind;
-    }
-    arrival = leg.arrival;
-    from = to;
-    material = next;
-  }
-}
-
-}  // namespace
 
 bool PathAtTime::is_as(const PathAtTime& other) const {
   const auto is_alike = [](const PosedHit& a, const PosedHit& b) { return a.point == b.point && a.normal == b.normal; };
@@ -61,7 +34,7 @@ const SurfaceModel& Coefficients::model(const PathAtTime& at, int k, const Vec3&
 std::complex<double> Coefficients::product(const PathAtTime& at) const {
   std::complex<double> out = 1.0;
   ReturnSign sign;
-  for_each_hit(at, [&](int k, const Vec3& arrival, const Vec3&) {
+  for_each_hit(at.path, at.hits, at.start, at.end, [&](int k, const Vec3& arrival, const Vec3&) {
     const SurfaceModel& surface = model(at, k, arrival);
     const Vec3 normal = lit_normal(arrival, at.hits[k].normal);
     const bool is_image = at.path.is_image(k);
@@ -77,7 +50,7 @@ std::complex<double> Coefficients::product(const PathAtTime& at) const {
 JonesMatrix Coefficients::matrix(const PathAtTime& at) const {
   FieldPair fields;
   Vec3 last = Vec3::Zero();
-  for_each_hit(at, [&](int k, const Vec3& arrival, const Vec3& departure) {
+  for_each_hit(at.path, at.hits, at.start, at.end, [&](int k, const Vec3& arrival, const Vec3& departure) {
     if (k == 0) fields = launched_fields(arrival);
     Vec3 direction = arrival;
     const SurfaceModel& surface = model(at, k, arrival);

@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 
 def ambiguity_of(radar: Any, folds: int = 0) -> float:
-    """m/s, by which radial velocities differ that look the same; of a single chirp, to which all do, the width of its axis.
+    """m/s, by which radial velocities differ that look the same: 0 of a single chirp, to which all do.
 
     folds: as of `estimate_angles`; where some were tried, transmitters in turns tell velocities apart from slot to slot
     """
+    if radar.waveform.num_chirps == 1:
+        return 0.0
     return 2.0 * float(radar.waveform.max_velocity(1 if folds else radar.num_slots))
 
 

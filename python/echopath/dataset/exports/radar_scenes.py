@@ -140,7 +140,7 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
     rows["rcs"] = cross_sections_dbsm(found, radar, time)
     rows["vr"] = found.velocity
-    if radar.waveform.num_chirps > 1:  # else all velocities look the same, of which 0 is the smallest
+    if ambiguity > 0.0:  # else all velocities look the same, of which 0 is the smallest
         rows["vr_compensated"] = folded(found.velocity - _own_velocity(found, pose), ambiguity)
     rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
     rows["uuid"] = [_identity(number, index) for index in range(len(found))]

@@ -38,16 +38,15 @@ bool Replayer::can_turn(int64_t path) const {
 }
 
 std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, GridIndex polynomial,
-                                      std::vector<UnfollowedPath>& unfollowed) const {
+                                      std::vector<UnfollowedPath>& unfollowed, const SomeTransmitters& transmitters) const {
   const PosedGrid& grid = posed_.polynomial(polynomial);
   const size_t num_nodes = grid.posed.size();
-  std::vector<Echoes> echoes = take_echoes(indices.size(), static_cast<size_t>(num_channels()), num_nodes);
+  std::vector<Echoes> echoes = take_echoes_of(grid, transmitters, indices.size());
   std::vector<std::vector<double>> turns(echoes.size(), std::vector<double>(indices.size() * num_nodes));
-  evaluate_turning(indices, grid, echoes, turns);
+  evaluate_turning(indices, grid, transmitters.first * num_receivers(), echoes, turns);
   std::vector<uint8_t> is_followed(indices.size(), 1);
   for (size_t channel = 0; channel < echoes.size(); ++channel) {
     Echoes& here = echoes[channel];
-    here.sampling = grid.nodes.sampling[channel / num_receivers()];
     here.sampling.rows = TimeSampling::Rows::kLogarithms;
     for (size_t p = 0; p < indices.size(); ++p) {
       is_followed[p] &= take_logarithms(num_nodes, indices.size(), &turns[channel][p], &here.amplitude[p]);

@@ -106,11 +106,12 @@ std::vector<uint8_t> Replayer::negligible_ones(const FrameNodes& nodes, std::spa
 }
 
 std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, GridIndex index,
-                                           std::vector<UnfollowedPath>& unfollowed) const {
+                                           std::vector<UnfollowedPath>& unfollowed,
+                                           const SomeTransmitters& transmitters) const {
   const PosedGrid& polynomial = posed_.polynomial(index);
   std::vector<uint8_t> dark, turned(indices.size());
   std::vector<double> unfiltered(indices.size());
-  std::vector<Echoes> echoes = not_dark(indices, polynomial, {turned.data(), unfiltered.data()}, dark);
+  std::vector<Echoes> echoes = not_dark(indices, polynomial, transmitters, {turned.data(), unfiltered.data()}, dark);
   const auto num_left = static_cast<size_t>(echoes.front().num_echoes);
   std::vector<UnfollowedPath> needed(num_left);
   for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, unfiltered, needed);

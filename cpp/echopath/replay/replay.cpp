@@ -87,20 +87,23 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
   return echoes;
 }
 
-// Makes room for all channels of the grid's transmitters.
-std::vector<Echoes> Replayer::take_echoes_of(const PosedGrid& grid, size_t num_echoes) const {
-  const size_t num_channels = grid.posed.at(0).transmitters.size() * num_receivers();
+// Makes room for all channels of these transmitters of the grid.
+std::vector<Echoes> Replayer::take_echoes_of(const PosedGrid& grid, const SomeTransmitters& transmitters,
+                                             size_t num_echoes) const {
+  const size_t num_posed = grid.posed.at(0).transmitters.size();
+  const size_t num_channels = std::min(transmitters.count, num_posed - transmitters.first) * num_receivers();
   std::vector<Echoes> echoes = take_echoes(num_echoes, num_channels, grid.posed.size());
   for (size_t channel = 0; channel < num_channels; ++channel) {
-    echoes[channel].sampling = grid.nodes.sampling[channel / num_receivers()];
+    echoes[channel].sampling = grid.nodes.sampling[transmitters.first + channel / num_receivers()];
   }
   return echoes;
 }
 
-// Evaluates all channels of the grid's transmitters.
-std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const {
-  std::vector<Echoes> echoes = take_echoes_of(grid, paths.size());
-  Target target{grid.posed, 0, rows_of(echoes), wanted};
+// Evaluates all channels of these transmitters of the grid.
+std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid,
+                                       const SomeTransmitters& transmitters, const Wanted& wanted) const {
+  std::vector<Echoes> echoes = take_echoes_of(grid, transmitters, paths.size());
+  Target target{grid.posed, transmitters.first * num_receivers(), rows_of(echoes), wanted};
   evaluate_at(paths, {&target, 1});
   return echoes;
 }
@@ -161,12 +164,14 @@ std::vector<Echoes> Replayer::placed(std::span<const int64_t> indices, std::span
   return echoes;
 }
 
-std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const { return at_nodes(indices, posed_.still(), {}); }
+std::vector<Echoes> Replayer::still(std::span<const int64_t> indices, const SomeTransmitters& transmitters) const {
+  return at_nodes(indices, posed_.still(), transmitters, {});
+}
 
 std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const PosedGrid& samples) const {
   require(samples.nodes.sampling.size() == 1, "samples", "must be posed at a SampleGrid, transmitters",
           samples.nodes.sampling.size());
-  return at_nodes(indices, samples, {});
+  return at_nodes(indices, samples, {}, {});
 }
 
 std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, GridIndex index, const PosedGrid& chirps,
@@ -200,16 +205,17 @@ int64_t Replayer::num_rows_by_chirp() const {
 }
 
 // Evaluates the paths less those that are negligible by what is known without evaluating them, of which dark [P] gets 1.
-std::vector<Echoes> Replayer::not_dark(std::span<const int64_t> indices, const PosedGrid& grid, const Wanted& wanted,
+std::vector<Echoes> Replayer::not_dark(std::span<const int64_t> indices, const PosedGrid& grid,
+                                       const SomeTransmitters& transmitters, const Wanted& wanted,
                                        std::vector<uint8_t>& dark) const {
   dark.assign(indices.size(), 0);
-  if (strongest_ == 0.0 || indices.size() > kPlannedTogether) return at_nodes(indices, grid, wanted);
+  if (strongest_ == 0.0 || indices.size() > kPlannedTogether) return at_nodes(indices, grid, transmitters, wanted);
   std::unique_ptr<PathEvaluator> evaluator = take_evaluator();
   evaluator->plan(indices);
   dark = evaluator->leave_out_dark(grid.posed, grid.nodes, radio_, negligible_amplitude());
   const auto num_left = static_cast<size_t>(std::ranges::count(dark, 0));
-  std::vector<Echoes> echoes = take_echoes_of(grid, num_left);
-  Target target{grid.posed, 0, rows_of(echoes), wanted};
+  std::vector<Echoes> echoes = take_echoes_of(grid, transmitters, num_left);
+  Target target{grid.posed, transmitters.first * num_receivers(), rows_of(echoes), wanted};
   evaluate_planned(*evaluator, 0, {&target, 1});
   KeptMemory::of_process().leave(std::move(evaluator));
   attenuate_all(num_left, {&target, 1});
@@ -217,9 +223,9 @@ std::vector<Echoes> Replayer::not_dark(std::span<const int64_t> indices, const P
 }
 
 // Writes the amplitudes without their turns, and the turns (rad) beside.
-void Replayer::evaluate_turning(std::span<const int64_t> indices, const PosedGrid& grid, std::span<Echoes> channels,
-                                std::span<std::vector<double>> turns) const {
-  Target target{grid.posed, 0, rows_of(channels)};
+void Replayer::evaluate_turning(std::span<const int64_t> indices, const PosedGrid& grid, size_t first_channel,
+                                std::span<Echoes> channels, std::span<std::vector<double>> turns) const {
+  Target target{grid.posed, first_channel, rows_of(channels)};
   for (size_t channel = 0; channel < channels.size(); ++channel) target.nodes[channel].turn = turns[channel].data();
   evaluate_at(indices, {&target, 1}, true);
 }

@@ -6,6 +6,7 @@
 // with the point of reflection by one Newton step (specular_slide.h).
 #include <algorithm>
 #include <complex>
+#include <cstdint>
 #include <span>
 
 #include "echopath/replay/evaluate/path_evaluator.h"
@@ -14,6 +15,11 @@
 #include "echopath/replay/time/path_grids.h"
 
 namespace echopath {
+
+// Names transmitters of a radar, one after the other; without anything said, all of them.
+struct SomeTransmitters {
+  size_t first = 0, count = SIZE_MAX;
+};
 
 class Replayer {
  public:
@@ -44,7 +50,7 @@ class Replayer {
   void pose_still() { posed_.pose_still(); }
   // Returns the echoes of `paths` (indices), by channel [tx * num_rx + rx]; their groups are left empty. Neither the paths
   // nor the radar may move: they are evaluated once, at the time of the trace.
-  std::vector<Echoes> still(std::span<const int64_t> paths) const;
+  std::vector<Echoes> still(std::span<const int64_t> paths, const SomeTransmitters& transmitters = {}) const;
   // Finds the amplitude of the strongest of some paths at the time of the trace, between the first antennas. From then on
   // interpolated() leaves out paths that it may.
   void find_strongest();
@@ -56,15 +62,15 @@ class Replayer {
   // or of their amplitude exceed the tolerance; and negligible ones, whose amplitudes stay so small in all channels,
   // throughout the frame (is_dark), that all of them together are below the rounding of the strongest path of the record.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, GridIndex polynomial,
-                                   std::vector<UnfollowedPath>& unfollowed) const;
+                                   std::vector<UnfollowedPath>& unfollowed, const SomeTransmitters& transmitters = {}) const;
   // Returns whether turning() may be asked for a path: it must have a launch cell, whose filter is what turns.
   bool can_turn(int64_t path) const;
   // Interpolates the logarithms of amplitudes by a polynomial that follows the lengths: it follows the steep or turning
   // phases of waves from curved surfaces, of which no polynomial of few nodes follows the amplitudes
   // (TimeSampling::Rows::kLogarithms). can_turn() must take all paths. Those whose logarithms it does not follow are left
   // out and added to `unfollowed`, in their order, with no more said than their index.
-  std::vector<Echoes> turning(std::span<const int64_t> paths, GridIndex polynomial,
-                              std::vector<UnfollowedPath>& unfollowed) const;
+  std::vector<Echoes> turning(std::span<const int64_t> paths, GridIndex polynomial, std::vector<UnfollowedPath>& unfollowed,
+                              const SomeTransmitters& transmitters = {}) const;
   // Poses meshes that some paths touch, as PartlyPosedGrid::with takes them, at all nodes of a grid of chirps or samples,
   // which both functions below take; the replayer must outlive it.
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const { return posed_.pose_partly(grid); }
@@ -112,21 +118,22 @@ class Replayer {
   struct Target;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
-  std::vector<Echoes> take_echoes_of(const PosedGrid& grid, size_t num_echoes) const;
+  std::vector<Echoes> take_echoes_of(const PosedGrid& grid, const SomeTransmitters& transmitters, size_t num_echoes) const;
   using Wanted = PathEvaluator::Wanted;
-  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const;
+  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const SomeTransmitters& transmitters,
+                               const Wanted& wanted) const;
   RadioConstants radio_of(const Target& target) const;
   std::unique_ptr<PathEvaluator> take_evaluator(bool as_chains = false) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets, bool as_chains = false) const;
   void evaluate_planned(PathEvaluator& evaluator, size_t first, std::span<Target> targets) const;
   void attenuate_all(size_t num_paths, std::span<const Target> targets) const;
   double negligible_amplitude() const;
-  std::vector<Echoes> not_dark(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted,
-                               std::vector<uint8_t>& dark) const;
+  std::vector<Echoes> not_dark(std::span<const int64_t> paths, const PosedGrid& grid, const SomeTransmitters& transmitters,
+                               const Wanted& wanted, std::vector<uint8_t>& dark) const;
   void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
                     std::vector<UnfollowedPath>& needed) const;
-  void evaluate_turning(std::span<const int64_t> paths, const PosedGrid& grid, std::span<Echoes> channels,
-                        std::span<std::vector<double>> turns) const;
+  void evaluate_turning(std::span<const int64_t> paths, const PosedGrid& grid, size_t first_channel,
+                        std::span<Echoes> channels, std::span<std::vector<double>> turns) const;
   std::vector<uint8_t> negligible_ones(const FrameNodes& nodes, std::span<const Echoes> channels) const;
 
   const Paths& paths_;

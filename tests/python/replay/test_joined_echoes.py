@@ -79,6 +79,17 @@ def test_the_signal_is_the_slow_sum_over_all_paths(scene, settings, tolerance, a
     assert np.abs(difference).max() < tolerance * amplitude_sum(paths)
 
 
+@pytest.mark.parametrize("settings, tolerance", [({"evaluate": "chirps"}, EXACT), ({}, INTERPOLATED)],
+                         ids=["chirps", "interpolated"])
+def test_all_transmitters_of_a_large_array_have_the_slow_sum(scene, settings, tolerance):
+    """81 channels are replayed for a few transmitters at a time: seven, and then two."""
+    paths = ep.trace(scene, make_radar(9, chirps=8), num_rays=300, max_bounces=2, seed=3)
+    cube = ep.synthesize(paths, tolerance=1e-11, **settings)
+    for tx, rx in ((0, 8), (6, 0), (7, 4), (8, 8)):
+        difference = cube[tx, rx] - slow_signal(paths, tx, rx)
+        assert np.abs(difference).max() < tolerance * amplitude_sum(paths)
+
+
 @pytest.mark.parametrize("method", ["nufft", "direct"])
 def test_what_a_hit_sends_back_in_two_ways_adds_up(paths, method):
     kinds = {"specular": "T S* R", "rough at the end": "T .* D R"}

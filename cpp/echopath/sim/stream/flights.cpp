@@ -21,10 +21,10 @@ constexpr int64_t kMinBlock = 64;            // fills the registers with vectors
 
 constexpr int64_t kBlocksOfChirps = 16;  // in flight: 32, with their tiles, left the cache that all cores share
 
-// Each block costs a little for each channel, whatever the number of its paths. Large arrays have fewer blocks in flight,
-// with more paths.
+// Each block costs a little for each channel, whatever the number of its paths: where there are many channels, fewer blocks
+// are in flight, with more paths.
 constexpr int64_t kPathsOfABlock = 256;
-constexpr int64_t kFewestBlocks = 8, kFewestPaths = 32;
+constexpr int64_t kFewestBlocks = 8;
 
 // Returns a divisor of kMostBlocksOfFlight.
 int64_t blocks_in_flight(const PathsInFlight& list) {
@@ -35,9 +35,8 @@ int64_t blocks_in_flight(const PathsInFlight& list) {
 
 // Returns the number of paths that a block has at most.
 int64_t largest_block(const PathsInFlight& list) {
-  const int64_t shares = num_chunks(list.num_rows, kNodesOfAPath), blocks = blocks_in_flight(list);
-  const int64_t fewest = std::max<int64_t>(kFewestPaths / shares, 1);
-  const int64_t most = std::clamp(kEchoesInFlight / (blocks * list.num_channels * shares), fewest, kLargestBlock);
+  const int64_t values = list.num_channels * num_chunks(list.num_rows, kNodesOfAPath), blocks = blocks_in_flight(list);
+  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (blocks * values), 1, kLargestBlock);
   if (list.num_rows <= kNodesOfChirps) return most;
   return std::min(most, std::max(kMinBlock, kValuesInFlight / (blocks * list.num_channels * list.num_rows)));
 }

@@ -23,7 +23,7 @@ using Flight = std::vector<BlockInFlight>;
 constexpr int64_t kMostBlocksOfFlight = 32;  // fixed: results must not depend on the number of threads
 
 // Returns the blocks of all lists, in their order, flight by flight. The number of values in flight is bounded whatever the
-// number of paths, and that of channels and rows, unless a few paths for each block have more. Lists share flights, so that
+// number of paths, and that of channels and rows, unless a single path for each block has more. Lists share flights, so that
 // threads find work also where lists are short, as those of a family of echoes are.
 std::vector<Flight> plan_flights(std::span<const PathsInFlight> lists);
 

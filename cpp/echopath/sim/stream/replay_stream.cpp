@@ -9,6 +9,10 @@
 namespace echopath {
 namespace {
 
+// Large arrays are replayed for so many channels at a time, unless one transmitter has more: the echoes of a block stay in
+// the cache, and synthesis takes many paths of a channel at once. What is done once for each path takes little beside them.
+constexpr int kChannelsTogether = 64;
+
 // Returns the paths less those that were left, in their order.
 std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<const int64_t> paths) {
   std::vector<int64_t> rest;
@@ -124,9 +128,15 @@ void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
 
 void ReplayStream::run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink) {
   WindowPipeline out(*this, sink);
-  PathsByGrid by_chirp = no_paths_by_grid(replayer_.grids());
-  replay_polynomials(grids, by_grid, by_chirp, out);
-  replay_in_chirps(by_chirp, by_grid[GridIndex::none().place()], out);
+  const int together = std::max(1, kChannelsTogether / num_receivers());
+  for (int first = 0; first < num_transmitters_; first += together) {
+    const int end = std::min(first + together, num_transmitters_);
+    transmitters_ = {static_cast<size_t>(first), static_cast<size_t>(end - first)};
+    PathsByGrid own = end < num_transmitters_ ? by_grid : std::move(by_grid);
+    PathsByGrid by_chirp = no_paths_by_grid(replayer_.grids());
+    replay_polynomials(grids, own, by_chirp, out);
+    replay_in_chirps(by_chirp, own[GridIndex::none().place()], out);
+  }
   out.finish();
 }
 
@@ -154,13 +164,19 @@ void ReplayStream::replay_polynomials(const PathGrids& grids, PathsByGrid& by_gr
   }
 }
 
+// Returns the extent of all channels of the transmitters whose turn it is.
+ReplayStream::Extent ReplayStream::extent_of_all(int64_t num_rows) const {
+  const auto first = static_cast<int>(transmitters_.first), count = static_cast<int>(transmitters_.count);
+  return {first * num_receivers(), count * num_receivers(), num_rows};
+}
+
 // Takes the paths away, as the functions below do: their memory is given back once they are replayed.
 std::vector<ReplayStream::Work> ReplayStream::still_works(std::vector<int64_t>& paths) {
   std::vector<Work> works;
   if (paths.empty()) return works;
   replayer_.pose_still();
-  const Replay replay = [this](auto part, auto, auto&) { return replayer_.still(part); };
-  works.push_back(Work::of_own({0, num_channels(), 1}, replay, GridIndex::none(), std::exchange(paths, {})));
+  const Replay replay = [this](auto part, auto, auto&) { return replayer_.still(part, transmitters_); };
+  works.push_back(Work::of_own(extent_of_all(1), replay, GridIndex::none(), std::exchange(paths, {})));
   return works;
 }
 
@@ -168,10 +184,10 @@ void ReplayStream::append_polynomials(PathsByGrid& by_grid, std::vector<Work>& w
   for (const GridIndex polynomial : replayer_.grids().polynomials()) {
     std::vector<int64_t>& paths = by_grid[polynomial.place()];
     if (paths.empty()) continue;
-    const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+    const Extent extent = extent_of_all(replayer_.grids().polynomial(polynomial).num_nodes);
     replayer_.pose_polynomial(polynomial, paths);
     const Replay replay = [this, polynomial](auto part, auto, auto& left) {
-      return replayer_.interpolated(part, polynomial, left);
+      return replayer_.interpolated(part, polynomial, left, transmitters_);
     };
     works.push_back(Work::of_own(extent, replay, polynomial, std::exchange(paths, {})));
   }
@@ -193,7 +209,7 @@ void ReplayStream::replay_turning(std::vector<Work>& works, WindowPipeline& out)
     Extent extent = works[i].extent;
     extent.has_logarithms = true;
     const Replay replay = [this, polynomial](auto part, auto, auto& some) {
-      return replayer_.turning(part, polynomial, some);
+      return replayer_.turning(part, polynomial, some, transmitters_);
     };
     turning.push_back(Work::of_own(extent, replay, polynomial, std::move(may_turn)));
     source.push_back(i);
@@ -210,7 +226,8 @@ void ReplayStream::replay_turning(std::vector<Work>& works, WindowPipeline& out)
 void ReplayStream::replay_in_chirps(const PathsByGrid& by_chirp, const std::vector<int64_t>& by_sample,
                                     WindowPipeline& out) {
   std::vector<Work> works;
-  for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
+  const auto first = static_cast<int>(transmitters_.first), end = first + static_cast<int>(transmitters_.count);
+  for (int transmitter = first; transmitter < end; ++transmitter) {
     append_chirps(by_chirp, transmitter, works);
     append_samples(by_sample, transmitter, works);
     const std::unique_ptr<PartlyPosedGrid>& samples = kept_samples_[transmitter];
@@ -228,8 +245,7 @@ void ReplayStream::append_chirps(const PathsByGrid& by_grid, int transmitter, st
   std::vector<int64_t> all;
   for (const std::vector<int64_t>& of_grid : by_grid) all.insert(all.end(), of_grid.begin(), of_grid.end());
   if (all.empty()) return;
-  const int num_receivers = num_channels() / num_transmitters_;
-  const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
+  const Extent extent{transmitter * num_receivers(), num_receivers(), replayer_.num_rows_by_chirp(), true};
   const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), all, kept_chirps_[transmitter]);
   for (const GridIndex polynomial : replayer_.grids().polynomials()) {
     const std::vector<int64_t>& paths = by_grid[polynomial.place()];
@@ -244,8 +260,7 @@ void ReplayStream::append_chirps(const PathsByGrid& by_grid, int transmitter, st
 // Appends the paths that no polynomial follows.
 void ReplayStream::append_samples(const std::vector<int64_t>& paths, int transmitter, std::vector<Work>& works) {
   if (paths.empty()) return;
-  const int num_receivers = num_channels() / num_transmitters_;
-  const Extent extent{transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()};
+  const Extent extent{transmitter * num_receivers(), num_receivers(), replayer_.grids().num_sample_nodes()};
   const PosedGrid& samples = posed(replayer_.grids().samples(transmitter), paths, kept_samples_[transmitter]);
   const Replay replay = [this, &samples](auto part, auto, auto&) { return replayer_.exact(part, samples); };
   works.push_back({extent, replay, GridIndex::none(), paths});

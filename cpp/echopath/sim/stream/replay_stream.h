@@ -24,7 +24,8 @@ class PathWatcher {
   virtual void end_blocks() = 0;
 };
 
-// Replays paths and sends their echoes to a sink, many blocks at a time. Blocks and their order depend on the paths alone.
+// Replays paths and sends their echoes to a sink, many blocks at a time. Blocks and their order depend on the paths and the
+// number of channels alone.
 class ReplayStream {
  public:
   // Tells which paths the echoes of some blocks belong to.
@@ -32,7 +33,7 @@ class ReplayStream {
     std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those joined in it
     int64_t count;                   // of all paths, with those that are negligible and have no echo
   };
-  // Takes the blocks of one channel, which it may change. Each path comes once.
+  // Takes the blocks of one channel, which it may change. Each path comes once for each channel.
   using Sink = std::function<void(int channel, std::span<Echoes> blocks, const EchoPaths& paths)>;
 
   // `paths` and `radar` must outlive the stream. Raises as Replayer.
@@ -53,11 +54,12 @@ class ReplayStream {
   const Replayer& replayer() const { return replayer_; }
   // Sends the paths to the sink, all of them or some (indices, of which those that are to be joined follow each other). A
   // stream that sends some at a time keeps the meshes as posed in each chirp, where paths need them, and at the samples of
-  // all chirps where that is no more than kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
-  // amplitudes at 32 nodes a path (a third more of logarithms, for their turns), whatever the number of paths, chirps and
-  // channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B for each channel
-  // and node of a block (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread at
-  // a time, while the next blocks are replayed. Raises Cancelled.
+  // all chirps where that is no more than kKeptSamples. Large arrays take all paths for a few of their transmitters, then for
+  // the next. Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path (a third more of
+  // logarithms, for their turns), whatever the number of paths, chirps and channels; a sink that sorts them needs at most as
+  // much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation), and on
+  // what chains of its paths share. `sink` is called from one thread at a time, while the next blocks are replayed. Raises
+  // Cancelled.
   void run(const Sink& sink);
   void run(std::span<const int64_t> paths, const Sink& sink);
   // Sets the job that later calls of run() report to and that can cancel them.
@@ -77,6 +79,8 @@ class ReplayStream {
   struct Work;
   struct Window;
   class WindowPipeline;
+  int num_receivers() const { return num_channels() / num_transmitters_; }
+  Extent extent_of_all(int64_t num_rows) const;
   void run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink);
   void replay_polynomials(const PathGrids& grids, PathsByGrid& by_grid, PathsByGrid& by_chirp, WindowPipeline& out);
   std::vector<Work> still_works(std::vector<int64_t>& paths);
@@ -97,6 +101,7 @@ class ReplayStream {
   Job* job_;
   std::optional<JoinRule> join_rule_;
   PathWatcher* watcher_ = nullptr;
+  SomeTransmitters transmitters_;  // whose turn it is
   // These hold time grids and posed meshes from one run over a part of the paths to the next.
   std::optional<PathGrids> kept_grids_;
   bool keeps_poses_ = false;

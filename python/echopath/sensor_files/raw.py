@@ -59,12 +59,12 @@ def load_raw(path: str | os.PathLike[str], radar: _core.Radar) -> Iterator[Recep
     path: of the file; radar: that it is of, as `load_radar` sets it up, whose `adc` tells how the words are ordered
     Returns an iterator over Receptions, as `Frame.received` is one: the codes, and the cube that they stand for by the full scale
     and the `gain_db` of the `adc`, [tx, rx, chirp, sample] in sqrt(W) at the antenna, [1, rx, slots, sample] of transmitters
-    that send at once. A gain that was chosen for each frame is not in the file. Raises ep.FileError when the file cannot be read
-    or holds no whole frame, ValueError as `save_raw` does. Warns (RuntimeWarning) where the file ends within a frame, as one of
-    another radar may.
+    that send at once. Raises ep.FileError when the file cannot be read or holds no whole frame, ValueError as `save_raw` does.
+    Warns (RuntimeWarning) where the file ends within a frame, as one of another radar may, and of levels that nobody knows: a
+    gain that was chosen for each frame, as without an `adc`, is not in the file.
     """
-    shape = _slot_shape(radar)
-    length = 2 * _num_words(shape, _adc_of(radar))
+    shape, adc = _slot_shape(radar), _adc_of(radar)
+    length = 2 * _num_words(shape, adc)
     require_readable(path)
     try:
         with open(path, "rb") as file:
@@ -73,6 +73,9 @@ def load_raw(path: str | os.PathLike[str], radar: _core.Radar) -> Iterator[Recep
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     if count == 0:
         raise _core.FileError(f"{path}: must hold {length:,} bytes, a frame of that radar, got {rest:,}")
+    if adc.automatic_gain:
+        warn_user("radar.receiver.adc: has no gain of its own, and what was chosen for each frame is not in the file: cubes have "
+                  f"the levels of {adc.gain_db:g} dB; an adc with the gain_db of the sensor has those at the antenna")
     if rest:
         warn_user(f"{path}: ends within a frame: {rest:,} of {length:,} bytes are left after {counted(count, 'frame')}")
     return (_reception_of(np.fromfile(path, "<i2", length // 2, offset=place * length), shape, radar) for place in range(count))

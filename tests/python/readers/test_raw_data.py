@@ -1,6 +1,7 @@
 """Raw data of TI sensors, read back by a tool of theirs (OpenRadar 1.0.1, unchanged), and scene files that take sensors."""
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -117,6 +118,18 @@ def test_twelve_bits_have_their_sign_also_where_the_word_has_not(written, tmp_pa
     np.full(64 * 4 * COUNT * 2, 0x801, "<i2").tofile(tmp_path / "one.bin")
     read, = ep.load_raw(tmp_path / "one.bin", ep.load_radar(written(adcCfg="adcCfg 0 1")))
     assert np.all(read.codes == -2047)
+
+
+def test_levels_without_a_gain_are_told(written, tmp_path):
+    """Code 1 is a step of 2^-15 of the full scale in each branch, divided by the gain."""
+    np.full(64 * 4 * COUNT * 2, 1, "<i2").tofile(tmp_path / "one.bin")
+    ideal = ep.load_radar(written(), ideal=True)
+    with pytest.warns(RuntimeWarning, match=r"radar.receiver.adc: has no gain of its own.* the levels of 30 dB"):
+        unknown, = ep.load_raw(tmp_path / "one.bin", ideal)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        known, = ep.load_raw(tmp_path / "one.bin", ideal.replace(receiver=ep.Receiver(adc=ep.Adc(bits=16, gain_db=50.0))))
+    np.testing.assert_allclose(known.cube, unknown.cube / 10, rtol=1e-12)
 
 
 def test_files_that_hold_no_whole_number_of_frames_are_told(written, tmp_path):

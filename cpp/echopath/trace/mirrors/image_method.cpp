@@ -7,6 +7,7 @@
 
 #include "echopath/em/polarization/mirrored_fields.h"
 #include "echopath/record/near_antenna.h"
+#include "echopath/trace/mirrors/coplanar_mirrors.h"
 
 namespace echopath {
 namespace {
@@ -43,7 +44,7 @@ bool ImageMethod::follow(const Vec3& receiver, ImagePath& path) {
     // Of bounces at a common edge one looks at all from where the wave comes.
     if (k > 0 && (points_[k] - points_[k - 1]).norm() >= kAtEdge) from = lifted_toward(k - 1, points_[k]);
     const std::optional<Hit> hit = locator_.locate(chain_of(mirrors_, sequence_)[k], from, points_[k]);
-    if (!hit) return false;
+    if (!hit || hit_in_front(mirrors_, sequence_[k], from, points_[k])) return false;
     hits.push_back(*hit);
   }
   if (!sees_all(receiver)) return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "echopath/record/hit_points.h"
+#include "echopath/trace/mirrors/coplanar_mirrors.h"
 
 namespace echopath {
 namespace {
@@ -85,8 +86,9 @@ bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& a
 bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const {
   const Mirror& mirror = mirrors_[index];
   if (!mirror.lies_between(from, image)) return false;
-  const std::optional<Hit> hit = mirror.mesh.locate(mirror.met_on_line(from, image));
-  if (!hit) return false;
+  const Vec3 on_plane = mirror.met_on_line(from, image);
+  const std::optional<Hit> hit = mirror.mesh.locate(on_plane);
+  if (!hit || hit_in_front(mirrors_, index, from, on_plane)) return false;
   // The point is moved to the facet itself, which may lie a little beside the plane.
   met = hit_point(geometry_.corners(hit->mesh_id, hit->triangle_id), *hit);
   LegBounce& bounce = leg.bounces[leg.num_bounces++];

@@ -7,6 +7,7 @@
 
 #include "echopath/scene/edges/planar_patches.h"
 #include "echopath/trace/geometry/convex_hull.h"
+#include "echopath/trace/mirrors/coplanar_mirrors.h"
 
 namespace echopath {
 namespace {
@@ -124,6 +125,7 @@ std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry
   for (uint32_t mesh_id = 0; mesh_id < scene.meshes().size(); ++mesh_id) {
     if (scene.node_of(mesh_id).material->mirror) FaceFinder(scene, geometry, mesh_id).append_to(mirrors);
   }
+  find_coplanar(geometry, mirrors);
   return mirrors;
 }
 

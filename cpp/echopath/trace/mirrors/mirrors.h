@@ -1,5 +1,6 @@
 #pragma once
 // Finds the planes flagged `mirror`, and tells which coefficient of a surface holds for a polarisation.
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 
 namespace echopath {
 
+class MirrorsInPlane;
+
 // Describes a plane of a flagged mesh; its point is relative to the trace origin.
 struct Mirror : Plane {
   uint32_t mesh_id = 0;
@@ -19,6 +22,7 @@ struct Mirror : Plane {
   std::vector<Vec3> outline;  // corners of the convex hull, in order around it
   bool is_solid = false;      // the triangles fill the outline: they leave no holes and no notches
   PlaneMesh mesh;
+  std::shared_ptr<const MirrorsInPlane> coplanar;  // others that lie on this one (coplanar_mirrors.h); null: none
 };
 
 // Returns the corners of the convex hull of points of a mirror's plane, in order around it (Andrew 1979).

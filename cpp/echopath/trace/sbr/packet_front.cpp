@@ -65,10 +65,19 @@ void PacketFront::find_hits(FirstHits& first, const LaneValues* begins, TraceSta
   const Sees sees = first.num_sheets < kMostSheetsAhead ? Sees::kAll : Sees::kOpaque;
   context_.geometry.intersect(context_.settings.transmitter, first.directions, first.count, first.hits, sees, begins);
   statistics.num_queries += first.count;
+  if (context_.surfaces.has_coplanar()) settle(first);
   arrive(first, statistics);
   see_receiver(first, statistics);
   run_simd<&leave_lanes>(&first, unpacked(context_.settings.receiver));
   if (context_.surfaces.has_lobes()) leave_along_lobes(first);
+}
+
+// Gives hits on mirrors that lie on each other to the front ones.
+void PacketFront::settle(FirstHits& first) const {
+  for (int lane = 0; lane < first.count; ++lane) {
+    if (first.hits.verdicts[lane] != EmbreeScene::Verdict::kHit) continue;
+    context_.surfaces.settle(context_.settings.transmitter, first.hits.position[lane], first.hits.met[lane]);
+  }
 }
 
 // Gives rays that leave diffusely the directions of lobes other than Lambert's, by the same numbers.

@@ -139,7 +139,9 @@ bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, Sees sees, 
   ++block.statistics.num_queries;
   const EmbreeScene::Verdict verdict = context_.geometry.intersect_from_surface(from, direction, met, sees, begin);
   if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
-  return verdict == EmbreeScene::Verdict::kHit;
+  if (verdict != EmbreeScene::Verdict::kHit) return false;
+  context_.surfaces.settle(from, met.position, met.hit);
+  return true;
 }
 
 template <class Weight>

@@ -102,6 +102,20 @@ TEST_F(Corner, SequencesThatAreLeftOutOrTooLongAreNotThere) {
   for (const Leg& leg : legs_from(point_, normal, 1)) EXPECT_LE(leg.num_bounces, 1);
 }
 
+// The image over a plane is one, however many mirrors lie in it.
+TEST_F(Corner, OfTwoFloorsInOnePlaneTheLastHasTheLeg) {
+  const MaterialPtr metal = echopath::testing::share(Material::metal(true));
+  echopath::testing::add_rectangle(scene_, "puddle", Vec3(9, 8, 0), Vec3(0, -16, 0), Vec3(-9, 0, 0), metal);
+  geometry_.emplace(scene_, PosedScene(scene_, 0.0), Vec3::Zero());
+  mirrors_ = find_mirrors(scene_, *geometry_);
+  frusta_ = FrustumFinder(mirrors_).find(antenna_, {});
+  const std::vector<Leg> legs = legs_from(point_, Vec3::UnitX());
+  EXPECT_FALSE(over(legs, {0}));
+  const Leg* leg = over(legs, {2});
+  ASSERT_TRUE(leg);
+  EXPECT_NEAR(leg->length, (Vec3(3.0, 0.0, -1.0) - point_).norm(), 1e-12);
+}
+
 // What lies in a mirror's plane sees nothing in it.
 TEST_F(Corner, APointOnTheFloorHasNoLegOverIt) { EXPECT_FALSE(over(legs_from(Vec3(2.0, 0.5, 0.0), Vec3::UnitX()), {0})); }
 

@@ -49,9 +49,9 @@ def echo_over_direct(points, normal, max_bounces):
     return np.sum(np.abs(sum(pairs)) ** 2) / np.sum(np.abs(leg[0][1]) ** 4)
 
 
-def patch_in_corner(centre, side, max_bounces):
-    """Traced and expected echo over the direct one, in dB."""
-    scene = corner(patch=(plate(centre, (-1, 0, 0), side), lambert(.5)))
+def patch_in_corner(centre, side, max_bounces, **more):
+    """Traced and expected echo over the direct one, in dB. more: objects that change nothing"""
+    scene = corner(patch=(plate(centre, (-1, 0, 0), side), lambert(.5)), **more)
     paths = ep.trace(scene, make_radar(ANTENNA), num_rays=6000, max_bounces=max_bounces,
                      polarization="scalar").select("T .* 'patch' .* R")
     mesh_id = next(mesh.id for mesh in paths.scene.meshes if mesh.name == "patch")
@@ -74,6 +74,24 @@ def test_a_patch_in_a_corner_sees_four_antennas(centre, side):
 def test_fewer_bounces_leave_out_pairs_and_change_no_other(max_bounces):
     found, expected = patch_in_corner((20, 1.0, .7), .002, max_bounces)
     assert found == pytest.approx(expected, abs=IMAGE_TOLERANCE_DB)
+
+
+def test_mirrors_that_lie_on_others_have_no_images_of_their_own():
+    puddle = rectangle((5, -3, 0), (10, 0, 0), (0, 5, 0))
+    poster = rectangle((18, 3, .1), (-10, 0, 0), (0, 0, 1.4))
+    found, expected = patch_in_corner((20, 1.0, .7), .002, LONGEST, puddle=(puddle, MIRROR), poster=(poster, MIRROR))
+    assert found == pytest.approx(expected, abs=IMAGE_TOLERANCE_DB)
+
+
+# Rays know no distances below 3e-6 m here; of mirrors in one plane the last one counts.
+@pytest.mark.parametrize("height, permittivity", [(0.0, 9.0), (2e-6, 9.0), (-2e-6, 4.0)])
+def test_of_mirrors_on_each_other_the_front_one_has_the_image(height, permittivity):
+    road, puddle = (ep.Material(permittivity=value, mirror=True) for value in (4.0, 9.0))
+    scene = scene_of(road=(rectangle((-6, -5, 0), (11, 0, 0), (0, 11, 0)), road),
+                     puddle=(rectangle((-2, -1, height), (3, 0, 0), (0, 4, 0)), puddle))
+    field = fields(ep.trace(scene, make_radar((0, 0, 2), polarization=(0, 1, 0)), num_rays=10).select("T .* R")).sum()
+    gamma = (math.sqrt(permittivity) - 1) / (math.sqrt(permittivity) + 1)
+    assert abs(field) == pytest.approx(gamma * WAVELENGTH / (4 * math.pi * 4), rel=2 * abs(height) + FIELD_TOLERANCE)
 
 
 def physical_optics(centre, radius, antennas):

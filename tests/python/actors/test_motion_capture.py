@@ -224,7 +224,7 @@ def test_a_first_pose_of_its_own_is_left_out(tmp_path):
     (("Frames: 31", "Frames: 32"), "the file ends too early"),
     (("Frame Time: 0.0333333333", "Frame Time: 0"), "the frame time must be from 1e-6 to 100 s"),
     (("OFFSET 0 45 0", "OFFSET 0 4500 0"), "its neck is .* times as long as that of a body of such legs"),
-    (("LeftForeArm", "Left"), "has no joint for left_elbow; its joints are Hips"),
+    (("LeftForeArm", "Left"), "must be the capture of a person, but has no joint for left_elbow; its joints are Hips"),
     (("CHANNELS 3 Zrotation", "CHANNELS 3 Wrotation"), "must have a channel such as Xrotation where it has 'Wrotation'"),
 ])
 def test_faults_are_told_by_name(walk, change, message):

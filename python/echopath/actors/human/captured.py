@@ -74,7 +74,8 @@ def captured_body(path: Path, *, unit: float | None, up: str | None, height: flo
     found = find_joints([joint.name for joint in capture.joints])
     if missing_joints(found):
         names = ", ".join(joint.name for joint in capture.joints)
-        raise _core.FileError(f"{path}: has no joint for {', '.join(missing_joints(found))}; its joints are {names[:400]}")
+        raise _core.FileError(f"{path}: must be the capture of a person, but has no joint for "
+                              f"{', '.join(missing_joints(found))}; its joints are {names[:400]}")
     vertical = up or _vertical_axis(capture.positions, found)
     axis = "xyz".index(vertical)
     order = [(axis + 1) % 3, (axis + 2) % 3, axis]  # what becomes x, y and z

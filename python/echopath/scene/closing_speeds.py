@@ -11,7 +11,7 @@ from ..base.numerics.golden import golden_place
 from ..base.numerics.rates import step_within
 from ..base.radar.antennas import middle_of_antennas
 
-NUM_TIMES = 8  # of a frame, at which what turns is looked at: no fractions of it, so that no turn repeats them
+NUM_TIMES = 8  # within a frame, at which what turns is looked at beside its ends: no fractions of it, which turns might repeat
 
 NEAR = 0.5     # of a limit: what is slower in the middle and at the ends of a frame does not pass it between
 
@@ -73,8 +73,7 @@ def _fastest(limit: float, speeds: Speeds, scene, radar, time: float) -> dict[st
     extent = max(radar.frame_duration - 2.0 * step_within(radar.frame_duration), 0.0)
     moving = [mesh for mesh in scene.meshes if scene.is_moving(mesh.id)]
     near = [mesh for mesh in moving if _may_pass(NEAR * limit, mesh, scene, radar, time, extent)]
-    for number in range(1, NUM_TIMES + 1):
-        place = golden_place(number) - 0.5
+    for place in (-0.5, *(golden_place(number) - 0.5 for number in range(1, NUM_TIMES + 1)), 0.5):
         for name, of_mesh in _speeds_of(near, scene, radar, time + place * extent).items():
             fastest[name] = max(fastest[name], float(of_mesh.max()), float(of_mesh.min()), key=abs)
     return fastest

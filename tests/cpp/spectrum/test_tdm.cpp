@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "echopath/spectrum/array/element_reader.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"
 
@@ -42,6 +45,10 @@ TEST(Tdm, CarriersThatDifferTurnAnEchoByItsDelay) {
   EXPECT_EQ(phasors[1], Complex(1.0));
   EXPECT_EQ(phasors[2], Complex(1.0));
   EXPECT_NEAR(std::arg(phasors[3]), -1.257507, kLastDigit);  // 0.2001385 turns: 60 m at 1 MHz
+  radar.waveform.frequency_steps = {2e6, 3e6};               // the phases are over those of the first transmitter
+  const auto above_first = carrier_phasors(radar, {0.0, 30.0});
+  EXPECT_EQ(above_first[1], Complex(1.0));
+  EXPECT_NEAR(std::arg(above_first[3]), -1.257507, kLastDigit);
   // A wider sweep has a higher carrier in its middle.
   radar.waveform.frequency_steps = {};
   radar.waveform.bandwidth_steps = {0.0, 1e6};
@@ -52,6 +59,25 @@ TEST(Tdm, CarriersThatDifferTurnAnEchoByItsDelay) {
   radar.waveform.bandwidth_steps = {0.0, 1e6};
   radar.multiplexing = Multiplexing::kDdm;
   EXPECT_TRUE(carrier_phasors(radar, {30.0}).empty());
+}
+
+TEST(Tdm, CarriersAreThoseOfTheRangesThatAreRead) {
+  Radar radar = testing::radar_with({Vec3::Zero(), Vec3(0.0, 0.004, 0.0)}, {Vec3::Zero()}, 8, 16);
+  radar.waveform.frequency_steps = {0.0, 1e6};
+  RangeDoppler map = testing::empty_map(radar);
+  const int64_t still = std::ranges::find(map.velocity, 0.0) - map.velocity.begin();
+  const auto num_velocities = std::ssize(map.velocity), num_ranges = std::ssize(map.range);
+  ASSERT_LT(still, num_velocities);
+  for (int64_t range = 0; range < num_ranges; ++range) {
+    map.values[still * num_ranges + range] = 1.0;
+    const double delay = 2.0 * map.range[range] / kSpeedOfLight;
+    map.values[(num_velocities + still) * num_ranges + range] = std::polar(1.0, kTwoPi * 1e6 * delay);
+  }
+  const VirtualArray array = virtual_array(radar);
+  const ElementReader reader(map, array, radar, Overlaps::kAverage, true);
+  Eigen::MatrixXcd values(2, 3);
+  reader.read(still, num_ranges - 3, 3, values);
+  for (const Complex value : values.reshaped()) EXPECT_NEAR(std::abs(value - 1.0), 0.0, kRounding);
 }
 
 TEST(Tdm, TransmittersThatSendAtOnceHaveNoPhaseBetweenThem) {

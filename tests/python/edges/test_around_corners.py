@@ -14,10 +14,11 @@ OF_ROUNDING = 1e-6  # of the field nothing hides
 BEFORE, BEHIND = 10.0, 8.0  # m, of the edge
 
 
-def sommerfeld(source, at, is_electric):
+def sommerfeld(source, at, is_electric, sine_to_edge=1.0):
     """The field about a half plane, over the wave that comes: angles from its face; the wave's field along the edge is electric
-    or magnetic (Born and Wolf, 11.5), at the distance parameter of spherical waves."""
-    distance = BEFORE * BEHIND / (BEFORE + BEHIND)
+    or magnetic (Born and Wolf, 11.5), at the distance parameter of spherical waves. A wave that slants has the wave number across
+    the edge, and longer ways (11.6)."""
+    distance = BEFORE * BEHIND / (BEFORE + BEHIND) * sine_to_edge
 
     def part(angle):
         across = np.cos(0.5 * angle)
@@ -50,6 +51,27 @@ def test_the_shadow_of_a_half_plane_is_sommerfelds(polarization, is_electric):
     assert 20.0 * np.log10(found["share"]) == pytest.approx(20.0 * np.log10(wanted), abs=OF_SOMMERFELD_DB)
     assert found["share"][0] == pytest.approx(0.5, abs=0.03)
     assert found["length"] == pytest.approx(BEFORE + BEHIND, rel=1e-9)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_way_that_slants_may_begin_and_end_beside_the_edge(turned):
+    """It meets the edge between the feet of both ends, of which one lies 5 m beyond its end. The other edge from there leads
+    away so steeply that it has no way."""
+    screen = np.array([(0.0, -900.0, -2700.0), (0.0, 0.0, 0.0), (0.0, 0.0, 900.0), (0.0, -900.0, 900.0)])
+    scene = ep.Scene()
+    scene.add(ep.Mesh(screen, np.array([(0, 1, 2), (0, 2, 3)])), name="screen", material=ep.Material.metal())
+    source, at, rise = np.radians(70.0), np.radians(270.0), 15.0
+    low, high = (np.array([-np.sin(angle), -np.cos(angle), 0.0]) * distance
+                 for angle, distance in ((source, BEFORE), (at, BEHIND)))
+    high[2] += rise
+    antenna, point = (np.array((0.0, 0.0, -5.0)) + one for one in ((high, low) if turned else (low, high)))
+    across = BEFORE + BEHIND
+    length = np.hypot(across, rise)
+    found = ways_to(scene, [point], antenna)
+    assert found["point"][0] == pytest.approx((0.0, 0.0, -5.0 + rise * BEFORE / across), abs=1e-9)
+    assert found["length"][0] == pytest.approx(length, rel=1e-12)
+    wanted = np.linalg.norm(point - antenna) / length * sommerfeld(source, at, True, across / length)
+    assert 20.0 * np.log10(found["share"][0]) == pytest.approx(20.0 * np.log10(wanted), abs=OF_SOMMERFELD_DB)
 
 
 def half_hidden_box(turn, shift):

@@ -1,6 +1,8 @@
 // Received power and its standard error: against closed forms and against the spread of many independent traces.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 #include <map>
@@ -299,6 +301,44 @@ TEST(ReceivedPower, ErrorOfWhatStandsForOthersIsTheRootOfTheSumOfSquares) {
   EXPECT_GT(some.num_paths(), 100);
   EXPECT_LT(some.num_paths(), paths.num_paths() / 32);
   EXPECT_NEAR(received_power(some).chance / std::sqrt(squares), 1.0, kRounding);
+}
+
+// The echo of a hit over a faint mirror is drawn, that without it is there for certain: so the power of the hit errs by what
+// both of them make together, the mean square over all phases between them.
+TEST(GroupSums, TellWhatStandsForOthersBesideWhatIsThereForCertain) {
+  Scene scene = lambert_plate();
+  Material glass;
+  glass.permittivity = 2.0;
+  glass.mirror = true;
+  add_rectangle(scene, "floor", {0, -5, -10}, {25, 0, 0}, {0, 10, 0}, share(glass));
+  const Paths all = shot(scene, plain_radar(Vec3::Zero(), Vec3::Zero()), 40000, 1, 1);
+  std::vector<uint8_t> keep;
+  for (const uint64_t diffuse : all.diffuse) keep.push_back(diffuse != 0);
+  Paths paths = all.select(keep);
+  for (const std::complex<double>& amplitude : replayed(paths).amplitudes)
+    paths.frame.faint_power = std::max(paths.frame.faint_power, 0.3 * std::norm(amplitude));
+  const Paths some = thinned(paths);
+  std::map<std::tuple<uint32_t, float, float>, std::array<std::complex<double>, 2>> fields;  // for certain, and drawn
+  const Replayed replay = replayed(some);
+  const double wavenumber = kTwoPi * some.radar.waveform.start_frequency / kSpeedOfLight;
+  for (size_t i = 0; i < replay.lengths.size(); ++i) {
+    const Hit& hit = some.hits_of(static_cast<int64_t>(i))[std::countr_zero(some.diffuse[i])];
+    const bool is_drawn = (some.flags[i] & kStandsForOthers) != 0;
+    EXPECT_EQ(is_drawn, some.num_bounces[i] > 1);
+    fields[{hit.triangle_id, hit.u, hit.v}][is_drawn ? 1 : 0] +=
+        replay.amplitudes[i] * std::polar(1.0, -std::fmod(wavenumber * replay.lengths[i], kTwoPi));
+  }
+  double squares = 0.0, of_drawn_alone = 0.0;
+  for (const auto& [hit, field] : fields) {
+    of_drawn_alone += std::pow(std::norm(field[1]), 2);
+    for (const double turn : {0.0, 0.25, 0.5, 0.75})
+      squares += 0.25 * std::pow(std::norm(field[0] + std::polar(1.0, kTwoPi * turn) * field[1]) - std::norm(field[0]), 2);
+  }
+  EXPECT_GT(squares, 2.0 * of_drawn_alone);
+  const std::vector<uint32_t> together(static_cast<size_t>(some.num_paths()));
+  const Sorting sorting{together, 1};
+  const GroupSums sums = sum_groups(some, some.radar, {&sorting, 1}, nullptr, nullptr).front().front();
+  EXPECT_NEAR(sums.drawn_squares / squares, 1.0, kCancelled);
 }
 
 // By the image method: lambda / (4 pi L) over the way of 20 m, times the gain of half of both antennas and the root of 9 W.

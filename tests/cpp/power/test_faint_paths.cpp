@@ -123,6 +123,31 @@ TEST(FaintPaths, HaveTheirPowerTimesAPowerOfFourUpToTheFaintPower) {
   some.validate();
 }
 
+// A transmitter that looks toward the wall makes a path over it much stronger than its reversal.
+TEST(FaintPaths, AreKeptForCertainWhereTheirReversalsAreNotFaint) {
+  Radar radar = plain_radar({0, 0, 0}, {0, 0, 0});
+  radar.transmitters[0].pattern = AntennaPattern::cosine_power(40.0);
+  radar.transmitters[0].orientation = turned(0.5, 0.0);
+  Paths asked = traced(1, radar);
+  asked.frame.faint_power = 0.1 * largest_power(asked);
+  const Paths some = thinned(asked);
+  std::map<Name, double> power_of;
+  std::set<Name> kept;
+  const std::vector<double> before = path_power(asked);
+  for (int64_t path = 0; path < asked.num_paths(); ++path)
+    power_of[name_of(asked, path)] = before[static_cast<size_t>(path)];
+  for (int64_t path = 0; path < some.num_paths(); ++path) kept.insert(name_of(some, path));
+  const double least = 0.25 * (1.0 + kSingle) * asked.frame.faint_power;
+  int num_certain = 0;
+  for (const auto& [name, power] : power_of) {
+    const auto other = power_of.find(reversed(name));
+    if (other == power_of.end() || power > least || other->second < least) continue;
+    ++num_certain;
+    EXPECT_TRUE(kept.contains(name) && kept.contains(other->first));
+  }
+  EXPECT_GT(num_certain, 100);
+}
+
 // Between antennas in one place a pair of legs and the pair exchanged are one path and its reversal. Were one kept without
 // the other, what adds up in phase would be lost.
 TEST(FaintPaths, AreKeptTogetherWithTheirReversals) {

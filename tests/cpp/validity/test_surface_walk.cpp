@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "cpp/support/scenes.h"
 #include "echopath/scene/smooth/smooth.h"
 
@@ -60,6 +62,18 @@ TEST(SurfaceWalk, FindsThePointOfAPlaneOverManyTriangles) {
   EXPECT_LT((walker.place(spot->hit) - point).norm(), kSinglePrecision);
 }
 
+TEST(SurfaceWalk, GoesOverAPlaneOfBothWindings) {
+  Surface surface = grid(4, 0.0);
+  for (size_t t = 0; t < surface.triangles.size(); t += 2) std::swap(surface.triangles[t][0], surface.triangles[t][1]);
+  Walker walker;
+  walker.add(surface, false);
+  const Vec3 point(2.7, 3.4, 0.0);
+  const auto spot = walker.walk(0, point);
+  ASSERT_TRUE(spot);
+  EXPECT_TRUE(spot->is_near);
+  EXPECT_LT((walker.place(spot->hit) - point).norm(), kSinglePrecision);
+}
+
 TEST(SurfaceWalk, EndsAtTheRim) {
   Walker walker;
   walker.add(grid(4, 0.0), false);
@@ -88,6 +102,15 @@ TEST(SurfaceWalk, NearIsOneTriangleFurtherOnASmoothSurface) {
   ASSERT_TRUE(near && far);
   EXPECT_TRUE(near->is_near);
   EXPECT_FALSE(far->is_near);
+}
+
+TEST(SurfaceWalk, APlaneBehindABendIsNotNear) {
+  Walker round;
+  round.add(grid(8, 0.2), true);
+  const auto before = round.walk(0, {2.6, 0.4, 0.52}), behind = round.walk(0, {6.6, 0.4, 0.28});
+  ASSERT_TRUE(before && behind);
+  EXPECT_TRUE(before->is_near);
+  EXPECT_FALSE(behind->is_near);
 }
 
 TEST(SurfaceWalk, FindsPointsOfTheSphereAboveEdgesAndVertices) {

@@ -59,6 +59,22 @@ TEST(EdgePower, SeveralEdgesInARowSendNoMoreThanOneThatIsNotCutOff) {
   }
 }
 
+// The field spreads over both ways, and the zone of stationary phase goes as the root of r s / (r + s): 1 / (r s (r + s)).
+TEST(EdgePower, ALongEdgeBetweenTwoPlacesFallsWithBothWaysAndTheirSum) {
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const EdgeEstimate estimate(radar, Transform::Identity(), Vec3::Zero());
+  const Scene scene = strip_at(10.0);
+  const Wedge wedge = posed_edges(scene, PosedScene(scene, 0.0), Vec3::Zero()).front().wedge;
+  const Vec3 axis = axis_of(wedge), across = axis.unitOrthogonal();
+  // On Keller's cone the phase stands at any slant: there and back the ways have opposite slopes.
+  const auto power = [&](double slope, double there, double back) {
+    const Vec3 in = (across + slope * axis).normalized(), out = (across - slope * axis).normalized();
+    return estimate.power(wedge, {in, -in, there}, {out, -out, back}, 1.0);
+  };
+  EXPECT_NEAR(power(0.0, 10.0, 20.0) / power(0.0, 10.0, 10.0), 2000.0 / 6000.0, kRounding);
+  EXPECT_NEAR(power(0.7, 10.0, 20.0) / power(0.0, 10.0, 20.0), 1.0, kRounding);
+}
+
 TEST(EdgePower, NothingIsLeftOutWhereNoEdgeStandsOutOfTheNoise) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const double noise = noise_power_in_cell(radar);

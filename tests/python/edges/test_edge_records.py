@@ -34,6 +34,17 @@ def test_only_edges_that_both_antennas_see_make_echoes(of_a_box):
     assert hidden.select("T E'plate' R").num_paths == 0 < hidden.select("T E'screen' R").num_paths
 
 
+def test_mirrors_and_edges_count_as_bounces():
+    """An edge over a floor has four ways, of which the one that is mirrored twice has three bounces."""
+    scene = scene_of(box((0.1, 0.5, 0.6)), yaw=0.4)
+    floor = np.array([(-1.0, -5.0, -1.0), (12.0, -5.0, -1.0), (12.0, 5.0, -1.0), (-1.0, 5.0, -1.0)])
+    scene.add(ep.Mesh(floor, np.array([(0, 1, 2), (0, 2, 3)])), name="floor", material=ep.Material.metal(mirror=True))
+    found = {most: on_edges(trace(scene, radar_at(), num_rays=2000, max_bounces=most)) for most in (1, 2, 3)}
+    assert {most: int(np.max(paths.num_bounces)) for most, paths in found.items()} == {1: 1, 2: 2, 3: 3}
+    assert found[2].select("T 'floor' E R").num_paths == found[2].select("T (E) 'floor' R").num_paths > 0
+    assert found[3].select("T 'floor' (E) 'floor' R").num_paths > 0
+
+
 def test_expressions_and_partitions_know_them(of_a_box):
     edges = of_a_box.select("T E R")
     assert edges.num_paths == of_a_box.select("T E'plate' R").num_paths == of_a_box.select("T ['plate'] R & T E R").num_paths

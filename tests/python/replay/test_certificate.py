@@ -114,6 +114,24 @@ def test_slow_things_are_checked_at_few_times():
     assert np.allclose(places[2:], [(k * (np.sqrt(5) - 1) / 2) % 1 for k in (1, 2, 3)])
 
 
+@pytest.mark.parametrize("kind", ["turns", "keys"])
+def test_before_a_radar_that_moves_there_are_as_many_times_as_for_what_moves(kind):
+    radar = radar_of()
+    frame = frame_of(radar)
+    times = np.linspace(-0.1 * frame, 1.1 * frame, 9)
+    motion = (ep.LinearMotion(angular_velocity=(0, 0, 6.0 * np.pi / frame)) if kind == "turns" else
+              ep.KeyframeMotion(times=times, translations=np.outer((times / frame) ** 3, (0.01, 0.0, 0.0)),
+                                interpolation="linear"))
+
+    def num_times(of_radar, of_ball):
+        scene = ep.Scene()
+        scene.add(ep.actors.sphere(0.3), name="ball", material=ROUGH, position=(8, 0, 1), motion=of_ball)
+        paths = ep.trace(scene, radar_of(motion=of_radar), num_rays=500, max_bounces=1)
+        return len(ep.validity(paths).times)
+
+    assert num_times(motion, None) == num_times(None, motion) > 5
+
+
 # --- how fast a motion turns, and replay of what returns to where it was ---
 
 def oscillating(periods, times):

@@ -233,6 +233,19 @@ def test_arrays_name_the_leg_that_is_blocked():
         assert not report.left.any(), select
 
 
+@pytest.mark.parametrize("ends", ["transmitters", "receivers"])
+def test_one_antenna_elsewhere_than_that_of_the_trace_is_looked_from(ends):
+    """A screen stands between the ball and a place beside the radar, from where the record is to be replayed."""
+    scene = scene_of(ball=(BALL, ROUGH, (10, 0, 1), None),
+                     screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 1.5), ROUGH, (4, 1.8, 1), None))
+    radar = radar_of(num_chirps=1)
+    paths = ep.trace(scene, radar, num_rays=20000).select("T 'ball' R")
+    beside = ep.validity(paths, radar.replace(**{ends: [ep.Antenna((0, 3, 1))]}), arrays=True)
+    assert np.all((beside.blocked if ends == "transmitters" else beside.receiver_blocked) == 1)
+    assert not np.any(beside.receiver_blocked if ends == "transmitters" else beside.blocked)
+    assert ep.validity(paths, radar).ok
+
+
 def test_what_is_found_of_a_path_does_not_depend_on_those_beside_it():
     """Legs are shared by the paths over all pairs of mirror chains to a hit: here, paths of different hits are asked, and a
     single one."""

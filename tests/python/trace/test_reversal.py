@@ -129,6 +129,24 @@ def test_exchanged_antennas_and_polarisations_receive_the_same():
         assert count >= 20 and error < POLARIZED_RECIPROCITY, events
 
 
+def test_chains_behind_a_leaning_pane_send_the_same_back_and_forth():
+    """Antennas at one place with one slanting polarisation, before a pane that is neither upright nor level across any leg."""
+    scene = diffuse_scene(ep.Material(permittivity=5 - .3j, mirror=True), FLAT.replace(cross_polarization=.3))
+    scene.add(rectangle((-3.1, -6, -5), (6, 9, 0), (2, 0, 9)), name="pane",
+              material=ep.Material(layers=[ep.Layer(0.004, 6.3 - 0.1j)]))
+    slanted = np.array((0, .5, 1)) / np.linalg.norm((0, .5, 1))
+    paths = ep.trace(scene, make_radar(HERE, HERE, slanted, slanted), num_rays=50_000, max_bounces=3, polarization="jones")
+    scalar = ep.trace(scene, make_radar(HERE, HERE, slanted, slanted), num_rays=50_000, max_bounces=3, polarization="scalar")
+    for events in ("SD", "DD", "SDD"):
+        for record, most in ((paths, POLARIZED_RECIPROCITY), (scalar, RECIPROCITY)):
+            there, back = (" P* ".join(f"({event})" for event in order) for order in (events, events[::-1]))
+            some = record.select(f"T P* ({there} | {back}) P* R & T .* P .* R")
+            by_chain = {chain: path for path, chain in enumerate(chains(some))}
+            pairs = np.array([(path, by_chain[chain[::-1]]) for chain, path in by_chain.items() if chain[::-1] in by_chain])
+            power = np.abs(some.amplitude) ** 2
+            assert len(pairs) >= 20 and np.abs(power[pairs[:, 0]] / power[pairs[:, 1]] - 1).max() < most, events
+
+
 def test_exchanged_antennas_receive_the_same_over_a_dielectric_mirror():
     """At one place: coefficients of the mirror are those of the places where the antennas were traced."""
     paths = ep.trace(diffuse_scene(ep.Material(permittivity=5 - .3j, mirror=True)), make_radar(HERE, HERE), num_rays=10000)

@@ -11,6 +11,7 @@ from support.shapes import WAVELENGTH, make_radar, rectangle, scene_of, unit
 BATCHES = 16
 STANDARD_ERRORS = 3.0
 RHO = 0.4
+OF_SYNTHESIS = 1e-6  # of the largest sample: ten times the tolerance of both sums
 
 
 def lobed(exponent=4, share=0.0, back=0):
@@ -102,6 +103,22 @@ def test_chains_of_lobes_have_the_levels_of_both_orders():
         truth = paths.radar.transmit_power * two_bounces(materials, transmitter, receiver, order)
         assert error < 0.05 * truth
         assert abs(found - truth) < 3.5 * error + 5e-3 * truth
+
+
+def test_each_channel_has_the_lobes_toward_its_own_antennas():
+    """Of chains in both orders, between places far apart: as replayed for these two antennas alone."""
+    materials = (lobed(6), lobed(8, 0.4, 3))
+    scene = scene_of(a=(rectangle(*PLATES[0]), materials[0]), b=(rectangle(*PLATES[1]), materials[1]))
+    places = np.array(((4.0, 3.0, 0.3), (2.5, 4.5, 0.0), (5.0, 1.5, -0.4), (3.5, 3.5, 1.0)))
+    antennas = [ep.Antenna(place) for place in places]
+    array = make_radar(places[0], places[1]).replace(transmitters=antennas[:2], receivers=antennas[2:])
+    paths = ep.trace(scene, array, num_rays=500, max_bounces=2, polarization="scalar").select("T ('a' 'b' | 'b' 'a') R")
+    assert np.count_nonzero(paths.flags & 1) > 20
+    cube = ep.synthesize(paths, array)
+    for tx in range(2):
+        for rx in range(2):
+            alone = array.replace(transmitters=[antennas[tx]], receivers=[antennas[2 + rx]])
+            assert np.abs(ep.synthesize(paths, alone)[0, 0] - cube[tx, rx]).max() < OF_SYNTHESIS * np.abs(cube[tx, rx]).max()
 
 
 def ratio_to_lambert(material, **settings):

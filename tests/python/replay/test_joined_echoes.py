@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.scenes.edge_scenes import on_edges
 
 FREQUENCY = 77e9
 EXACT = 1e-8          # of the sum of |a|: rates by differences of lengths 1e-7 s apart; a metre of length is 1
@@ -88,6 +89,37 @@ def test_all_transmitters_of_a_large_array_have_the_slow_sum(scene, settings, to
     for tx, rx in ((0, 8), (6, 0), (7, 4), (8, 8)):
         difference = cube[tx, rx] - slow_signal(paths, tx, rx)
         assert np.abs(difference).max() < tolerance * amplitude_sum(paths)
+
+
+def mixed_scene():
+    """All that replay has factors of its own for: a floor that images, a pane, lobes, smooth bodies and sharp edges."""
+    scene, drives = ep.Scene(), ep.LinearMotion(velocity=(-3, 1, 0))
+    lobed = ep.Material(reflectivity=0.6, scattering=0.7, lobe_exponent=4, backscatter_share=0.3)
+    scene.add(ep.actors.ground(12.0), name="floor", material=ep.Material(permittivity=5, mirror=True), position=(5, 0, 0))
+    scene.add(ep.actors.plate(1.0, 1.0), name="pane", material=ep.Material(layers=[ep.Layer(0.004, 6.3 - 0.3j)]),
+              position=(2, 0.6, 1))
+    scene.add(ep.actors.box((0.8, 0.5, 0.5)), name="car", material=lobed, position=(6, 0.8, 1), motion=drives)
+    scene.add(ep.actors.box((0.3, 0.3, 0.3)), name="crate", material="metal", position=(5, -0.8, 1.2), yaw=0.3, motion=drives)
+    scene.add(ep.actors.sphere(0.2), name="ball", material=ep.Material(permittivity=4), position=(4, 0, 1), smooth=True,
+              motion=drives)
+    return scene
+
+
+@pytest.mark.parametrize("polarization", ["scalar", "jones"])
+def test_all_transmitters_of_a_large_array_have_the_slow_sum_of_all_that_replay_knows(polarization):
+    """Antennas are tilted, each by another angle, so that no channel has the factors of its neighbour."""
+    radar = make_radar(9, chirps=4)
+    tilted = [[ep.Antenna(one.position, polarization=(0, np.sin(0.1 * i), np.cos(0.1 * i))) for i, one in enumerate(side)]
+              for side in (radar.transmitters, radar.receivers)]
+    if polarization == "jones":
+        radar = radar.replace(transmitters=tilted[0], receivers=tilted[1])
+    paths = ep.trace(mixed_scene(), radar, num_rays=1500, max_bounces=3, seed=3, polarization=polarization, edges=True)
+    assert all(paths.select(f"T .* '{name}' .* R").num_paths for name in ("floor", "car", "crate", "ball"))
+    assert on_edges(paths).num_paths and len(paths.passes)
+    cube = ep.synthesize(paths, tolerance=1e-11)
+    for tx, rx in ((0, 8), (6, 0), (7, 4), (8, 8)):
+        difference = cube[tx, rx] - slow_signal(paths, tx, rx)
+        assert np.abs(difference).max() < INTERPOLATED * amplitude_sum(paths)
 
 
 @pytest.mark.parametrize("method", ["nufft", "direct"])

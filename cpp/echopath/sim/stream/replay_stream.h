@@ -54,12 +54,12 @@ class ReplayStream {
   const Replayer& replayer() const { return replayer_; }
   // Sends the paths to the sink, all of them or some (indices, of which those that are to be joined follow each other). A
   // stream that sends some at a time keeps the meshes as posed in each chirp, where paths need them, and at the samples of
-  // all chirps where that is no more than kKeptSamples. Large arrays take all paths for a few of their transmitters, then for
-  // the next. Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path (a third more of
-  // logarithms, for their turns), whatever the number of paths, chirps and channels; a sink that sorts them needs at most as
-  // much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation), and on
-  // what chains of its paths share. `sink` is called from one thread at a time, while the next blocks are replayed. Raises
-  // Cancelled.
+  // all chirps where that is no more than kKeptSamples. Large arrays take all paths for a few of their transmitters, then
+  // for the next. Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path (a third
+  // more of logarithms, for their turns), whatever the number of paths, chirps and channels; a sink that sorts them needs at
+  // most as much again. Beside these each thread works on 320 B for each channel and node of a block
+  // (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread at a time, while the
+  // next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink);
   void run(std::span<const int64_t> paths, const Sink& sink);
   // Sets the job that later calls of run() report to and that can cancel them.

@@ -59,8 +59,9 @@ class Replayer {
   void pose_polynomial(GridIndex polynomial, std::span<const int64_t> paths);
   // Interpolates the echoes of `paths` by a polynomial (grids()). Two kinds of paths are left out and added to `unfollowed`,
   // in their order: those that the polynomial does not follow, because the last two Chebyshev coefficients of their length
-  // or of their amplitude exceed the tolerance; and negligible ones, whose amplitudes stay so small in all channels,
-  // throughout the frame (is_dark), that all of them together are below the rounding of the strongest path of the record.
+  // or of their amplitude exceed the tolerance; and negligible ones, whose amplitudes stay so small in all channels
+  // of these transmitters, throughout the frame (is_dark), that all of them together are below the rounding of the strongest
+  // path of the record.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, GridIndex polynomial,
                                    std::vector<UnfollowedPath>& unfollowed, const SomeTransmitters& transmitters = {}) const;
   // Returns whether turning() may be asked for a path: it must have a launch cell, whose filter is what turns.

@@ -93,10 +93,10 @@ std::vector<double> samples_of(const Window& window, int n, double shift) {
     case WindowKind::kChebyshev:
     case WindowKind::kTaylor: break;
   }
-  require(window.sidelobe_db >= 20.0 && window.sidelobe_db <= 300.0, "sidelobe_db", "must be in [20, 300]",
-          window.sidelobe_db);
+  const double level = window.level();
+  require(level >= 20.0 && level <= 300.0, "sidelobe_db", "must be in [20, 300]", level);
   const auto samples = window.kind == WindowKind::kTaylor ? taylor_window : chebyshev_window;
-  return scaled_to_one(samples(n, window.sidelobe_db));
+  return scaled_to_one(samples(n, level));
 }
 
 double sum_of(const std::vector<double>& samples) { return std::accumulate(samples.begin(), samples.end(), 0.0); }
@@ -110,9 +110,10 @@ Window Window::named(const std::string& name, std::optional<double> sidelobe_db)
     throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris, chebyshev or taylor, got '" + name +
                                 "'; nearest: " + (meant.empty() ? nearest_names(name, kNames, 1).front() : meant));
   }
-  const auto kind = static_cast<WindowKind>(found - kNames.begin());
-  return {kind, sidelobe_db.value_or(kind == WindowKind::kTaylor ? kUsualTaylor : kUsualChebyshev)};
+  return {static_cast<WindowKind>(found - kNames.begin()), sidelobe_db};
 }
+
+double Window::level() const { return sidelobe_db.value_or(kind == WindowKind::kTaylor ? kUsualTaylor : kUsualChebyshev); }
 
 std::string Window::name() const { return kNames.at(static_cast<size_t>(kind)); }
 

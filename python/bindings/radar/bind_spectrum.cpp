@@ -51,8 +51,7 @@ void bind_spectrum(py::module_& m) {
       .def_property_readonly(
           "window", [](const RangeDoppler& self) { return map_windows_value(self.window); },
           "as range_doppler takes it: a name or (\"chebyshev\" or \"taylor\", sidelobe level in dB) of both axes, or those "
-          "of "
-          "(range, velocity)")
+          "of (range, velocity)")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
   define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_doppler_array"),
          R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).

@@ -24,7 +24,7 @@ inline Window as_window(const py::object& value) {
 // The same back.
 inline py::object window_value(const Window& window) {
   if (!window.has_level()) return py::str(window.name());
-  return py::make_tuple(window.name(), window.sidelobe_db);
+  return py::make_tuple(window.name(), window.level());
 }
 
 // The windows of a map: one for both axes, or a pair of them, (range, velocity).

@@ -11,8 +11,8 @@ from .folder_kinds import folder_hint
 from .number_rules import Rule, is_number
 from .shown import refused, writable
 
-WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
-LevelWindow = Literal["chebyshev", "taylor"]
+WindowName = Literal["rect", "hann", "hamming", "blackman_harris", "chebyshev", "taylor"]
+LevelWindow = Literal["chebyshev", "taylor"]                       # of 80 and 35 dB where nothing is said
 Window = WindowName | tuple[LevelWindow, float]                    # a name, or with its sidelobe level in dB
 MapWindow = Window | tuple[Window, Window]                         # of both axes of a map, or those of (range, velocity)
 
@@ -110,9 +110,8 @@ def window(argument: str, value):
     rule = (", ".join(f"'{name}'" for name in names)
             + f" or ({' or '.join(map(repr, with_level))}, sidelobe level in dB, 20 to 300)")
     if isinstance(value, str):
-        known = (*names, *with_level)
-        if value not in known:
-            nearest = _core.meant_name(writable(value), known) or _core.nearest_names(writable(value), known, 1)[0]
+        if value not in names:
+            nearest = _core.meant_name(writable(value), names) or _core.nearest_names(writable(value), names, 1)[0]
             raise refused(ValueError, argument, f"{rule} (nearest: {nearest})", value)
         return str(value)
     if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and is_number(value[1])):

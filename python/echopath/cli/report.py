@@ -74,7 +74,8 @@ def overlaps(scene, time: float, names=None) -> list[str]:
     if not found:
         return []
     more = more_line(len(found), MAX_LISTED)
-    return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets, of flagged mirrors in one plane the last)", *lines, *more]
+    return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets; of flagged mirrors it is the front one, or the "
+            "last in one plane)", *lines, *more]
 
 
 def overlaps_or_none(scene, time: float, names=None) -> list[str]:

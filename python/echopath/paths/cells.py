@@ -10,6 +10,7 @@ from ..arguments.checks import ArrayLike, anything, array, checked, row_of_chann
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..base.process.callers import warn_user
+from ..base.radar.velocities import velocity_span_of
 from ..base.text.counts import counted
 from ..transmit.signals import chirp_of, step_names
 
@@ -154,5 +155,5 @@ def _range_index(beat, waveform, axis):
 def _velocity_index(velocity, axis, radar):
     """Nearest cell of each velocity in m/s, folded into the axis: i32 [P]."""
     count = len(axis)
-    step = 2.0 * radar.waveform.max_velocity(radar.num_slots) / count
+    step = velocity_span_of(radar) / count
     return ((np.rint(velocity / step).astype(np.int64) + count // 2) % count).astype(np.int32)

@@ -74,8 +74,8 @@ def load_raw(path: str | os.PathLike[str], radar: _core.Radar) -> Iterator[Recep
     if count == 0:
         raise _core.FileError(f"{path}: must hold {length:,} bytes, a frame of that radar, got {rest:,}")
     if adc.automatic_gain:
-        warn_user("radar.receiver.adc: has no gain of its own, and what was chosen for each frame is not in the file: cubes have "
-                  f"the levels of {adc.gain_db:g} dB; an adc with the gain_db of the sensor has those at the antenna")
+        warn_user("radar.receiver.adc: has no gain of its own, and the one chosen for each frame is not in the file: cubes are "
+                  f"scaled as if it were {adc.gain_db:g} dB; give the radar an adc with the gain_db of the sensor")
     if rest:
         warn_user(f"{path}: ends within a frame: {rest:,} of {length:,} bytes are left after {counted(count, 'frame')}")
     return (_reception_of(np.fromfile(path, "<i2", length // 2, offset=place * length), shape, radar) for place in range(count))

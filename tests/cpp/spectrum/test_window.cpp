@@ -93,6 +93,16 @@ TEST(Window, TaylorSidelobesAreAsAskedForAndFall) {
   }
 }
 
+// What the comment on Window says of few samples.
+TEST(Window, TaylorOfShortArraysMissesItsLevelByTwoDecibels) {
+  for (const int n : {6, 8, 12}) {
+    const auto w = window_samples({WindowKind::kTaylor, 30.0}, n);
+    double worst = -1e9;
+    for (double bin = taylor_null(30.0, 4, 1); bin <= 0.5 * n; bin += 0.01) worst = std::max(worst, level_db(w, bin));
+    EXPECT_NEAR(worst, -30.0, 2.1) << n;
+  }
+}
+
 TEST(Window, CosineWindowsArePeriodicAndOthersSymmetric) {
   for (const int n : {16, 17}) {
     for (const auto kind : {WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris}) {

@@ -124,7 +124,7 @@ def test_levels_without_a_gain_are_told(written, tmp_path):
     """Code 1 is a step of 2^-15 of the full scale in each branch, divided by the gain."""
     np.full(64 * 4 * COUNT * 2, 1, "<i2").tofile(tmp_path / "one.bin")
     ideal = ep.load_radar(written(), ideal=True)
-    with pytest.warns(RuntimeWarning, match=r"radar.receiver.adc: has no gain of its own.* the levels of 30 dB"):
+    with pytest.warns(RuntimeWarning, match=r"radar.receiver.adc: has no gain of its own.* as if it were 30 dB"):
         unknown, = ep.load_raw(tmp_path / "one.bin", ideal)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

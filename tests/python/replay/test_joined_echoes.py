@@ -1,4 +1,6 @@
 """Paths over the same hits are synthesised as one echo: the signal is that of all of them, however they are sorted."""
+import itertools
+
 import numpy as np
 import pytest
 
@@ -11,11 +13,11 @@ INTERPOLATED = 5e-4   # likewise: amplitudes aim for 1e-4, of each path's larges
 ADDITIVITY = 1e-13    # of the sum of |a|: other orders of adding up
 
 
-def make_radar(antennas=1, chirps=24):
+def make_radar(antennas=1, chirps=24, receivers=None):
     waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e8, num_samples=16, sampling_rate=20e6,
                                 num_chirps=chirps, chirp_interval=60e-6)
     return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0.01 * i, 1)) for i in range(antennas)],
-                    receivers=[ep.Antenna((0, 0.05 + 0.002 * i, 1)) for i in range(antennas)])
+                    receivers=[ep.Antenna((0, 0.05 + 0.002 * i, 1)) for i in range(receivers or antennas)])
 
 
 @pytest.fixture(scope="module")
@@ -82,11 +84,11 @@ def test_the_signal_is_the_slow_sum_over_all_paths(scene, settings, tolerance, a
 
 @pytest.mark.parametrize("settings, tolerance", [({"evaluate": "chirps"}, EXACT), ({}, INTERPOLATED)],
                          ids=["chirps", "interpolated"])
-def test_all_transmitters_of_a_large_array_have_the_slow_sum(scene, settings, tolerance):
-    """81 channels are replayed for a few transmitters at a time: seven, and then two."""
-    paths = ep.trace(scene, make_radar(9, chirps=8), num_rays=300, max_bounces=2, seed=3)
+def test_all_channels_of_a_large_array_have_the_slow_sum(scene, settings, tolerance):
+    """Large arrays are replayed for a few transmitters at a time."""
+    paths = ep.trace(scene, make_radar(40, chirps=2, receivers=4), num_rays=300, max_bounces=2, seed=3)
     cube = ep.synthesize(paths, tolerance=1e-11, **settings)
-    for tx, rx in ((0, 8), (6, 0), (7, 4), (8, 8)):
+    for tx, rx in itertools.product(range(40), range(4)):
         difference = cube[tx, rx] - slow_signal(paths, tx, rx)
         assert np.abs(difference).max() < tolerance * amplitude_sum(paths)
 
@@ -106,9 +108,9 @@ def mixed_scene():
 
 
 @pytest.mark.parametrize("polarization", ["scalar", "jones"])
-def test_all_transmitters_of_a_large_array_have_the_slow_sum_of_all_that_replay_knows(polarization):
+def test_channels_of_a_large_array_have_the_slow_sum_of_all_that_replay_knows(polarization):
     """Antennas are tilted, each by another angle, so that no channel has the factors of its neighbour."""
-    radar = make_radar(9, chirps=4)
+    radar = make_radar(20, chirps=2, receivers=8)
     tilted = [[ep.Antenna(one.position, polarization=(0, np.sin(0.1 * i), np.cos(0.1 * i))) for i, one in enumerate(side)]
               for side in (radar.transmitters, radar.receivers)]
     if polarization == "jones":
@@ -117,7 +119,7 @@ def test_all_transmitters_of_a_large_array_have_the_slow_sum_of_all_that_replay_
     assert all(paths.select(f"T .* '{name}' .* R").num_paths for name in ("floor", "car", "crate", "ball"))
     assert on_edges(paths).num_paths and len(paths.passes)
     cube = ep.synthesize(paths, tolerance=1e-11)
-    for tx, rx in ((0, 8), (6, 0), (7, 4), (8, 8)):
+    for tx, rx in itertools.product(range(0, 20, 3), (0, 5)):
         difference = cube[tx, rx] - slow_signal(paths, tx, rx)
         assert np.abs(difference).max() < INTERPOLATED * amplitude_sum(paths)
 

@@ -33,7 +33,7 @@ class ReplayStream {
     std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those joined in it
     int64_t count;                   // of all paths, with those that are negligible and have no echo
   };
-  // Takes the blocks of one channel, which it may change. Each path comes once for each channel.
+  // Takes the blocks of one channel, which it may change. Each path comes at most once for each channel.
   using Sink = std::function<void(int channel, std::span<Echoes> blocks, const EchoPaths& paths)>;
 
   // `paths` and `radar` must outlive the stream. Raises as Replayer.

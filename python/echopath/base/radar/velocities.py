@@ -7,14 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def ambiguity_of(radar: Any, folds: int = 0) -> float:
-    """m/s, by which radial velocities differ that look the same: 0 of a single chirp, to which all do.
+def velocity_span_of(radar: Any, folds: int = 0) -> float:
+    """The width in m/s of the axis of radial velocities of a frame.
 
     folds: as of `estimate_angles`; where some were tried, transmitters in turns tell velocities apart from slot to slot
     """
-    if radar.waveform.num_chirps == 1:
-        return 0.0
     return 2.0 * float(radar.waveform.max_velocity(1 if folds else radar.num_slots))
+
+
+def ambiguity_of(radar: Any, folds: int = 0) -> float:
+    """By how many m/s radial velocities differ that look the same; 0 of a single chirp, to which all of them do."""
+    return 0.0 if radar.waveform.num_chirps == 1 else velocity_span_of(radar, folds)
 
 
 def folded(velocities: NDArray[np.float64], ambiguity: float) -> NDArray[np.float64]:

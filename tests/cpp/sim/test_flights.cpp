@@ -11,7 +11,8 @@ std::vector<PathsInFlight> random_lists(std::mt19937& random) {
   std::vector<PathsInFlight> lists(1 + random() % 12);
   for (PathsInFlight& list : lists) {
     const int64_t most = random() % 4 == 0 ? 200000 : 300;
-    list = {1 + static_cast<int64_t>(random()) % most, 1 + static_cast<int64_t>(random() % (random() % 2 == 0 ? 64 : 256)), 1};
+    list = {1 + static_cast<int64_t>(random()) % most, 1 + static_cast<int64_t>(random() % (random() % 2 == 0 ? 64 : 256)),
+            1};
     if (random() % 2 == 0) list.num_rows = 4 << (random() % 10);
   }
   return lists;

@@ -65,7 +65,7 @@ void PacketFront::find_hits(FirstHits& first, const LaneValues* begins, TraceSta
   const Sees sees = first.num_sheets < kMostSheetsAhead ? Sees::kAll : Sees::kOpaque;
   context_.geometry.intersect(context_.settings.transmitter, first.directions, first.count, first.hits, sees, begins);
   statistics.num_queries += first.count;
-  if (context_.surfaces.has_coplanar()) settle(first);
+  if (context_.surfaces.has_coplanar()) choose_front_mirrors(first);
   arrive(first, statistics);
   see_receiver(first, statistics);
   run_simd<&leave_lanes>(&first, unpacked(context_.settings.receiver));
@@ -73,10 +73,10 @@ void PacketFront::find_hits(FirstHits& first, const LaneValues* begins, TraceSta
 }
 
 // Gives hits on mirrors that lie on each other to the front ones.
-void PacketFront::settle(FirstHits& first) const {
+void PacketFront::choose_front_mirrors(FirstHits& first) const {
   for (int lane = 0; lane < first.count; ++lane) {
     if (first.hits.verdicts[lane] != EmbreeScene::Verdict::kHit) continue;
-    context_.surfaces.settle(context_.settings.transmitter, first.hits.position[lane], first.hits.met[lane]);
+    context_.surfaces.choose_front_mirror(context_.settings.transmitter, first.hits.position[lane], first.hits.met[lane]);
   }
 }
 

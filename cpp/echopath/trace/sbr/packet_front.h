@@ -31,7 +31,7 @@ class PacketFront {
   void share_out(FirstHits& first, int lane) const;
   void find_response(FirstHits& first, int lane) const;
   void see_receiver(FirstHits& first, TraceStatistics& statistics) const;
-  void settle(FirstHits& first) const;
+  void choose_front_mirrors(FirstHits& first) const;
   void leave_along_lobes(FirstHits& first) const;
 
   const RayContext& context_;

@@ -140,7 +140,7 @@ bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, Sees sees, 
   const EmbreeScene::Verdict verdict = context_.geometry.intersect_from_surface(from, direction, met, sees, begin);
   if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
   if (verdict != EmbreeScene::Verdict::kHit) return false;
-  context_.surfaces.settle(from, met.position, met.hit);
+  context_.surfaces.choose_front_mirror(from, met.position, met.hit);
   return true;
 }
 

@@ -34,7 +34,7 @@ bool SurfaceTable::is_met_from_behind(const Hit& hit, const Vec3& normal) const 
   return cross_of_sides(a, b, c).dot(normal) < 0.0;
 }
 
-void SurfaceTable::settle_among_mirrors(const Vec3& from, const Vec3& point, Hit& hit) const {
+void SurfaceTable::choose_among_mirrors(const Vec3& from, const Vec3& point, Hit& hit) const {
   const int index = mirror(hit);
   if (index < 0) return;
   if (const std::optional<Hit> front = hit_in_front(mirrors_, index, from, point)) hit = *front;

@@ -20,8 +20,8 @@ class SurfaceTable {
   int mirror(const Hit& hit) const { return mirror_of_(hit.mesh_id, hit.triangle_id); }
   // Gives a hit at a point (m) of flagged mirrors that lie on each other to the one that a wave from `from` meets
   // (coplanar_mirrors.h): which of them a ray reports is chance.
-  void settle(const Vec3& from, const Vec3& point, Hit& hit) const {
-    if (has_coplanar_) settle_among_mirrors(from, point, hit);
+  void choose_front_mirror(const Vec3& from, const Vec3& point, Hit& hit) const {
+    if (has_coplanar_) choose_among_mirrors(from, point, hit);
   }
   // Returns whether any flagged mirrors lie on each other.
   bool has_coplanar() const { return has_coplanar_; }
@@ -37,7 +37,7 @@ class SurfaceTable {
 
  private:
   bool is_met_from_behind(const Hit& hit, const Vec3& normal) const;
-  void settle_among_mirrors(const Vec3& from, const Vec3& point, Hit& hit) const;
+  void choose_among_mirrors(const Vec3& from, const Vec3& point, Hit& hit) const;
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;

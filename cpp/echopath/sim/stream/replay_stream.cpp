@@ -132,6 +132,7 @@ void ReplayStream::run(const PathGrids& grids, PathsByGrid by_grid, const Sink& 
   for (int first = 0; first < num_transmitters_; first += together) {
     const int end = std::min(first + together, num_transmitters_);
     transmitters_ = {static_cast<size_t>(first), static_cast<size_t>(end - first)};
+    // NOLINTNEXTLINE(bugprone-use-after-move): moved from in the last round alone
     PathsByGrid own = end < num_transmitters_ ? by_grid : std::move(by_grid);
     PathsByGrid by_chirp = no_paths_by_grid(replayer_.grids());
     replay_polynomials(grids, own, by_chirp, out);

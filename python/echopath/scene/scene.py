@@ -5,6 +5,7 @@ import inspect
 import os
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
+from copy import deepcopy
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,8 @@ from .seams import without_seams, without_seams_between
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
 _WEATHER = optional(an(Weather))
+# Attributes that are no derived class's own: those of this one, and what its traces remember (tracing/traces.py).
+_HELD = ("_weather", "_interferers", "_was_traced", "_geometry")
 
 
 @known_attributes
@@ -77,13 +80,33 @@ class Scene(_core.Scene):
         told += [interferers_text(self.interferers)] if self.interferers else []
         return ", ".join(told) + ")"
 
+    def _own(self) -> dict[str, object]:
+        """The attributes that a class derived from this one has given itself."""
+        return {name: value for name, value in vars(self).items() if name not in _HELD}
+
+    def _copied(self, own: dict[str, object]) -> Scene:
+        copied = type(self).__new__(type(self))  # the constructor of a derived class may want something else than a scene
+        Scene.__init__(copied, self)
+        vars(copied).update(own)
+        return copied
+
+    def __copy__(self) -> Scene:
+        return self._copied(self._own())
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Scene:
+        """Shares meshes, motions and materials, which cannot change."""
+        memo[id(self)] = copied = self._copied({})
+        vars(copied).update(deepcopy(self._own(), memo))
+        return copied
+
     def __getstate__(self):
-        return super().__getstate__(), self.weather, self.interferers
+        return super().__getstate__(), self.weather, self.interferers, self._own()
 
     def __setstate__(self, state) -> None:
-        nodes, weather, interferers = state
+        nodes, weather, interferers, own = state
         super().__setstate__(nodes)
         self.weather, self.interferers = weather, interferers
+        vars(self).update(own)
 
     @checked(self=anything, mesh_or_actor=anything, name=text, material=anything, motion=anything,
              speed=optional(real(unit="m/s")), position=vector, yaw=real(unit="rad"), transform=anything,

@@ -41,6 +41,32 @@ def test_copies_are_the_same_and_independent(copied):
     assert "bus" in scene and scene["box5"].position[0] == 8 + 2.5 * 5
 
 
+class Street(ep.Scene):
+    """A scene of a package that builds on ours, whose constructor wants something else."""
+
+    def __init__(self, city: str):
+        super().__init__(weather=ep.Weather(rain_mm_per_hour=3.0))
+        self.city, self.shops = city, ["baker"]
+        self.itself = self
+
+
+@pytest.mark.parametrize("copied, shares", [(copy.copy, True), (copy.deepcopy, False),
+                                            (lambda scene: pickle.loads(pickle.dumps(scene)), False)],
+                         ids=["copy.copy", "copy.deepcopy", "pickle"])
+def test_derived_scenes_are_copied_with_what_is_their_own(copied, shares):
+    street = Street("Ulm")
+    street.add(box_mesh(1, 1, 1), name="box", material="metal", position=(5, 0, 0))
+    traces = [traced(street) for _ in range(3)]  # which remember the geometry with the scene
+    other = copied(street)
+    assert_same_bits(traced(other), traces[0])
+    assert (type(other), other.city, other.shops) == (Street, "Ulm", ["baker"])
+    assert (other.shops is street.shops) == shares
+    assert other.itself is (street if shares else other)  # as Python's copies of any object
+    assert other.weather == street.weather and other["box"].mesh == street["box"].mesh
+    other.remove("box")
+    assert "box" in street
+
+
 def test_a_pickled_scene_shares_what_it_shared():
     mesh, motion = box_mesh(1, 1, 1), ep.LinearMotion(velocity=(1, 0, 0))
     scene = ep.Scene()

@@ -101,12 +101,20 @@ class StoredSequence(Row[Frame | FrameMaps]):
         number = self._numbers[place]
         path = self._store.frame_path(number)
         if not self._store.are_there([number])[0]:
+            self._refuse_removed()
             raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.path} goes on when it is "
                                   "called again")
         return read_frame(path, self.keep)
 
+    def _refuse_removed(self) -> None:
+        if not self._store.head.exists():
+            raise _core.FileError(f"{self._store.head}: no such file any more: it was removed or renamed after the sequence had "
+                                  "been opened")
+
     def _maps(self) -> tuple[int, Iterator[tuple], dict]:
         there = np.flatnonzero(self.is_there)
+        if not there.size:
+            self._refuse_removed()
         paths, times = [self.paths_of_files[place] for place in there], self.times[there]
         found = power_of(paths[0]) if paths else None
         if paths and found is None:

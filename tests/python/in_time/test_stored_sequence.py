@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import pickle
+import shutil
 from pathlib import Path
 
 import h5py
@@ -105,6 +106,16 @@ def test_frames_that_are_not_done_say_so(tmp_path):
     with pytest.raises(ep.FileError, match="frame_0002.h5: has not been simulated yet"):
         stored[2]
     assert stored.to_xarray().sizes["time"] == 1
+
+
+def test_frames_that_were_removed_since_are_not_said_to_be_missing_yet(folders, tmp_path):
+    moved = tmp_path / "moved"
+    shutil.copytree(folders["maps"], moved)
+    stored = ep.load_sequence(moved)
+    moved.rename(tmp_path / "elsewhere")
+    for read in (lambda: stored[2], lambda: next(iter(stored)), lambda: stored.plot(num_frames=2)):
+        with pytest.raises(ep.FileError, match="sequence.h5: no such file any more"):
+            read()
 
 
 @pytest.mark.parametrize("keep", ["all", "maps"])

@@ -13,8 +13,8 @@ enum class WindowKind { kRect, kHann, kHamming, kBlackmanHarris, kChebyshev, kTa
 struct Window {
   WindowKind kind = WindowKind::kHann;
   // dB, positive, below the main lobe: of kChebyshev the level of all sidelobes, of kTaylor that of the nearest ones, beyond
-  // which they fall with their number. Fewer than some 16 samples miss Taylor's level, by 2 dB at 30 dB and by more at
-  // higher ones. Not given, it is 80 for kChebyshev and 35 for kTaylor.
+  // which they fall with their number. Fewer samples than it has dB may miss Taylor's level by up to 5 dB, fewer than a
+  // third as many by much more. Not given, it is 80 for kChebyshev and 35 for kTaylor.
   std::optional<double> sidelobe_db = {};
 
   // Takes "rect", "hann", "hamming", "blackman_harris", "chebyshev" or "taylor"; raises invalid_argument naming the nearest.

@@ -30,7 +30,8 @@ def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = Signa
     radar: that of the cube
     window: "rect", "hann", "hamming", "blackman_harris", "chebyshev", "taylor", the last two also with their sidelobe level in
         dB, ("taylor", 30), 80 and 35 if not given, on both axes; or a pair of these, that of range and that of velocity, such
-        as ("hann", ("chebyshev", 60)). Fewer than 16 samples miss Taylor's level by 2 dB, and by more at high ones
+        as ("hann", ("chebyshev", 60)). Fewer samples than it has dB may miss Taylor's level by up to 5 dB, fewer than a third
+        as many by much more
     zero_pad: 1 to 64, transforms of so many times the samples and chirps
     Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
     Raises TypeError or ValueError naming the argument, also where a sample is no finite number.

@@ -104,8 +104,11 @@ def file(argument: str, value) -> str:
     return name
 
 
-def window(argument: str, value):
-    """A window by its name, or ("chebyshev" or "taylor", sidelobe level in dB)."""
+def window(argument: str, value, or_else: str = ""):
+    """A window by its name, or ("chebyshev" or "taylor", sidelobe level in dB).
+
+    or_else: what refusals of anything but a name tell that it may be, too
+    """
     names, with_level = get_args(WindowName), get_args(LevelWindow)
     rule = (", ".join(f"'{name}'" for name in names)
             + f" or ({' or '.join(map(repr, with_level))}, sidelobe level in dB, 20 to 300)")
@@ -115,15 +118,15 @@ def window(argument: str, value):
             raise refused(ValueError, argument, f"{rule} (nearest: {nearest})", value)
         return str(value)
     if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and is_number(value[1])):
-        raise refused(TypeError, argument, rule, value)
+        raise refused(TypeError, argument, rule + or_else, value)
     if value[0] not in with_level or not 20.0 <= value[1] <= 300.0:
-        raise refused(ValueError, argument, rule, value)
+        raise refused(ValueError, argument, rule + or_else, value)
     return str(value[0]), float(value[1])
 
 
 def map_window(argument: str, value):
     """The windows of a map: one for both of its axes, or a pair of them, (of range, of velocity)."""
     if not (isinstance(value, (tuple, list)) and len(value) == 2 and not is_number(value[1])):
-        return window(argument, value)
+        return window(argument, value, ", or a pair of these, of range and of velocity")
     of_range, of_velocity = (window(f"{argument}[{axis}]", one) for axis, one in enumerate(value))
     return of_range if of_range == of_velocity else (of_range, of_velocity)

@@ -154,8 +154,9 @@ def test_bad_input_is_an_error():
     for sidelobe_db in (1, 19.9, 300.1, np.inf, np.nan):
         with pytest.raises(ValueError, match="^window: .* 20 to 300"):
             ep.range_doppler(cube, radar, window=("chebyshev", sidelobe_db))
-    with pytest.raises(TypeError, match="^window: "):
-        ep.range_doppler(cube, radar, window=80)
+    for neither in (80, ("hann", "taylor", "rect"), {"range": "hann", "velocity": "taylor"}):
+        with pytest.raises(TypeError, match="^window: .*, or a pair of these, of range and of velocity, got "):
+            ep.range_doppler(cube, radar, window=neither)
     with pytest.raises(ValueError, match="^cube: "):
         ep.range_doppler(cube[..., :100], radar)
     for wrong, place in ((np.nan, (0, 0, 3, 17)), (np.inf, (0, 0, 0, 0)), (-1j * np.inf, (0, 0, 3, 511))):

@@ -63,7 +63,7 @@ class LinearMotion(Motion):
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -104,7 +104,7 @@ class KeyframeMotion(Motion):
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -187,7 +187,7 @@ class VertexSequence(Deformation):
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -243,7 +243,7 @@ class Curve:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -304,7 +304,7 @@ class CurveMotion(Motion):
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -361,7 +361,7 @@ class MorphTargets(Deformation):
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -415,7 +415,7 @@ class Layer:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -478,7 +478,7 @@ class Material:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -581,7 +581,7 @@ class Mesh:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -680,7 +680,7 @@ class Node:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -961,7 +961,7 @@ class Joint:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -1019,7 +1019,7 @@ class Skin(Deformation):
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -1097,7 +1097,7 @@ class ChirpSequence:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -1232,7 +1232,7 @@ class AntennaPattern:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -1313,7 +1313,7 @@ class Antenna:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...
@@ -1393,7 +1393,7 @@ class Radar:
         """
         Whether the other one is made of the same values.
         """
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+    def __getstate__(self) -> typing.Any:
         ...
     def __hash__(self) -> int:
         ...

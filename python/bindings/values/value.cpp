@@ -52,13 +52,28 @@ py::object remade(const py::object& make, const py::dict& keywords, const py::di
   return make(**all);
 }
 
-py::dict checked_state(const py::object& state, const char* type_name) {
+py::object state_of(const py::object& self, const py::dict& keywords) {
+  const py::object own = py::getattr(self, "__dict__", py::dict());
+  if (py::len(own) == 0) return keywords;
+  return py::make_tuple(keywords, own.attr("copy")());
+}
+
+std::pair<py::dict, py::dict> checked_state(const py::object& state, const char* type_name) {
   const std::string rule = std::string("must be a dict of the arguments of ") + type_name;
-  if (!PyDict_Check(state.ptr())) refuse_type("state", rule, state);
-  for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(state)) {
+  py::object keywords = state;
+  py::dict own;
+  if (PyTuple_Check(state.ptr()) && py::len(state) == 2) {
+    const py::tuple both = state;
+    if (!PyDict_Check(both[1].ptr()))
+      refuse_type("state", rule + ", alone or with a dict of what is the object's own", state);
+    keywords = both[0];
+    own = both[1];
+  }
+  if (!PyDict_Check(keywords.ptr())) refuse_type("state", rule, keywords);
+  for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(keywords)) {
     if (!PyUnicode_Check(name.ptr())) refuse_type("state", rule, name);
   }
-  return py::reinterpret_borrow<py::dict>(state);
+  return {py::reinterpret_borrow<py::dict>(keywords), own};
 }
 
 void refuse_change(py::handle self, py::handle name, py::handle value) {

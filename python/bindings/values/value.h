@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "call/define.h"
 #include "call/shown.h"
@@ -21,8 +22,10 @@ bool same_values(const pybind11::dict& one, const pybind11::dict& other);
 pybind11::ssize_t hash_of_values(const pybind11::dict& keywords);
 // What `make` returns for keywords with changes.
 pybind11::object remade(const pybind11::object& make, const pybind11::dict& keywords, const pybind11::dict& changes);
-// The keywords in the state of a pickle. Raises TypeError where it is none.
-pybind11::dict checked_state(const pybind11::object& state, const char* type_name);
+// The state of a pickle: the keywords, and beside them what an object of a class derived in Python has of its own.
+pybind11::object state_of(const pybind11::object& self, const pybind11::dict& keywords);
+// The keywords in the state of a pickle, and what is the object's own. Raises TypeError where it is none.
+std::pair<pybind11::dict, pybind11::dict> checked_state(const pybind11::object& state, const char* type_name);
 
 // Sets an attribute as Python does, or raises AttributeError with a hint at `replace`.
 void refuse_change(pybind11::handle self, pybind11::handle name, pybind11::handle value);
@@ -49,7 +52,7 @@ using KeywordsOf = pybind11::dict (*)(const pybind11::object& self);
 using MakerFor = pybind11::object (*)(const pybind11::dict& keywords);
 
 // Gives a class pickle, copy, deepcopy, == and a hash. The state of a pickle is the keywords that make the value again, so
-// it is checked by the constructor, as any other input. `maker_for` names what takes the keywords where that is not the
+// it is checked by the constructor, as any other input, and what an object of a derived class has of its own. `maker_for` names what takes the keywords where that is not the
 // class.
 template <class Value, class... Options>
 void define_value(pybind11::class_<Value, Options...>& type, KeywordsOf keywords_of = &keywords_by_attribute<Value>,
@@ -64,11 +67,12 @@ void define_value(pybind11::class_<Value, Options...>& type, KeywordsOf keywords
       },
       py::arg("other"), "Whether the other one is made of the same values.");
   type.def("__hash__", [keywords_of](const py::object& self) { return detail::hash_of_values(keywords_of(self)); });
-  type.def(py::pickle([keywords_of](const py::object& self) { return keywords_of(self); },
+  type.def(py::pickle([keywords_of](const py::object& self) { return detail::state_of(self, keywords_of(self)); },
                       [maker_for](const py::object& state) {
                         const std::string name = py::cast<std::string>(py::type::of<Value>().attr("__name__"));
-                        const py::dict keywords = detail::checked_state(state, name.c_str());
-                        return detail::remade(maker_for(keywords), keywords, py::dict()).template cast<Held>();
+                        const auto [keywords, own] = detail::checked_state(state, name.c_str());
+                        return std::pair(detail::remade(maker_for(keywords), keywords, py::dict()).template cast<Held>(),
+                                         own);
                       }));
 }
 

@@ -173,6 +173,24 @@ def test_round_trips_keep_equality_and_bits(kind):
     law()
 
 
+class Paint(ep.Material):
+    """A material of a user's own, whose constructor takes something else."""
+
+    def __init__(self, colour: str, coats: list[str]) -> None:
+        super().__init__(permittivity=3.0)
+        self.colour, self.coats = colour, coats
+
+
+def test_objects_of_derived_classes_keep_what_is_their_own():
+    paint = Paint("red", ["primer"])
+    trips = [pickle.loads(pickle.dumps(paint, protocol)) for protocol in (2, 5)]
+    for other in (*trips, copy.copy(paint), copy.deepcopy(paint)):
+        assert type(other) is Paint and other == paint and (other.colour, other.coats) == ("red", ["primer"])
+        other.colour = "blue"
+        assert paint.colour == "red"
+    assert copy.copy(paint).coats is paint.coats and copy.deepcopy(paint).coats is not paint.coats
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_unequal_values_are_told_apart(kind):
     @settings(max_examples=15, deadline=None)

@@ -97,7 +97,8 @@ class KeyframeMotion(Motion):
     times: [T] in s, ascending, T >= 2
     translations: [T, 3] in m, or None for none
     rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
-    interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; each inner time is a breakpoint)
+    interpolation: "cubic" (C2 splines, smooth everywhere, which swing past what stops or starts at once) or "linear" (and
+        slerp; each inner time is a breakpoint)
     Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.
     """
     def __eq__(self, other: object) -> bool:
@@ -177,7 +178,8 @@ class VertexSequence(Deformation):
 
     times: [T] in s, ascending, T >= 2
     vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
-    interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
+    interpolation: "cubic" (C2 splines, which swing past what stops or starts at once) or "linear" (each inner time is a
+        breakpoint)
     period: s; what the sequence does from 0 s to this time, which `times` must hold, is repeated without end. Frames before and
         behind shape the splines: a loop whose outer frames repeat its inner ones goes on smoothly. None: it is defined on `span`
     offset: s, the time of a loop at time 0

@@ -127,7 +127,8 @@ void bind_keyframes(py::module_& m) {
 times: [T] in s, ascending, T >= 2
 translations: [T, 3] in m, or None for none
 rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
-interpolation: "cubic" (C2 splines, smooth everywhere) or "linear" (and slerp; each inner time is a breakpoint)
+interpolation: "cubic" (C2 splines, smooth everywhere, which swing past what stops or starts at once) or "linear" (and
+    slerp; each inner time is a breakpoint)
 Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.)");
   define_init(type, &keyframe_motion, py::arg("times"), py::arg("translations") = py::none(),
               py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
@@ -159,7 +160,8 @@ void bind_sequence(py::module_& m) {
 
 times: [T] in s, ascending, T >= 2
 vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
-interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
+interpolation: "cubic" (C2 splines, which swing past what stops or starts at once) or "linear" (each inner time is a
+    breakpoint)
 period: s; what the sequence does from 0 s to this time, which `times` must hold, is repeated without end. Frames before and
     behind shape the splines: a loop whose outer frames repeat its inner ones goes on smoothly. None: it is defined on `span`
 offset: s, the time of a loop at time 0

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "cpp/support/expect_error.h"
 #include "cpp/support/waveforms.h"
@@ -56,6 +58,27 @@ TEST(ChirpSequence, AChirpMayFillItsSlot) {
   ChirpSequence w = reference_waveform();
   w.chirp_interval = w.chirp_duration();
   EXPECT_NO_THROW(w.validate());
+}
+
+// Lists of steps repeat, each by its own length: chirp by chirp, until both begin anew together.
+TEST(ChirpSequence, TheBandIsThatOfAllChirps) {
+  const std::vector<double> up = {-0.1e9, 0.3e9, -0.4e9, 0.2e9, 0.5e9, 0.1e9};
+  const std::vector<double> wider = {0.1e9, -0.2e9, 0.3e9, 0.4e9, -0.3e9, 0.2e9};
+  ChirpSequence w = reference_waveform();
+  for (size_t starts = 0; starts <= up.size(); ++starts) {
+    for (size_t widths = 0; widths <= wider.size(); ++widths) {
+      w.frequency_steps.assign(up.begin(), up.begin() + static_cast<std::ptrdiff_t>(starts));
+      w.bandwidth_steps.assign(wider.begin(), wider.begin() + static_cast<std::ptrdiff_t>(widths));
+      double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
+      for (size_t chirp = 0; chirp < up.size() * wider.size(); ++chirp) {
+        const double start = w.start_frequency + (starts > 0 ? up[chirp % starts] : 0.0);
+        lowest = std::min(lowest, start);
+        highest = std::max(highest, start + w.bandwidth + (widths > 0 ? wider[chirp % widths] : 0.0));
+      }
+      EXPECT_NEAR(w.band().lowest, lowest, kRounding * lowest) << starts << " " << widths;
+      EXPECT_NEAR(w.band().highest, highest, kRounding * highest) << starts << " " << widths;
+    }
+  }
 }
 
 TEST(ChirpSequence, EachBadFieldIsNamed) {

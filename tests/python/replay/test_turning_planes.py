@@ -14,16 +14,17 @@ SHARES_ROUND = 2e-3      # likewise: as a record keeps it
 MANY = 64                # stretches, one for each chirp
 
 
-def turning_plate(turn, pushed=0.0):
-    """A metal plate, which nobody marked, before a radar: it turns by an angle in rad within the frame, and faces the radar in
-    the middle of it, pushed aside by so many m."""
+def turning_plate(turn, pushed=0.0, mirror=False):
+    """A metal plate before a radar, flagged where mirror is set: it turns by an angle in rad within the frame, and faces the
+    radar in the middle of it, pushed aside by so many m."""
     radar = build_radar(bandwidth=0.3e9, num_chirps=MANY, chirp_interval=100e-6, num_samples=16)
     rate = turn / (MANY * 100e-6)
     half = SIDE / 2
     corners = np.array([[0, -half, -half], [0, half, -half], [0, half, half], [0, -half, half]]) + [0, pushed, 0]
     scene = ep.Scene()
-    scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name="plate", material="metal", position=(DISTANCE, 0, 0),
-              yaw=-rate * radar.middle_of_frame(), motion=ep.LinearMotion(angular_velocity=(0, 0, rate)))
+    scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name="plate", material=ep.Material.metal(mirror=mirror),
+              position=(DISTANCE, 0, 0), yaw=-rate * radar.middle_of_frame(),
+              motion=ep.LinearMotion(angular_velocity=(0, 0, rate)))
     return ep.trace(scene, radar, num_rays=5000, max_bounces=1, polarization="scalar"), rate
 
 
@@ -73,6 +74,13 @@ def test_validity_tells_and_its_stretches_leave_no_more_than_its_limit(turn, pus
     assert report.objects["plate"].beside_edges == pytest.approx(1.0)
     truth = shares_by_integral(paths, rate, pushed)
     assert np.max(abs(shares_of(paths, retrace="invalid") - truth)) < LIMIT + RIGHT
+
+
+def test_a_flagged_plate_is_endless_while_its_image_is_seen():
+    paths, _ = turning_plate(0.05, mirror=True)
+    assert shares_of(paths) == pytest.approx(1.0, abs=SHARES_ROUND)
+    report = ep.validity(paths)
+    assert report.beside_edges_share == report.largest_edge_change == 0.0 and report.ok
 
 
 def test_the_power_of_a_plate_over_the_frame_is_certified():

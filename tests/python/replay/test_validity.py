@@ -151,6 +151,17 @@ def test_cosines_change_as_a_plate_turns():
     assert len(changes) and changes.max() == pytest.approx(report.largest_cosine_change, rel=SUMS)
 
 
+@pytest.mark.parametrize("angle, is_turned", [(0.74, True), (0.78, False), (1.37, False), (1.41, True)])
+def test_a_surface_has_turned_where_its_cosine_is_twice_or_half_what_it_was(angle, is_turned):
+    """A small plate far away, whose normal is 1.2 rad off the line of sight at the trace and then as far as `angle`."""
+    radar = radar_of(num_chirps=1)
+    mesh = shapes.plate((0, 0, 0), (-np.cos(1.2), -np.sin(1.2), 0), 0.1)
+    scene = scene_of(plate=(mesh, ROUGH, (20, 0, 1), moving(turning=(0, 0, 100))))
+    paths = ep.trace(scene, radar, num_rays=2000).select("T 'plate' R")
+    report = ep.validity(paths, radar, times=[(angle - 1.2) / 100], arrays=True)
+    assert paths.num_paths and np.all(report.turned == is_turned)
+
+
 def test_a_point_of_reflection_that_leaves_its_mirror_is_a_warning():
     """The point moves along the mirror at half the target's speed and reaches its end."""
     mirror = shapes.rectangle((9, 3, -1), (2, 0, 0), (0, 0, 2))
@@ -226,6 +237,25 @@ def test_arrays_name_the_leg_that_is_blocked():
     end = paths.frame.trace_time + 1.5 / 400  # the screen stands right between
     for select, blocked, receiver in (("'wall' 'ball'", 0, 1), ("'ball' 'wall'", 1, 0), ("'ball'", 1, 1),
                                       ("'wall' 'ball' 'wall'", 0, 0)):
+        some = paths.select(f"T {select} R")
+        report = ep.validity(some, times=[end], arrays=True)
+        assert some.num_paths > 20, select
+        assert np.all(report.blocked == blocked) and np.all(report.receiver_blocked == receiver), select
+        assert not report.left.any(), select
+
+
+@pytest.mark.parametrize("before_mirror, findings", [
+    (True, {"'wall' 'ball'": (1, 0), "'ball' 'wall'": (0, 1), "'wall' 'ball' 'wall'": (1, 1)}),
+    (False, {"'wall' 'ball'": (2, 0), "'ball' 'wall'": (2, 0), "'wall' 'ball' 'wall'": (2 + 4, 0)})])
+def test_arrays_name_the_leg_to_or_from_a_mirror_that_is_blocked(before_mirror, findings):
+    """A screen comes down between the radar and the wall, or between the wall and the ball, beside the straight way."""
+    wall = shapes.rectangle((0, 4, -2), (14, 0, 0), (0, 0, 6))
+    at = np.array((2.5 if before_mirror else 7.5, 2.0, 1.0))
+    scene = scene_of(wall=(wall, shapes.METAL.replace(mirror=True), (0, 0, 0), None), ball=(BALL, ROUGH, (10, 0, 1), None),
+                     screen=(shapes.plate((0, 0, 0), (-1, 0, 0), 1.5), ROUGH, at + (0, 0, 3), moving(velocity=(0, 0, -400))))
+    paths = ep.trace(scene, radar_of(num_chirps=1), num_rays=20000)
+    end = paths.frame.trace_time + 3 / 400  # the screen stands right in the way
+    for select, (blocked, receiver) in {"'ball'": (0, 0), **findings}.items():
         some = paths.select(f"T {select} R")
         report = ep.validity(some, times=[end], arrays=True)
         assert some.num_paths > 20, select

@@ -70,3 +70,21 @@ def test_validity_tells_where_an_array_near_a_sheet_has_one_coefficient_for_all_
 @pytest.mark.parametrize(("distance", "material"), [(3.0, ep.Material(layers=[ep.Layer(THICKNESS, SLAB)])), (0.03, "metal")])
 def test_validity_is_content_with_a_far_sheet_and_with_near_metal(distance, material):
     assert near_bumper(distance, material)[0].ok
+
+
+def test_validity_tells_where_the_field_in_the_plane_of_incidence_alone_is_reflected_otherwise():
+    """At Brewster's angle glass reflects nothing of it to the mean antennas; the receivers lie to both sides of that angle."""
+    permittivity, distance = 4.0, 0.03
+    places = distance * np.array([-1.8, 4.0 * np.sqrt(permittivity) + 1.8])
+    level = [ep.Antenna((0.0, aside, 0.0), polarization=(0.0, 1.0, 0.0)) for aside in (0.0, *places)]
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="window", material=ep.Material(permittivity=permittivity),
+              position=(distance, 0.0, 0.0))
+    radar = build_radar(level[:1], level[1:], num_samples=32, num_chirps=4)
+    paths = ep.trace(scene, radar, num_rays=20_000, max_bounces=1)
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    for receiver, aside in enumerate(places):
+        endless = wavelength * np.sqrt(radar.transmit_power) / (4.0 * np.pi * np.hypot(2.0 * distance, aside))
+        assert abs(paths.amplitudes([0.0], 0, receiver)[0, 0]) < 1e-3 * endless
+    report = ep.validity(paths)
+    assert report.turned_share == pytest.approx(1.0) and not report.ok

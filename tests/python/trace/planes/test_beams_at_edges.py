@@ -125,6 +125,30 @@ def test_beams_over_two_planes_see_the_edges_of_both_behind_the_other(wall_heigh
     assert 10.0 * np.log10(level) == pytest.approx(0.0, abs=LEVEL_TOLERANCE_DB)
 
 
+@pytest.mark.parametrize("beyond", [0.03, 0.08])
+def test_an_edge_behind_two_bounces_is_lit_by_the_image_of_the_beam(beyond):
+    """From one plane to another and back, over planes 50 degrees apart, whose reflections do not commute: the third bounce, a
+    little before a rim, is that of one plane before the transmitter's image, whose beam passes the first point at its side."""
+    slope = np.radians(50.0)
+    radar = gauge((1.4, 0.0, 0.5), (2.5, 0.0, 0.9), ((0.95, 0.15, 0.0), (1.25, 0.05, 0.0)), 400.0)
+    transmitter, receiver = (np.array(one.position) for one in (radar.transmitters[0], radar.receivers[0]))
+
+    def image(point):
+        """Over the level plane, then the other one: turned about the y-axis by twice their angle."""
+        turn = np.array([[np.cos(2.0 * slope), 0.0, -np.sin(2.0 * slope)], [0.0, 1.0, 0.0],
+                         [np.sin(2.0 * slope), 0.0, np.cos(2.0 * slope)]])
+        return turn @ point
+
+    source = image(transmitter)
+    last = source + source[2] / (source[2] + receiver[2]) * (receiver * (1.0, 1.0, -1.0) - source)
+    level = [(x, y, 0.0) for x, y in ((0.0, -1.0), (last[0] + beyond, -1.0), (last[0] + beyond, 1.0), (0.0, 1.0))]
+    steep = [(s * np.cos(slope), y, s * np.sin(slope)) for s, y in ((0.0, -1.0), (3.0, -1.0), (3.0, 1.0), (0.0, 1.0))]
+    planes = [ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]) for corners in (level, steep)]
+    thrice = traced(planes, radar, max_bounces=3).select("T 'plane 0' 'plane 1' 'plane 0' R")
+    once = traced(planes[:1], gauge(source, receiver, (image((0.95, 0.15, 0.0)), (1.25, 0.05, 0.0)), 400.0))
+    assert ep.received_power(thrice).power == pytest.approx(ep.received_power(once).power, rel=FOUND_AGAIN)
+
+
 def test_validity_tells_of_arrays_with_unlike_beams():
     """The first antennas speak for all: the wide beam has a rim that the narrow one does not light."""
     def of_exponents(*exponents):

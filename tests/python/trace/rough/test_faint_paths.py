@@ -141,3 +141,19 @@ def test_more_power_makes_fewer_paths_faint_and_shoots_no_ray():
     live.radar = radar(power=1.0)
     assert live.update().num_rays_shot == 0
     assert live.paths().num_paths > before
+
+
+@pytest.mark.parametrize("first", ["upright", "level"])
+def test_paths_are_faint_where_no_antenna_has_them_strong(first):
+    """One receiver stands across the polarisation that comes back; the other has each path with more than the faint power."""
+    of = {"upright": ep.Antenna((0, 0, 1), polarization=(0, 0, 1)), "level": ep.Antenna((0, 0, 1), polarization=(0, 1, 0))}
+    names = sorted(of, key=lambda name: name != first)
+    both = ep.Radar(radar().waveform, transmitters=[of["upright"]], receivers=[of[name] for name in names])
+
+    def traced(**keywords):
+        return ep.trace(plate()[0], both, num_rays=500, max_bounces=1, polarization="jones", **keywords)
+
+    every = traced()
+    powers = np.abs([every.amplitudes([every.frame.trace_time], 0, names.index(name))[0] for name in ("upright", "level")])**2
+    assert powers[1].max() < powers[0].min() / 64
+    assert traced(faint_power=0.99 * powers[0].min()).num_paths == every.num_paths

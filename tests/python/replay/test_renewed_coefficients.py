@@ -121,3 +121,29 @@ def test_a_metal_corner_that_turns_about_the_line_of_sight_turns_polarisations_b
     same, across = np.mean(ep.synthesize(paths, retrace="invalid", keyframes=16)[0], axis=2)
     angles = np.arctan(-np.real(across / same)) / 2
     assert angles == pytest.approx(rate * chirp_times(radar), abs=2e-3)  # of 0.25 rad
+
+
+def test_weights_of_a_body_beside_a_mirror_take_the_angles_at_which_the_image_lights_it():
+    """A glass ball drives past a metal wall, y = 2, by which the wave comes: at each of its points by Fresnel's formula."""
+    radius, center, speed = 0.25, np.array([4.0, 0.0, 0.0]), 500.0
+    radar = build_radar([ep.Antenna((0, 0, 0), polarization=UPRIGHT)], num_chirps=64, chirp_interval=100e-6)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(radius, edge=0.03), name="ball", smooth=True, material=ep.Material(permittivity=PERMITTIVITY),
+              position=center, motion=ep.LinearMotion(velocity=(-speed, 0, 0)))
+    scene.add(ep.actors.wall(40, 3), name="wall", material=ep.Material.metal(mirror=True), position=(3, 2, -1))
+    paths = ep.trace(scene, radar, num_rays=20000, max_bounces=2, polarization="scalar").select("T 'wall' S'ball' R")
+    later = paths.frame.trace_time + 2e-3
+    renewed = ep.renew(paths, time=later).paths
+    kept = paths.select(np.isin(paths.offsets, renewed.offsets))
+    assert kept.num_paths == renewed.num_paths
+
+    def coefficients(time):
+        line = kept.points(time)[kept.offsets + 1] - (0, 4, 0)
+        outward = kept.points(time)[kept.offsets + 1] - center + (speed * time, 0, 0)
+        cosine = -np.sum(line * outward, axis=1) / np.linalg.norm(line, axis=1) / np.linalg.norm(outward, axis=1)
+        return fresnel(cosine, True), (np.abs(outward[:, 2]) < 0.02 * radius) & (cosine > 0.3)
+
+    (then, is_met_then), (now, is_met_now) = coefficients(paths.frame.trace_time), coefficients(later)
+    is_level = is_met_then & is_met_now  # where the upright field lies across the plane of incidence
+    assert is_level.sum() > 5 and np.ptp(now[is_level] / then[is_level]) > 0.1
+    assert (renewed.weight / kept.weight)[is_level] == pytest.approx((now / then)[is_level], rel=0.01)

@@ -15,8 +15,8 @@ class PlaneMesh {
   // the plane. Triangles of no area hold no point.
   PlaneMesh(uint32_t mesh_id, const std::vector<uint32_t>& triangles, const std::vector<std::array<Vec3, 3>>& corners,
             const Vec3& normal);
-  // Returns the hit in the first triangle that holds the point (m, in the plane), with 1 nm around it; returns nothing
-  // outside the mesh.
+  // Returns the hit in the first triangle that holds the foot of a point (m) on the plane, with 1 nm around it; returns
+  // nothing outside the mesh.
   std::optional<Hit> locate(const Vec3& point) const;
 
  private:

@@ -90,10 +90,9 @@ std::optional<Hit> hit_in_front(const std::vector<Mirror>& mirrors, int index, c
   int last = index;
   double highest = 0.0;  // m, above the point
   mirrors[index].coplanar->at(point, [&](int other) {
-    const Vec3 normal = mirrors[other].normal_toward(from);
-    const double height = normal.dot(mirrors[other].point - point);
+    const double height = mirrors[other].normal_toward(from).dot(mirrors[other].point - point);
     if (height < highest - kOnePlane || (height <= highest + kOnePlane && other < last)) return;
-    const std::optional<Hit> hit = mirrors[other].mesh.locate(point + height * normal);
+    const std::optional<Hit> hit = mirrors[other].mesh.locate(point);
     if (!hit) return;
     front = hit;
     last = other;

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "cpp/support/scenes.h"
 #include "echopath/trace/frusta/mirror_frusta.h"
+#include "echopath/trace/mirrors/coplanar_mirrors.h"
 #include "echopath/trace/mirrors/legs.h"
 
 namespace echopath::test_legs {
@@ -114,6 +117,28 @@ TEST_F(Corner, OfTwoFloorsInOnePlaneTheLastHasTheLeg) {
   const Leg* leg = over(legs, {2});
   ASSERT_TRUE(leg);
   EXPECT_NEAR(leg->length, (Vec3(3.0, 0.0, -1.0) - point_).norm(), 1e-12);
+}
+
+// Mirrors that are nearer to each other than rays tell apart: the highest is met, and in one plane the last.
+TEST(MirrorsOnEachOther, TheFrontOneIsMet) {
+  constexpr double kNear = 1e-6;  // m
+  const Vec3 from(0.0, 0.0, 2.0), point(0.1, 0.2, 0.0);
+  for (int all = 0; all < 27; ++all) {
+    const std::array<int, 3> steps = {all % 3, all / 3 % 3, all / 9};
+    Scene scene;
+    for (size_t k = 0; k < 3; ++k) {
+      echopath::testing::add_rectangle(scene, std::string(1, "abc"[k]), Vec3(-5, -5, kNear * steps[k]), Vec3(10, 0, 0),
+                                       Vec3(0, 10, 0), echopath::testing::share(Material::metal(true)));
+    }
+    const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
+    const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
+    size_t front = 0;
+    for (size_t k = 1; k < 3; ++k) front = steps[k] >= steps[front] ? k : front;
+    for (size_t k = 0; k < 3; ++k) {
+      const auto met = hit_in_front(mirrors, static_cast<int>(k), from, point + kNear * steps[k] * Vec3::UnitZ());
+      EXPECT_EQ(met ? met->mesh_id : k, front) << ::testing::PrintToString(steps) << " from " << k;
+    }
+  }
 }
 
 // What lies in a mirror's plane sees nothing in it.

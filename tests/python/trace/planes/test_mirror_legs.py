@@ -22,8 +22,10 @@ from support.shapes import (
 
 IMAGE_TOLERANCE_DB = 0.1     # promised; what is left is the quadrature over the target
 PO_TOLERANCE_DB = 0.3        # physical optics with the footprint filter against its bare quadrature
+SPHERE_TOLERANCE = 0.03       # of the field of a sphere: other rays, and an angle that differs over it
 FIELD_TOLERANCE = 1e-6       # relative: single precision of the weight
 CLUTTER_TOLERANCE = 0.01     # relative, Monte-Carlo error of 2e5 rays
+HIDDEN_TOLERANCE = 0.08      # likewise, of 900 hits
 
 MIRROR = ep.Material.metal(mirror=True)
 ANTENNA = np.array((0.0, 0.0, 1.0))
@@ -84,11 +86,15 @@ def test_mirrors_that_lie_on_others_have_no_images_of_their_own():
 
 
 # Rays know no distances below 3e-6 m here; of mirrors in one plane the last one counts.
-@pytest.mark.parametrize("height, permittivity", [(0.0, 9.0), (2e-6, 9.0), (-2e-6, 4.0)])
-def test_of_mirrors_on_each_other_the_front_one_has_the_image(height, permittivity):
+@pytest.mark.parametrize("height, slope, permittivity",
+                         [(0.0, 0.0, 9.0), (2e-6, 0.0, 9.0), (-2e-6, 0.0, 4.0), (2e-6, -1e-6, 9.0)])
+@pytest.mark.parametrize("is_upside_down", [False, True])
+def test_of_mirrors_on_each_other_the_front_one_has_the_image(height, slope, permittivity, is_upside_down):
+    """height in m, where the puddle lies in front of the road; slope: of it, so that the road's ends are farther off its plane"""
     road, puddle = (ep.Material(permittivity=value, mirror=True) for value in (4.0, 9.0))
-    scene = scene_of(road=(rectangle((-6, -5, 0), (11, 0, 0), (0, 11, 0)), road),
-                     puddle=(rectangle((-2, -1, height), (3, 0, 0), (0, 4, 0)), puddle))
+    sides = [(3, 0, 3 * slope), (0, 4, 0)]
+    scene = scene_of(road=(rectangle((-60, -60, 0), (65, 0, 0), (0, 65, 0)), road),
+                     puddle=(rectangle((-2, -1, height), *(reversed(sides) if is_upside_down else sides)), puddle))
     field = fields(ep.trace(scene, make_radar((0, 0, 2), polarization=(0, 1, 0)), num_rays=10).select("T .* R")).sum()
     gamma = (math.sqrt(permittivity) - 1) / (math.sqrt(permittivity) + 1)
     assert abs(field) == pytest.approx(gamma * WAVELENGTH / (4 * math.pi * 4), rel=2 * abs(height) + FIELD_TOLERANCE)
@@ -122,6 +128,28 @@ def test_a_metal_sphere_in_a_corner_sees_four_antennas():
     assert decibel(abs(found / expected) ** 2) == pytest.approx(0, abs=PO_TOLERANCE_DB)
 
 
+@pytest.mark.parametrize("aside, floor", [(0.0, "metal"), (3.0, "glass")])
+def test_a_sphere_of_glass_over_a_floor_is_lit_by_the_image(aside, floor):
+    """An upright field lies in the plane of incidence on the floor, and on the sphere where both antennas are one place; the
+    signs of such waves that turn back on a target are its own, whatever mirror they came over."""
+    target = dict(target=(sphere((20, 0, 1.5), .2, 5), ep.Material(permittivity=4.0), True))
+    transmitter, receiver = np.array([(0, -aside, 1), (0, aside, 1)])
+    material = MIRROR if floor == "metal" else ep.Material(permittivity=4.0, mirror=True)
+    ground = rectangle((-50, -50, 0), (200, 0, 0), (0, 100, 0))
+
+    def field(select, at, **more):
+        scene = scene_of(**target, **more)
+        paths = ep.trace(scene, make_radar(at, receiver), num_rays=1 << 14, max_bounces=2, polarization="scalar")
+        return fields(paths.select(select)).sum()
+
+    sine = 2.5 / math.sqrt(20**2 + aside**2 + 2.5**2)  # of the angle between floor and wave
+    inside = math.sqrt(3.0 + sine**2)
+    gamma = -1.0 if floor == "metal" else (4.0 * sine - inside) / (4.0 * sine + inside)
+    over = field("T 'ground' S'target' R", transmitter, ground=(ground, material))
+    image = field("T S'target' R", transmitter * (1, 1, -1))
+    assert over / image == pytest.approx(gamma, abs=SPHERE_TOLERANCE)
+
+
 def test_targets_behind_a_rough_mirror_leave_its_own_echo_as_it_is():
     # Rays at the ball's image cross a third of the floor.
     rough = ep.Material(reflectivity=.5, scattering=.8, mirror=True)
@@ -134,6 +162,21 @@ def test_targets_behind_a_rough_mirror_leave_its_own_echo_as_it_is():
     expected = np.sum(1e-4 / length**6) * .5 * .8**2 / math.pi * (WAVELENGTH / (4 * math.pi)) ** 2
     power = np.sum(np.abs(paths.select("T D'floor' R").amplitude) ** 2)
     assert power == pytest.approx(expected, rel=CLUTTER_TOLERANCE, abs=0)
+
+
+def test_a_floor_below_a_shelf_is_seen_over_a_rough_mirror_alone():
+    """Of the rays that meet the wall few go on, and stand for all: the echo is the integral over what the radar's image sees."""
+    rough = ep.Material(reflectivity=.5, scattering=.8, mirror=True)
+    scene = scene_of(floor=(rectangle((-30, -30, 0), (33, 0, 0), (0, 60, 0)), lambert(.5)),
+                     shelf=(rectangle((-1, -3, .5), (3.2, 0, 0), (0, 6, 0)), lambert(.1)),
+                     wall=(rectangle((3, -3, 0), (0, 6, 0), (0, 0, 3)), rough))
+    paths = ep.trace(scene, make_radar((0, 0, 1)), num_rays=400_000, max_bounces=3).select("T S'wall' D'floor' S'wall' R")
+    place = paths.points(paths.frame.trace_time)[paths.offsets + 1]
+    is_hidden = (np.abs(place[:, 0]) < 1.5) & (np.abs(place[:, 1]) < 3)
+    x, y = np.meshgrid((np.arange(300) + .5) / 100 - 1.5, (np.arange(600) + .5) / 100 - 3)
+    length = np.sqrt((6 - x) ** 2 + y**2 + 1)
+    expected = np.sum(1e-4 / length**6) * .5 / math.pi * (WAVELENGTH / (4 * math.pi)) ** 2 * (.5 * (1 - .8**2)) ** 2
+    assert np.sum(np.abs(paths.amplitude[is_hidden]) ** 2) == pytest.approx(expected, rel=HIDDEN_TOLERANCE, abs=0)
 
 
 @pytest.mark.hard

@@ -31,6 +31,15 @@ def test_every_channel_of_a_wide_array_has_the_echo_of_each_chirp(width, side):
         assert np.abs(found - expected).max() < RELATIVE * np.abs(expected).max()
 
 
+@pytest.mark.parametrize("step", [0.02, -0.02])
+def test_transmitters_beyond_the_first_group_have_the_echo_of_each_chirp(step):
+    """64 channels are replayed at a time: the last ones have phases and amplitudes of their own. step: m"""
+    paths, radar = paths_of([(0.0, 0.66 - 33 * step + step * i, 0.0) for i in range(67)], [(0.0, 0.0, 0.0)], 2000)
+    found, expected = ep.synthesize(paths, radar), ep.synthesize(paths, radar, evaluate="chirps")
+    assert np.abs(expected[66] - expected[2]).max() > 0.1 * np.abs(expected).max()
+    assert np.abs(found - expected).max() < RELATIVE * np.abs(expected).max()
+
+
 def near_bumper(distance, material):
     """What `validity` says of a plane before a transmitter and receivers 4 mm and 10 cm beside it, which stand still."""
     scene = ep.Scene()

@@ -177,6 +177,20 @@ def test_amplitudes_follow_as_closely_as_phases_are_asked_for():
     assert np.abs(close - exact).max() < 1e-8 * np.abs(exact).max()
 
 
+def test_rough_and_smooth_bodies_that_cross_a_narrow_beam_together_have_the_echo_of_each_chirp():
+    """No polynomial of few nodes follows the beam's edge: smooth bodies turn their phases beside, rough ones do not."""
+    beam = ep.Antenna(pattern=ep.CosinePower(2000.0))
+    radar = build_radar([beam], [ep.Antenna()], num_samples=32, num_chirps=32)
+    scene, across = ep.Scene(), ep.LinearMotion(velocity=(0, 30, 0))
+    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(0.9, -0.03, 0), smooth=True, motion=across)
+    scene.add(ep.actors.plate(0.1, 0.1), name="rag", material=ep.Material(reflectivity=0.5, scattering=1.0),
+              position=(0.5, -0.02, 0.05), motion=across)
+    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=1)
+    assert all(paths.select(f"T '{name}' R").num_paths > 100 for name in ("ball", "rag"))
+    found, expected = ep.synthesize(paths), ep.synthesize(paths, evaluate="chirps")
+    assert np.abs(found - expected).max() < INTERPOLATION_ERROR * np.abs(expected).max()
+
+
 def rotor_scene(rate, radius):
     """A small facet on a circle about (10, 0, 1), `rate` in rad/s."""
     size = 1e-4

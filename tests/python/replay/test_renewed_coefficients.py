@@ -14,12 +14,12 @@ IMAGES = 65535         # stratum of paths that no ray found
 LEVEL, UPRIGHT = (0, 1, 0), (0, 0, 1)
 
 
-def fresnel(cosine, across):
+def fresnel(cosine, across, permittivity=PERMITTIVITY):
     """The coefficient of a half space; across: the field stands across the plane of incidence (TE), else in it (TM)."""
-    behind = np.sqrt(PERMITTIVITY - 1.0 + cosine**2)
+    behind = np.sqrt(permittivity - 1.0 + cosine**2)
     if across:
         return (cosine - behind) / (cosine + behind)
-    return (PERMITTIVITY * cosine - behind) / (PERMITTIVITY * cosine + behind)
+    return (permittivity * cosine - behind) / (permittivity * cosine + behind)
 
 
 def receding_wall(mirror, polarization, field, pane=False):
@@ -50,6 +50,24 @@ def test_weights_of_images_take_the_angles_of_their_time(mirror, field):
     for time in TIMES:
         expected = paths.weight[0] * fresnel(cosines(paths, time), field == UPRIGHT) / then
         assert ep.renew(paths, time=time).paths.weight[0] == pytest.approx(expected, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("is_from_behind", [False, True])
+def test_weights_of_a_wall_of_two_layers_are_those_of_the_side_that_is_seen(is_from_behind):
+    """Each layer is so thick and lossy that nothing comes back from beyond it."""
+    sides = 4.0 - 0.4j, 12.0 - 1.2j
+    radar = build_radar([ep.Antenna((0, -ASIDE, 0), polarization=UPRIGHT)], [ep.Antenna((0, ASIDE, 0), polarization=UPRIGHT)],
+                        num_chirps=64, chirp_interval=100e-6)
+    turned = [[0, 1, 2], [0, 2, 3]] if is_from_behind else [[0, 2, 1], [0, 3, 2]]  # else the normal is toward the radar
+    scene = ep.Scene()
+    scene.add(ep.Mesh([[0, -9, -9], [0, 9, -9], [0, 9, 9], [0, -9, 9]], turned), name="wall", position=(2, 0, 0), speed=SPEED,
+              material=ep.Material(layers=[ep.Layer(0.2, side) for side in sides]))
+    paths = ep.trace(scene, radar, num_rays=2000, max_bounces=1, polarization="scalar")
+    seen = sides[is_from_behind]
+    assert paths.num_paths == 1
+    for time in (paths.frame.trace_time, *TIMES):
+        expected = fresnel(cosines(paths, time), True, seen)
+        assert ep.renew(paths, time=time).paths.weight[0] == pytest.approx(expected, rel=1e-4)
 
 
 @pytest.mark.parametrize("mirror", [True, False])

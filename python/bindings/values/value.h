@@ -52,8 +52,8 @@ using KeywordsOf = pybind11::dict (*)(const pybind11::object& self);
 using MakerFor = pybind11::object (*)(const pybind11::dict& keywords);
 
 // Gives a class pickle, copy, deepcopy, == and a hash. The state of a pickle is the keywords that make the value again, so
-// it is checked by the constructor, as any other input, and what an object of a derived class has of its own. `maker_for` names what takes the keywords where that is not the
-// class.
+// it is checked by the constructor, as any other input, and what an object of a derived class has of its own. `maker_for`
+// names what takes the keywords where that is not the class.
 template <class Value, class... Options>
 void define_value(pybind11::class_<Value, Options...>& type, KeywordsOf keywords_of = &keywords_by_attribute<Value>,
                   MakerFor maker_for = &detail::constructor_for<Value>) {

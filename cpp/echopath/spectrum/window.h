@@ -22,7 +22,7 @@ struct Window {
   double level() const;  // dB, of windows that have one
   bool has_level() const { return kind == WindowKind::kChebyshev || kind == WindowKind::kTaylor; }
   std::string name() const;
-  bool operator==(const Window&) const = default;
+  bool operator==(const Window& other) const { return kind == other.kind && (!has_level() || level() == other.level()); }
 };
 
 // Holds the windows along the two axes of a map. One window stands for both.

@@ -125,6 +125,13 @@ TEST(Window, ShortWindowsHaveAPositiveSum) {
   }
 }
 
+TEST(Window, ThatAreTheSameAreEqualHoweverTheirLevelIsSaid) {
+  EXPECT_EQ(Window::named("chebyshev"), Window::named("chebyshev", 80.0));
+  EXPECT_EQ(Window::named("taylor"), Window::named("taylor", 35.0));
+  EXPECT_NE(Window::named("taylor"), Window::named("taylor", 80.0));
+  EXPECT_NE(Window::named("taylor", 80.0), Window::named("chebyshev", 80.0));
+}
+
 TEST(Window, BadValuesAreErrorsThatNameTheNearest) {
   EXPECT_THROW(window_samples({}, 0), std::invalid_argument);
   EXPECT_THROW(window_samples({WindowKind::kChebyshev, 5.0}, 8), std::invalid_argument);

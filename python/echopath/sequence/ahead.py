@@ -12,7 +12,8 @@ from ..base.process.threads import num_threads
 Result = TypeVar("Result")
 Work = Callable[[Any], Result]  # of a progress callable (stage, fraction), or None
 
-POLL = 0.05  # s between looks for Ctrl-C and calls of a progress callable
+POLL = 0.05      # s between looks for Ctrl-C and calls of a progress callable
+BEGINNING = 1.0  # s within which a thread begins, if it was made
 
 
 def one_ahead(works: Iterable[Work[Result]], progress=None) -> Iterator[Result]:
@@ -27,24 +28,16 @@ def one_ahead(works: Iterable[Work[Result]], progress=None) -> Iterator[Result]:
     if num_threads() == 1:
         yield from (work(progress) for work in works)
         return
-    waiting = iter(works)
-    ahead = _next_of(waiting)
+    ahead = _Ahead(iter(works))
     try:
-        while ahead is not None:
+        has_next = ahead.begin_next()
+        while has_next:
             result = ahead.result(progress)
-            ahead = None
-            ahead = _next_of(waiting)
+            has_next = ahead.begin_next()
             yield result
             del result  # it is not to live as long as the next one is waited for
     finally:
-        if ahead is not None:
-            ahead.stop()
-
-
-def _next_of(works: Iterator[Work[Result]]) -> _Ahead[Result] | None:
-    for work in works:
-        return _Ahead(work)
-    return None
+        ahead.stop()
 
 
 class _Stopped(BaseException):
@@ -52,23 +45,29 @@ class _Stopped(BaseException):
 
 
 class _Ahead(Generic[Result]):
-    """A work in a thread of its own, which ends with the program."""
+    """One of some works at a time, each in a thread of its own that ends with the program."""
 
-    def __init__(self, work: Work[Result]):
+    def __init__(self, works: Iterator[Work[Result]]):
+        self._works = works
         self._result: list[Result] = []
         self._failure: BaseException | None = None
-        self._told, self._is_stopped, self._has_ended = None, False, threading.Event()
-        self._thread = threading.Thread(target=at_line_of_user(functools.partial(self._run, work)), daemon=True,
-                                        name="echopath-ahead")
-        try:
+        self._told: tuple[str, float] | None = None
+        self._thread: threading.Thread | None = None
+        self._is_stopped, self._has_begun, self._has_ended = False, threading.Event(), threading.Event()
+
+    def begin_next(self) -> bool:
+        """Begins the next work, after the result of the one before; False, and nothing begins, where there is none."""
+        for work in self._works:
+            self._told, self._has_begun, self._has_ended = None, threading.Event(), threading.Event()
+            # Kept before it starts: Ctrl-C may come at any step, and `stop` is to find it.
+            self._thread = threading.Thread(target=at_line_of_user(functools.partial(self._run, work)), daemon=True,
+                                            name="echopath-ahead")
             self._thread.start()
-        except BaseException:  # Ctrl-C while this waits for the thread to run: nobody else knows of it
-            if self._thread.ident is not None:
-                self.stop()
-            raise
+            return True
+        return False
 
     def result(self, progress) -> Result:
-        """Waits for the end; returns or raises what the work did. To be called once."""
+        """Waits for the end of the work; returns or raises what it did. To be called once for each."""
         while not self._has_ended.wait(POLL):
             self._tell(progress)
         self._tell(progress)
@@ -80,13 +79,17 @@ class _Ahead(Generic[Result]):
         return self._result.pop()
 
     def stop(self) -> None:
-        """Has the work end early and waits for it."""
+        """Has the work end early, if there is one, and waits for it."""
         self._is_stopped = True
-        self._thread.join()
+        # Ctrl-C may have come before the start, or into it: then the thread is yet to run, or was not made.
+        if self._thread in threading.enumerate() and self._has_begun.wait(BEGINNING):
+            self._thread.join()
 
     def _run(self, work: Work[Result]) -> None:
+        self._has_begun.set()
         try:
-            self._result.append(work(self._hear))
+            if not self._is_stopped:
+                self._result.append(work(self._hear))
         except BaseException as failure:
             self._failure = failure
         finally:

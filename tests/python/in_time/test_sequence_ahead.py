@@ -178,6 +178,58 @@ def test_ctrl_c_while_the_thread_begins_stops_it(monkeypatch):
     assert ended.is_set() and ahead_threads() == []
 
 
+def test_ctrl_c_between_the_making_of_the_thread_and_its_first_step_stops_it(monkeypatch):
+    begun, ended = threading.Event(), threading.Event()
+    wait = threading.Event.wait
+
+    def interrupted(event, timeout=None):
+        if timeout is None:  # as Thread.start waits for what it has made
+            raise KeyboardInterrupt
+        return wait(event, timeout)
+
+    monkeypatch.setattr(threading.Event, "wait", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        next(one_ahead([endless(begun, ended)]))
+    assert ended.is_set() == begun.is_set() and ahead_threads() == []
+
+
+class CtrlCAtStep:
+    """Raises KeyboardInterrupt at one instruction of the loop's own code, counted over all of them; at the latest where the loop
+    waits for its second result. Once the loop ends its thread, nothing is raised any more."""
+
+    def __init__(self, step: int):
+        self.steps_left, self.results, self.is_over = step, 0, False
+
+    def __call__(self, frame, event, _):
+        code = frame.f_code
+        if self.is_over or code.co_filename != ahead.__file__:
+            return None
+        frame.f_trace_opcodes = True
+        self.results += event == "call" and code.co_name == "result"
+        self.is_over = event == "call" and code.co_name == "stop" or self.results == 2
+        self.steps_left -= event == "opcode"
+        if self.results == 2 or self.steps_left < 0:
+            self.is_over = True
+            raise KeyboardInterrupt
+        return self
+
+
+def test_ctrl_c_at_any_step_of_the_loop_leaves_no_thread():
+    for step in itertools.count():
+        ctrl_c = CtrlCAtStep(step)
+        sys.settrace(ctrl_c)
+        try:
+            with pytest.raises(KeyboardInterrupt):
+                for _ in one_ahead([lambda _: "first", endless(threading.Event(), threading.Event())]):
+                    pass
+        finally:
+            sys.settrace(None)
+        assert ahead_threads() == [], step
+        if ctrl_c.results == 2:
+            break
+    assert step > 50
+
+
 SCRIPT = """
 import sys, threading, time
 import echopath as ep

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "call/faults.h"
+
 namespace echopath::bindings::detail {
 namespace {
 
@@ -23,8 +25,9 @@ std::string any_of(py::handle type) {
 bool is_numpy(py::handle value) { return py::hasattr(value, "dtype"); }
 
 bool is_bool(py::handle value) {
-  return PyBool_Check(value.ptr()) ||
-         (is_numpy(value) && py::array::ensure(value) && py::array::ensure(value).dtype().kind() == 'b');
+  if (PyBool_Check(value.ptr())) return true;
+  const py::array array = is_numpy(value) ? array_or_none(value) : py::reinterpret_steal<py::array>(py::handle());
+  return array && array.dtype().kind() == 'b';
 }
 
 // The whole number that a float stands for.
@@ -46,14 +49,12 @@ py::object as_float(py::handle value) {
   const bool has_value = number != nullptr && (number->nb_float != nullptr || number->nb_index != nullptr);
   if (!has_value || is_bool(value) || PyComplex_Check(value.ptr())) return py::object();
   if (is_numpy(value)) {
-    const py::array array = py::array::ensure(value);
-    if (!array || array.ndim() != 0 || std::string_view("iuf").find(array.dtype().kind()) == std::string_view::npos) {
-      PyErr_Clear();
-      return py::object();
-    }
+    const py::array array = array_or_none(value);
+    const bool is_real = array && std::string_view("iuf").find(array.dtype().kind()) != std::string_view::npos;
+    if (!is_real || array.ndim() != 0) return py::object();
   }
   py::object result = py::reinterpret_steal<py::object>(PyNumber_Float(value.ptr()));
-  if (!result) PyErr_Clear();
+  if (!result) forget_fault();
   return result;
 }
 
@@ -63,7 +64,7 @@ double checked_number(py::handle value, const char* argument) {
   if (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr())) {
     const double number = PyLong_AsDouble(value.ptr());
     if (number != -1.0 || !PyErr_Occurred()) return number;
-    PyErr_Clear();
+    forget_fault();
     refuse_value(argument, "must be a number of at most 1.8e308", value);
   }
   const py::object number = as_float(value);
@@ -87,7 +88,7 @@ uint64_t checked_seed(py::handle value, const char* argument) {
     const unsigned long long seed = PyLong_AsUnsignedLongLong(integer.ptr());
     if (!PyErr_Occurred()) return seed;
   }
-  PyErr_Clear();
+  forget_fault();
   if (!integer) refuse_type(argument, kRule, value);
   refuse_value(argument, kRule, value);
 }
@@ -100,7 +101,7 @@ int64_t checked_whole(py::handle value, const char* argument, int64_t low, int64
   if (PyIndex_Check(value.ptr()) && !is_bool(value)) {
     const py::object integer = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
     if (!integer) {
-      PyErr_Clear();
+      forget_fault();
       if (!is_numpy(value)) refuse_type(argument, rule, value);
     } else {
       whole = whole_of(integer);
@@ -118,7 +119,7 @@ int64_t checked_whole(py::handle value, const char* argument, int64_t low, int64
 bool checked_flag(py::handle value, const char* argument) {
   if (PyBool_Check(value.ptr())) return value.ptr() == Py_True;
   if (is_bool(value)) {
-    const py::array array = py::array::ensure(value);
+    const py::array array = array_or_none(value);
     if (array.ndim() == 0) return *py::array_t<bool>(array).data();
   }
   refuse_type(argument, "must be True or False", value);
@@ -129,7 +130,7 @@ std::string checked_text(py::handle value, const char* argument) {
   Py_ssize_t size = 0;
   const char* text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
   if (text == nullptr) {
-    PyErr_Clear();
+    forget_fault();
     refuse_value(argument, "must be text that UTF-8 can hold, without lone surrogates", value);
   }
   const std::string taken(text, static_cast<size_t>(size));
@@ -142,7 +143,7 @@ std::vector<py::object> checked_items(py::handle value, const char* argument) {
   const py::object fast =
       is_other ? py::object() : py::reinterpret_steal<py::object>(PySequence_Fast(value.ptr(), "not a sequence"));
   if (!fast) {
-    PyErr_Clear();
+    forget_fault();
     refuse_type(argument, "must be a list", value);
   }
   std::vector<py::object> items;

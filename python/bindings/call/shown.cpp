@@ -3,7 +3,9 @@
 #include <pybind11/numpy.h>
 
 #include <cstddef>
-#include <stdexcept>
+#include <exception>
+
+#include "call/faults.h"
 
 namespace echopath::bindings {
 namespace {
@@ -43,8 +45,10 @@ std::string shown(py::handle value) {
     if (PyFloat_Check(value.ptr())) return cut(py::repr(py::float_(PyFloat_AS_DOUBLE(value.ptr()))));
     if (has_short_text(value)) return cut(py::repr(value));
     if (py::isinstance(value, py::module_::import("numpy").attr("generic"))) return cut(py::str(value));
-  } catch (const std::exception&) {  // such as an int of too many digits
-    PyErr_Clear();
+  } catch (py::error_already_set& error) {  // such as that of an int of too many digits
+    error.restore();
+    forget_fault();
+  } catch (const std::exception&) {  // text that UTF-8 cannot hold
   }
   return type_name(value);
 }

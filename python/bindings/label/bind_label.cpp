@@ -11,6 +11,7 @@
 
 #include "call/argument.h"
 #include "call/define.h"
+#include "call/faults.h"
 #include "call/run_job.h"
 #include "echopath/label/expressions/expression.h"
 #include "label/named_selections.h"
@@ -24,7 +25,7 @@ namespace {
 PyObject* selection_of_text(PyObject* value, PyTypeObject* selection_type) {
   if (!PyUnicode_Check(value)) return nullptr;
   if (PyUnicode_AsUTF8AndSize(value, nullptr) == nullptr) {  // or it would be asked for again and again
-    PyErr_Clear();
+    forget_fault();
     PyErr_Format(PyExc_ValueError, "text: must be text without lone surrogates, got %A", value);
     throw py::error_already_set();
   }

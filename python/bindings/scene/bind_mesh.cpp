@@ -12,6 +12,7 @@
 
 #include "call/argument.h"
 #include "call/define.h"
+#include "call/faults.h"
 #include "call/leaving.h"
 #include "echopath/base/text/streamed.h"
 #include "echopath/scene/readers/readers.h"
@@ -35,7 +36,7 @@ std::string mesh_text(const Mesh& self) {
 }
 
 std::shared_ptr<Mesh> part_of(const std::shared_ptr<Mesh>& self, const py::object& triangles) {
-  const py::array given = py::array::ensure(triangles);
+  const py::array given = array_or_none(triangles);
   if (!given || given.dtype().kind() != 'b') {
     return shared(Mesh::part(self, as_vector<uint32_t>(triangles, "triangles")));
   }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "call/faults.h"
 #include "call/shown.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/geometry.h"
@@ -87,11 +88,8 @@ namespace detail {
 
 py::array array_of_kind(py::handle value, std::string_view argument, std::string_view shape, std::string_view kinds,
                         std::string_view what) {
-  const py::array array = py::array::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    throw py::type_error(rule(argument, shape, what) + shown(value));
-  }
+  const py::array array = array_or_none(value);
+  if (!array) throw py::type_error(rule(argument, shape, what) + shown(value));
   if (is_masked(value))
     throw py::value_error(rule(argument, shape, what) + "a masked array, some of whose values are not there");
   // An empty list has no kind of its own.

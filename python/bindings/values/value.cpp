@@ -2,6 +2,8 @@
 
 #include <pybind11/numpy.h>
 
+#include "call/faults.h"
+
 namespace echopath::bindings::detail {
 namespace {
 
@@ -78,7 +80,7 @@ std::pair<py::dict, py::dict> checked_state(const py::object& state, const char*
 
 void refuse_change(py::handle self, py::handle name, py::handle value) {
   if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) == 0) return;
-  PyErr_Clear();
+  forget_fault();
   const std::string of = py::cast<std::string>(py::type::handle_of(self).attr("__name__")), called = escaped(name);
   throw py::attribute_error(called + ": cannot be set, a " + of + " does not change; replace(" + called +
                             "=...) returns a copy that differs");

@@ -111,6 +111,36 @@ def test_ctrl_c_stops_work_on_a_large_record(ctrl_c_is_heard, paths, tmp_path_fa
 STOPPED = ["echopath: stopped; no file was left half written"]
 
 
+class Raises:
+    """Asked for what it is, as an argument, it raises: as lists of NumPy's numbers do where Ctrl-C comes while they are read."""
+
+    def __init__(self, error):
+        self.error = error
+
+    def _raise(self, *_, **__):
+        raise self.error
+
+    __float__ = __index__ = __iter__ = __len__ = __getitem__ = __array__ = _raise
+
+
+READERS = {
+    "array": lambda value: ep.LinearMotion(velocity=value),
+    "array of numbers": lambda value: ep.LinearMotion(velocity=[value, 0.0, 0.0]),
+    "number": lambda value: ep.ChirpSequence(bandwidth=value),
+    "whole number": lambda value: ep.ChirpSequence(num_chirps=value),
+    "seed": lambda value: ep.SignalProbe(seed=value),
+    "list": lambda value: ep.Radar(ep.ChirpSequence(), transmitters=value, receivers=[]),
+    "mask": lambda value: ep.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).part(value),
+}
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
+@pytest.mark.parametrize("reader", READERS)
+def test_ctrl_c_while_an_argument_is_read_is_no_fault_of_the_argument(reader, error):
+    with pytest.raises(error):
+        READERS[reader](Raises(error))
+
+
 @pytest.mark.hard
 @pytest.mark.parametrize("delay", [0.08, 0.15, 0.25, 0.4])
 def test_ctrl_c_while_the_program_loads_is_one_line(delay, tmp_path):

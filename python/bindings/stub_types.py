@@ -10,7 +10,7 @@ WINDOW = "str | tuple[str, float] | tuple[str | tuple[str, float], str | tuple[s
 PAIR = "tuple[float, float]"
 PATH = "str | os.PathLike[str]"
 REPLAY = "Literal['material', 'fermat']"
-INTERPOLATION = "Literal['cubic', 'linear']"
+INTERPOLATION = "Literal['cubic', 'linear', 'monotone']"
 AXES = {"ax": "Axes | None"}
 LEVELS = AXES | {"vmin": "float | None", "vmax": "float | None"}
 

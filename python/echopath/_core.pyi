@@ -97,8 +97,9 @@ class KeyframeMotion(Motion):
     times: [T] in s, ascending, T >= 2
     translations: [T, 3] in m, or None for none
     rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
-    interpolation: "cubic" (C2 splines, smooth everywhere, which swing past what stops or starts at once) or "linear" (and
-        slerp; each inner time is a breakpoint)
+    interpolation: "cubic" (C2 splines, smooth everywhere, which swing past what stops or starts at once), "monotone" (C1 cubics
+        after Fritsch and Butland, which rest between equal keys and do not pass those on a line; their acceleration jumps) or
+        "linear" (and slerp; the velocity jumps). Of the latter two each inner time is a breakpoint
     Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.
     """
     def __eq__(self, other: object) -> bool:
@@ -109,13 +110,13 @@ class KeyframeMotion(Motion):
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, times: ArrayLike, translations: ArrayLike | None = None, rotations: ArrayLike | None = None, interpolation: Literal['cubic', 'linear'] = 'cubic') -> None:
+    def __init__(self, times: ArrayLike, translations: ArrayLike | None = None, rotations: ArrayLike | None = None, interpolation: Literal['cubic', 'linear', 'monotone'] = 'cubic') -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, *, times: ArrayLike = ..., translations: ArrayLike | None = ..., rotations: ArrayLike | None = ..., interpolation: Literal['cubic', 'linear'] = ...) -> KeyframeMotion:
+    def replace(self, *, times: ArrayLike = ..., translations: ArrayLike | None = ..., rotations: ArrayLike | None = ..., interpolation: Literal['cubic', 'linear', 'monotone'] = ...) -> KeyframeMotion:
         """
         A copy with other values of some arguments.
 
@@ -125,7 +126,7 @@ class KeyframeMotion(Motion):
     @property
     def interpolation(self) -> str:
         """
-        "cubic" or "linear"
+        "cubic", "linear" or "monotone"
         """
     @property
     def rotations(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -178,12 +179,12 @@ class VertexSequence(Deformation):
 
     times: [T] in s, ascending, T >= 2
     vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
-    interpolation: "cubic" (C2 splines, which swing past what stops or starts at once) or "linear" (each inner time is a
-        breakpoint)
+    interpolation: "cubic" (C2 splines, which swing past what stops or starts at once), "monotone" or "linear" (each inner time
+        is a breakpoint), as of KeyframeMotion
     period: s; what the sequence does from 0 s to this time, which `times` must hold, is repeated without end. Frames before and
         behind shape the splines: a loop whose outer frames repeat its inner ones goes on smoothly. None: it is defined on `span`
     offset: s, the time of a loop at time 0
-    Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.
+    Raises TypeError or ValueError naming the argument. All but linear sequences take twice the memory of their vertices.
     """
     def __eq__(self, other: object) -> bool:
         """
@@ -193,13 +194,13 @@ class VertexSequence(Deformation):
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: Literal['cubic', 'linear'] = 'cubic', *, period: float | None = None, offset: float = 0.0) -> None:
+    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: Literal['cubic', 'linear', 'monotone'] = 'cubic', *, period: float | None = None, offset: float = 0.0) -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, *, times: ArrayLike = ..., vertices: ArrayLike = ..., interpolation: Literal['cubic', 'linear'] = ..., period: float | None = ..., offset: float = ...) -> VertexSequence:
+    def replace(self, *, times: ArrayLike = ..., vertices: ArrayLike = ..., interpolation: Literal['cubic', 'linear', 'monotone'] = ..., period: float | None = ..., offset: float = ...) -> VertexSequence:
         """
         A copy with other values of some arguments.
 
@@ -209,7 +210,7 @@ class VertexSequence(Deformation):
     @property
     def interpolation(self) -> str:
         """
-        "cubic" or "linear"
+        "cubic", "linear" or "monotone"
         """
     @property
     def offset(self) -> float:

@@ -31,10 +31,10 @@ std::vector<Quaternion> continuous(std::vector<Quaternion> rotations, size_t num
   return rotations;
 }
 
-// Returns the second derivatives of `samples` at the knots, in the same type.
+// Returns the derivatives of `samples` at the knots, of SplineKnots::derivatives, in the same type.
 template <class Value>
-std::vector<Value> key_curvatures(const SplineKnots& knots, const std::vector<Value>& samples, int64_t width) {
-  if (samples.empty() || !knots.has_curvature()) return {};
+std::vector<Value> key_derivatives(const SplineKnots& knots, const std::vector<Value>& samples) {
+  if (samples.empty() || !knots.has_derivatives()) return {};
   std::vector<Value> result(samples.size());
   std::vector<const double*> rows;
   std::vector<double*> out;
@@ -42,7 +42,7 @@ std::vector<Value> key_curvatures(const SplineKnots& knots, const std::vector<Va
     rows.push_back(reinterpret_cast<const double*>(&samples[i]));
     out.push_back(reinterpret_cast<double*>(&result[i]));
   }
-  knots.second_derivatives(rows, width, out);
+  knots.derivatives(rows, 1, sizeof(Value) / sizeof(double), out);
   return result;
 }
 
@@ -50,31 +50,44 @@ std::vector<Value> key_curvatures(const SplineKnots& knots, const std::vector<Va
 
 struct KeyframeMotion::Data {
   SplineKnots knots;
-  std::vector<Vec3> translations, translation_curvature;
-  std::vector<Quaternion> rotations, rotation_curvature;
+  std::vector<Vec3> translations, translation_derivatives;
+  std::vector<Quaternion> rotations, rotation_derivatives;
   bool rests;
 
   Vec3 translation(const SplineKnots::Weights& w) const {
     if (translations.empty()) return Vec3::Zero();
     Vec3 value = w.value[0] * translations[w.k] + w.value[1] * translations[w.k + 1];
-    if (knots.has_curvature()) {
-      value += w.curvature[0] * translation_curvature[w.k] + w.curvature[1] * translation_curvature[w.k + 1];
+    if (knots.has_derivatives()) {
+      value += w.derivative[0] * translation_derivatives[w.k] + w.derivative[1] * translation_derivatives[w.k + 1];
     }
     return value;
   }
 
-  // Returns a bound of the angular speed between knots k and k + 1, rad/s: twice the speed of the unit quaternion. Its
-  // spline has the derivative of the chord plus at most h / 3 times the second derivatives at its ends, and is never shorter
-  // than the chord.
+  // Returns a bound of the angular speed between knots k and k + 1, rad/s: twice the speed of the unit quaternion. Its C2
+  // spline has the derivative of the chord plus at most h / 3 times the second derivatives at its ends, and is never
+  // shorter than the chord.
   double angular_speed(size_t k) const {
     constexpr double kMinQuaternionLength = 0.7071;  // between rotations less than 180 degrees apart
     const double step = knots.times()[k + 1] - knots.times()[k];
     if (knots.interpolation() == Interpolation::kLinear) return rotations[k].angularDistance(rotations[k + 1]) / step;
-    double speed = (rotations[k + 1].coeffs() - rotations[k].coeffs()).norm() / step;
-    if (knots.has_curvature()) {
-      speed += step / 3.0 * (rotation_curvature[k].coeffs().norm() + rotation_curvature[k + 1].coeffs().norm());
-    }
-    return 2.0 * speed / kMinQuaternionLength;
+    const Eigen::Vector4d chord = (rotations[k + 1].coeffs() - rotations[k].coeffs()) / step;
+    if (!knots.has_derivatives()) return 2.0 * chord.norm() / kMinQuaternionLength;
+    const Eigen::Vector4d &before = rotation_derivatives[k].coeffs(), &after = rotation_derivatives[k + 1].coeffs();
+    if (knots.interpolation() == Interpolation::kMonotone) return monotone_angular_speed(k, step, chord, before, after);
+    return 2.0 * (chord.norm() + step / 3.0 * (before.norm() + after.norm())) / kMinQuaternionLength;
+  }
+
+  // The same of kMonotone, of the chord's derivative and those at the two knots, per s: a cubic lies in the hull of its four
+  // control points, and its derivative in the hull of their three differences.
+  double monotone_angular_speed(size_t k, double step, const Eigen::Vector4d& chord, const Eigen::Vector4d& before,
+                                const Eigen::Vector4d& after) const {
+    constexpr double kMinQuaternionLength = 0.05;  // of keys that are nearly 180 degrees apart
+    const Eigen::Vector4d &first = rotations[k].coeffs(), &second = rotations[k + 1].coeffs();
+    const Eigen::Vector4d middle = (first + second).normalized();
+    const double length = std::min({middle.dot(first), middle.dot(first + step / 3.0 * before),
+                                    middle.dot(second - step / 3.0 * after), middle.dot(second)});
+    const double speed = std::max({before.norm(), (3.0 * chord - before - after).norm(), after.norm()});
+    return 2.0 * speed / std::max(length, kMinQuaternionLength);
   }
 
   Quaternion rotation(const SplineKnots::Weights& w) const {
@@ -82,9 +95,9 @@ struct KeyframeMotion::Data {
     const Quaternion &first = rotations[w.k], &second = rotations[w.k + 1];
     if (knots.interpolation() == Interpolation::kLinear) return first.slerp(w.value[1], second);
     Quaternion value(first.coeffs() * w.value[0] + second.coeffs() * w.value[1]);
-    if (knots.has_curvature()) {
-      value.coeffs() += w.curvature[0] * rotation_curvature[w.k].coeffs();
-      value.coeffs() += w.curvature[1] * rotation_curvature[w.k + 1].coeffs();
+    if (knots.has_derivatives()) {
+      value.coeffs() += w.derivative[0] * rotation_derivatives[w.k].coeffs();
+      value.coeffs() += w.derivative[1] * rotation_derivatives[w.k + 1].coeffs();
     }
     return value.normalized();
   }
@@ -97,11 +110,11 @@ KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> tran
           "neither");
   check_translations(translations, knots.times().size());
   rotations = continuous(std::move(rotations), knots.times().size());
-  std::vector<Vec3> translation_curvature = key_curvatures(knots, translations, 3);
-  std::vector<Quaternion> rotation_curvature = key_curvatures(knots, rotations, 4);
+  std::vector<Vec3> translation_derivatives = key_derivatives(knots, translations);
+  std::vector<Quaternion> rotation_derivatives = key_derivatives(knots, rotations);
   const bool rests = all_equal(translations) && all_equal(rotations);
-  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(translations), std::move(translation_curvature),
-                                            std::move(rotations), std::move(rotation_curvature), rests});
+  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(translations), std::move(translation_derivatives),
+                                            std::move(rotations), std::move(rotation_derivatives), rests});
 }
 
 KeyframeMotion::~KeyframeMotion() = default;

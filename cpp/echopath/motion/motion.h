@@ -13,7 +13,7 @@ struct TimeSpan {
   double end = 1e300;     // s
 };
 
-enum class Interpolation { kCubic, kLinear };
+enum class Interpolation { kCubic, kLinear, kMonotone };
 
 class Motion {
  public:
@@ -54,10 +54,11 @@ class LinearMotion : public Motion {
   Vec3 velocity_, angular_velocity_;
 };
 
-// Interpolates translations [T] in m and unit quaternions [T] given at ascending times [T] in s, T >= 2.
-// kCubic uses C2 not-a-knot cubic splines through the translations and the sign-continuous quaternions (then normalised);
-// kLinear is piecewise linear with slerp, and has a breakpoint at each inner time. As q and -q are one rotation, it turns
-// the shorter way between keys, so neighbours should be less than 180 degrees apart.
+// Interpolates translations [T] in m and unit quaternions [T] given at ascending times [T] in s, T >= 2. kCubic uses C2
+// not-a-knot cubic splines through the translations and the sign-continuous quaternions (then normalised); kLinear is
+// piecewise linear with slerp; kMonotone uses C1 cubics that do not swing past keys (spline.h). Both latter have a
+// breakpoint at each inner time. As q and -q are one rotation, it turns the shorter way between keys, so neighbours should
+// be less than 180 degrees apart.
 class KeyframeMotion : public Motion {
  public:
   // Empty translations mean zero, empty rotations mean identity; not both may be empty. Rotations may be off unit length by

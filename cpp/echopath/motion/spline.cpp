@@ -14,7 +14,9 @@ namespace {
 
 constexpr double kTimeRounding = 1e-12;    // relative, and in s for times below 1 s
 constexpr double kMinDisplacement = 1e-9;  // m
-constexpr int64_t kColumnsPerTask = 2048;  // keeps three rows of a block in the first-level cache
+constexpr int64_t kPointsPerTask = 680;    // keeps three rows of their coordinates in the first-level cache
+
+using Velocity = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;  // of a point with up to 4 coordinates, per s
 
 void check_times(const std::vector<double>& times) {
   require(times.size() >= 2, "times", "must hold at least 2 times", times.size());
@@ -22,6 +24,25 @@ void check_times(const std::vector<double>& times) {
     require(std::isfinite(times[i]), "times", "must be finite", times[i]);
     if (i > 0) require(times[i] > times[i - 1], "times", "must be strictly ascending", times[i]);
   }
+}
+
+// Returns the velocity at a knot of kMonotone, of those before and behind it, on for `step_before` and `step_after`, s.
+Velocity velocity_between(const Velocity& before, const Velocity& after, double step_before, double step_after) {
+  const double speed_before = before.norm(), speed_after = after.norm();
+  if (!(speed_before > 0.0 && speed_after > 0.0)) return Velocity::Zero(before.size());
+  const double weight_before = step_before + 2.0 * step_after, weight_after = 2.0 * step_before + step_after;
+  const double speed = (weight_before + weight_after) / (weight_before / speed_before + weight_after / speed_after);
+  return 0.5 * speed * (before / speed_before + after / speed_after);
+}
+
+// Returns the velocity at an end of kMonotone, of that in the outermost step and that in the next: that of the parabola
+// through three knots, which neither turns back nor, where the next step does, is more than 3 times as fast as the outermost
+// one (C. Moler, "Numerical Computing with MATLAB", 2004, ch. 3.4).
+Velocity velocity_at_end(const Velocity& outer, const Velocity& next, double outer_step, double next_step) {
+  const Velocity velocity = outer + outer_step / (outer_step + next_step) * (outer - next);
+  if (!(velocity.dot(outer) > 0.0)) return Velocity::Zero(outer.size());
+  const double most = 3.0 * outer.norm(), speed = velocity.norm();
+  return outer.dot(next) <= 0.0 && speed > most ? Velocity(velocity * (most / speed)) : velocity;
 }
 
 }  // namespace
@@ -72,7 +93,7 @@ SplineKnots::SplineKnots(std::vector<double> times, Interpolation interpolation)
     : times_(std::move(times)), interpolation_(interpolation) {
   check_times(times_);
   for (size_t i = 0; i + 1 < times_.size(); ++i) step_.push_back(times_[i + 1] - times_[i]);
-  if (has_curvature()) factor();
+  if (interpolation == Interpolation::kCubic && has_derivatives()) factor();
 }
 
 std::vector<double> SplineKnots::breakpoints() const {
@@ -103,10 +124,35 @@ void SplineKnots::factor() {
   }
 }
 
-void SplineKnots::second_derivatives(const std::vector<const double*>& rows, int64_t width,
-                                     const std::vector<double*>& out) const {
-  if (width <= kColumnsPerTask) return solve_columns(rows, out, 0, width);
-  parallel_for_chunks(width, kColumnsPerTask, [&](int64_t begin, int64_t end) { solve_columns(rows, out, begin, end); });
+void SplineKnots::derivatives(const std::vector<const double*>& rows, int64_t num_points, int64_t num_axes,
+                              const std::vector<double*>& out) const {
+  const auto work = [&](int64_t begin, int64_t end) {
+    if (interpolation_ == Interpolation::kMonotone) velocities_of_points(rows, num_axes, out, begin, end);
+    else solve_columns(rows, out, num_axes * begin, num_axes * end);
+  };
+  if (num_points <= kPointsPerTask) return work(0, num_points);
+  parallel_for_chunks(num_points, kPointsPerTask, work);
+}
+
+void SplineKnots::velocities_of_points(const std::vector<const double*>& rows, int64_t num_axes,
+                                       const std::vector<double*>& out, int64_t begin, int64_t end) const {
+  const size_t last = times_.size() - 1;
+  for (int64_t point = begin; point < end; ++point) {
+    const int64_t first_column = num_axes * point;
+    const auto velocity = [&](size_t k) -> Velocity {
+      const Eigen::Map<const Velocity> from(rows[k] + first_column, num_axes), to(rows[k + 1] + first_column, num_axes);
+      return (to - from) / step_[k];
+    };
+    const auto derivative = [&](size_t k) { return Eigen::Map<Velocity>(out[k] + first_column, num_axes); };
+    Velocity before = velocity(0);
+    derivative(0) = velocity_at_end(before, velocity(1), step_[0], step_[1]);
+    for (size_t k = 1; k < last; ++k) {
+      const Velocity after = velocity(k);
+      derivative(k) = velocity_between(before, after, step_[k - 1], step_[k]);
+      before = after;
+    }
+    derivative(last) = velocity_at_end(before, velocity(last - 2), step_[last - 1], step_[last - 2]);
+  }
 }
 
 void SplineKnots::solve_columns(const std::vector<const double*>& rows, const std::vector<double*>& out, int64_t begin,
@@ -143,12 +189,10 @@ SplineKnots::Weights SplineKnots::weights(double time, bool at_rest) const {
   const auto k = static_cast<size_t>(after - times_.begin()) - 1;
   const double h = step_[k];
   const double b = (time - times_[k]) / h, a = (times_[k + 1] - time) / h;
-  Weights weights{k, {a, b}, {0.0, 0.0}};
-  if (has_curvature()) {
-    weights.curvature[0] = (a * a - 1.0) * a * h * h / 6.0;
-    weights.curvature[1] = (b * b - 1.0) * b * h * h / 6.0;
-  }
-  return weights;
+  if (!has_derivatives()) return {k, {a, b}, {0.0, 0.0}};
+  if (interpolation_ == Interpolation::kCubic)
+    return {k, {a, b}, {(a * a - 1.0) * a * h * h / 6.0, (b * b - 1.0) * b * h * h / 6.0}};
+  return {k, {(1.0 + 2.0 * b) * a * a, (1.0 + 2.0 * a) * b * b}, {b * a * a * h, -a * b * b * h}};
 }
 
 }  // namespace echopath

@@ -14,6 +14,11 @@ namespace echopath {
 // kCubic is the C2 cubic spline with not-a-knot ends (de Boor, "A Practical Guide to Splines", ch. IV): the first two
 // and the last two pieces are one cubic each, so every cubic is reproduced. Two knots give the line, three the
 // parabola.
+//
+// kMonotone has cubic pieces whose speed at a knot is the weighted harmonic mean of the speeds of the straight ways before
+// and behind (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984, p. 300), and whose direction is the mean of
+// their unit vectors, which shortens it where the way bends: what rests between two knots stays there, what turns back
+// does so at the knot, and points on a line never pass their knots. Turned samples give the turned curve.
 class SplineKnots {
  public:
   // `times` [T] in s. Raises invalid_argument naming `times` unless there are at least 2, finite and strictly ascending.
@@ -22,26 +27,30 @@ class SplineKnots {
   const std::vector<double>& times() const { return times_; }
   Interpolation interpolation() const { return interpolation_; }
   TimeSpan span() const { return {times_.front(), times_.back()}; }
-  std::vector<double> breakpoints() const;  // inner knots where the interpolation is linear
+  std::vector<double> breakpoints() const;  // inner knots, unless the interpolation is C2
 
-  // The value at a time is value[0] y[k] + value[1] y[k+1] + curvature[0] m[k] + curvature[1] m[k+1], with the samples
-  // y and their second derivatives m; the curvature weights are 0 where `has_curvature` is false.
+  // The value at a time is value[0] y[k] + value[1] y[k+1] + derivative[0] d[k] + derivative[1] d[k+1], with the samples
+  // y and their derivatives d of `derivatives`, whose weights are 0 where `has_derivatives` is false.
   struct Weights {
     size_t k;
     double value[2];
-    double curvature[2];  // s^2
+    double derivative[2];  // s^2 of kCubic, s of kMonotone
   };
   // Raises invalid_argument outside span(), but forgives rounding errors of the time. Samples at rest, which are all equal,
   // have the weights of the first knot at all times: between knots their sum would differ in its last bits.
   Weights weights(double time, bool at_rest) const;
 
-  bool has_curvature() const { return interpolation_ == Interpolation::kCubic && times_.size() > 2; }
-  // Computes the second derivatives (per s^2) of the splines through `width` columns of samples: rows [T] point to `width`
-  // numbers each, and so do `out` [T]. Requires has_curvature().
-  void second_derivatives(const std::vector<const double*>& rows, int64_t width, const std::vector<double*>& out) const;
+  bool has_derivatives() const { return interpolation_ != Interpolation::kLinear && times_.size() > 2; }
+  // Computes the second derivatives (per s^2) of kCubic, or the first ones (per s) of kMonotone, of the curves through
+  // samples of `num_points` points with `num_axes` coordinates, at most 4: rows [T] point to num_points x num_axes numbers
+  // each, and so do `out` [T]. Requires has_derivatives().
+  void derivatives(const std::vector<const double*>& rows, int64_t num_points, int64_t num_axes,
+                   const std::vector<double*>& out) const;
 
  private:
   void factor();
+  void velocities_of_points(const std::vector<const double*>& rows, int64_t num_axes, const std::vector<double*>& out,
+                            int64_t begin, int64_t end) const;
   void solve_columns(const std::vector<const double*>& rows, const std::vector<double*>& out, int64_t begin,
                      int64_t end) const;
 

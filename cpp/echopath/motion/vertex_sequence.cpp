@@ -19,8 +19,8 @@ void check_frames(const Frames& frames, size_t num_times) {
   }
 }
 
-Frames frame_curvatures(const SplineKnots& knots, const Frames& frames) {
-  if (!knots.has_curvature()) return {};
+Frames frame_derivatives(const SplineKnots& knots, const Frames& frames) {
+  if (!knots.has_derivatives()) return {};
   Frames result(frames.size());
   std::vector<const double*> rows;
   std::vector<double*> out;
@@ -29,7 +29,7 @@ Frames frame_curvatures(const SplineKnots& knots, const Frames& frames) {
     rows.push_back(frames[i].data()->data());
     out.push_back(result[i].data()->data());
   }
-  knots.second_derivatives(rows, 3 * std::ssize(frames.front()), out);
+  knots.derivatives(rows, std::ssize(frames.front()), 3, out);
   return result;
 }
 
@@ -37,12 +37,12 @@ Frames frame_curvatures(const SplineKnots& knots, const Frames& frames) {
 
 struct VertexSequence::Data {
   SplineKnots knots;
-  Frames frames, curvature;  // curvature: second derivatives [T][V] in m/s^2, empty where linear
+  Frames frames, derivatives;  // derivatives: [T][V] in m/s^2 of kCubic or m/s of kMonotone, empty where linear
   bool rests;
 
   Vec3 vertex(const SplineKnots::Weights& w, size_t i) const {
     Vec3 value = w.value[0] * frames[w.k][i] + w.value[1] * frames[w.k + 1][i];
-    if (!curvature.empty()) value += w.curvature[0] * curvature[w.k][i] + w.curvature[1] * curvature[w.k + 1][i];
+    if (!derivatives.empty()) value += w.derivative[0] * derivatives[w.k][i] + w.derivative[1] * derivatives[w.k + 1][i];
     return value;
   }
 };
@@ -50,9 +50,9 @@ struct VertexSequence::Data {
 VertexSequence::VertexSequence(std::vector<double> times, Frames vertices, Interpolation interpolation) {
   SplineKnots knots(std::move(times), interpolation);
   check_frames(vertices, knots.times().size());
-  Frames curvature = frame_curvatures(knots, vertices);
+  Frames derivatives = frame_derivatives(knots, vertices);
   const bool rests = all_equal(vertices);
-  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(curvature), rests});
+  data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(derivatives), rests});
 }
 
 VertexSequence::~VertexSequence() = default;

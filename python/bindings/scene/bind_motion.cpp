@@ -20,7 +20,7 @@
 namespace echopath::bindings {
 namespace {
 
-constexpr auto kInterpolation = choice<Interpolation>("interpolation", "cubic", "linear");
+constexpr auto kInterpolation = choice<Interpolation>("interpolation", "cubic", "linear", "monotone");
 
 py::typing::Tuple<double, double> as_tuple(const TimeSpan& span) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -127,8 +127,9 @@ void bind_keyframes(py::module_& m) {
 times: [T] in s, ascending, T >= 2
 translations: [T, 3] in m, or None for none
 rotations: [T, 4] unit quaternions (w, x, y, z), or None for none
-interpolation: "cubic" (C2 splines, smooth everywhere, which swing past what stops or starts at once) or "linear" (and
-    slerp; each inner time is a breakpoint)
+interpolation: "cubic" (C2 splines, smooth everywhere, which swing past what stops or starts at once), "monotone" (C1 cubics
+    after Fritsch and Butland, which rest between equal keys and do not pass those on a line; their acceleration jumps) or
+    "linear" (and slerp; the velocity jumps). Of the latter two each inner time is a breakpoint
 Between two keys a rotation goes the shorter way. Raises TypeError or ValueError naming the argument.)");
   define_init(type, &keyframe_motion, py::arg("times"), py::arg("translations") = py::none(),
               py::arg("rotations") = py::none(), py::arg("interpolation") = "cubic")
@@ -138,7 +139,7 @@ Between two keys a rotation goes the shorter way. Raises TypeError or ValueError
       .def_property_readonly("rotations", array_of(&KeyframeMotion::rotations),
                              "[T, 4] (w, x, y, z), neighbours in one half space; [0, 4] where none were given")
       .def_property_readonly("interpolation", name_of(kInterpolation, &KeyframeMotion::interpolation),
-                             "\"cubic\" or \"linear\"")
+                             "\"cubic\", \"linear\" or \"monotone\"")
       .def("__repr__", [](const KeyframeMotion& self) {
         return description("KeyframeMotion", self.span(), self.times().size(), self.interpolation());
       });
@@ -160,18 +161,18 @@ void bind_sequence(py::module_& m) {
 
 times: [T] in s, ascending, T >= 2
 vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
-interpolation: "cubic" (C2 splines, which swing past what stops or starts at once) or "linear" (each inner time is a
-    breakpoint)
+interpolation: "cubic" (C2 splines, which swing past what stops or starts at once), "monotone" or "linear" (each inner time
+    is a breakpoint), as of KeyframeMotion
 period: s; what the sequence does from 0 s to this time, which `times` must hold, is repeated without end. Frames before and
     behind shape the splines: a loop whose outer frames repeat its inner ones goes on smoothly. None: it is defined on `span`
 offset: s, the time of a loop at time 0
-Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)");
+Raises TypeError or ValueError naming the argument. All but linear sequences take twice the memory of their vertices.)");
   define_init(type, &vertex_sequence, py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic",
               py::kw_only(), py::arg("period") = py::none(), py::arg("offset") = 0.0)
       .def_property_readonly("times", array_of(&VertexSequence::times), "[T] in s")
       .def_property_readonly("vertices", array_of(&VertexSequence::vertices), "[T, V, 3] in m, a copy")
       .def_property_readonly("interpolation", name_of(kInterpolation, &VertexSequence::interpolation),
-                             "\"cubic\" or \"linear\"")
+                             "\"cubic\", \"linear\" or \"monotone\"")
       .def_property_readonly(
           "period", [](const VertexSequence& self) { return period_of(loop_of(self)); }, "s, or None where it is no loop")
       .def_property_readonly(

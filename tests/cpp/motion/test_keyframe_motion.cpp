@@ -120,7 +120,7 @@ TEST(KeyframeMotion, LinearRotationsFollowTheClosedFormOfSlerp) {
 }
 
 TEST(KeyframeMotion, TheSignOfAQuaternionDoesNotMatter) {
-  for (const Interpolation interpolation : {Interpolation::kCubic, Interpolation::kLinear}) {
+  for (const Interpolation interpolation : {Interpolation::kCubic, Interpolation::kLinear, Interpolation::kMonotone}) {
     std::vector<Quaternion> plain, flipped;
     for (size_t i = 0; i < kTimes.size(); ++i) {
       plain.push_back(about(Vec3(0, 1, 1), 0.8 * static_cast<double>(i)));

@@ -23,7 +23,7 @@ TEST(Rests, OfVelocitiesTheyAreAllZero) {
 }
 
 TEST(Rests, OfKeyframesTheyAreAllEqual) {
-  for (const Interpolation way : {Interpolation::kCubic, Interpolation::kLinear}) {
+  for (const Interpolation way : {Interpolation::kCubic, Interpolation::kLinear, Interpolation::kMonotone}) {
     const KeyframeMotion motion({0, 1, 3, 4}, std::vector(4, Vec3(1, 2, 3)), std::vector(4, kTurned), way);
     EXPECT_TRUE(motion.rests());
     EXPECT_LT((motion.at(2.2).matrix() - motion.at(0.1).matrix()).norm(), 1e-15);
@@ -87,7 +87,7 @@ TEST(Rests, AreAtTheSamePlaceToTheLastBit) {
     return made;
   };
   std::vector<std::unique_ptr<const Motion>> motions;
-  for (const Interpolation way : {Interpolation::kCubic, Interpolation::kLinear}) {
+  for (const Interpolation way : {Interpolation::kCubic, Interpolation::kLinear, Interpolation::kMonotone}) {
     motions.push_back(std::make_unique<KeyframeMotion>(std::vector{0.0, 0.3, 0.4, 0.7}, std::vector(4, place),
                                                        std::vector(4, turned), way));
   }

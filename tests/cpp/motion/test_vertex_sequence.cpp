@@ -56,7 +56,7 @@ TEST(VertexSequence, LinearErrorOfARotatingPointIsTheSagOfTheChord) {
 }
 
 TEST(VertexSequence, AFewVerticesAreTheSameAsThoseOfAll) {
-  for (const Interpolation interpolation : {Interpolation::kCubic, Interpolation::kLinear}) {
+  for (const Interpolation interpolation : {Interpolation::kCubic, Interpolation::kLinear, Interpolation::kMonotone}) {
     const VertexSequence sequence = rotating(9, 1000, interpolation);
     const std::vector<uint32_t> indices = {999, 0, 512, 512};
     std::vector<Vec3> some(7);

@@ -191,6 +191,36 @@ def test_rough_and_smooth_bodies_that_cross_a_narrow_beam_together_have_the_echo
     assert np.abs(found - expected).max() < INTERPOLATION_ERROR * np.abs(expected).max()
 
 
+def stopping_scene() -> tuple[ep.Scene, float]:
+    """A car and a cloth that come to rest within 10 ms before a wall, and when, in s: in the middle of the frame of `make_radar`."""
+    waveform = make_radar().waveform
+    stop = 0.41 * waveform.num_chirps * waveform.chirp_interval
+    times, ways = [stop - 1.0, stop - 0.01, stop, stop + 5.0, stop + 6.0], [-10.0, -0.1, 0.0, 0.0, 0.0]
+    keys = {"times": times, "interpolation": "monotone"}
+    scene = walking_scene()
+    cloth = ep.actors.plate(0.5, 0.8, edge=0.2)
+    vertices = np.array(cloth.vertices)
+    moved = [vertices + 0.5 * way * (1.0 + 0.1 * vertices[:, 1:2]) * [1.0, 0.0, 0.0] for way in ways]
+    scene.add(ep.actors.car(), name="stopping car", position=(9, -2, 0),
+              motion=ep.KeyframeMotion(translations=[[way, 0, 0] for way in ways], **keys))
+    scene.add(cloth, name="cloth", material=ROUGH, position=(6, 2, 1), motion=ep.VertexSequence(vertices=moved, **keys))
+    return scene, stop
+
+
+def test_what_stops_at_a_key_within_a_frame_is_replayed_as_chirp_by_chirp_and_rests_in_the_next_one():
+    scene, stop = stopping_scene()
+    radar = make_radar()
+    paths = ep.trace(scene, radar, num_rays=4000)
+    exact = ep.synthesize(paths, radar, evaluate="chirps", method="direct")
+    found = ep.synthesize(paths, radar, method="direct")
+    assert np.linalg.norm(found - exact) < INTERPOLATION_ERROR * np.linalg.norm(exact)
+    for name in ("stopping car/*", "cloth"):
+        own = paths.select(f"T '{name}' R")
+        assert own.num_paths > 10
+        before, at, after = (own.lengths(np.array([time]), 0, 0)[0] for time in (0.0, stop, 2.0 * stop))
+        assert np.abs(before - at).max() > 1e-6 and np.abs(after - at).max() < 1e-12
+
+
 def rotor_scene(rate, radius):
     """A small facet on a circle about (10, 0, 1), `rate` in rad/s."""
     size = 1e-4

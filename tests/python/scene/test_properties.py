@@ -107,7 +107,7 @@ def keys_of(gaps, draw_points):
 
 @FEW
 @given(gaps=steps, points=st.lists(coordinates, min_size=21, max_size=21),
-       interpolation=st.sampled_from(["cubic", "linear"]))
+       interpolation=st.sampled_from(["cubic", "linear", "monotone"]))
 def test_keyframes_pass_through_their_points(gaps, points, interpolation):
     times, keys = keys_of(gaps, points)
     motion = ep.KeyframeMotion(times=times, translations=keys, interpolation=interpolation)
@@ -118,7 +118,7 @@ def test_keyframes_pass_through_their_points(gaps, points, interpolation):
 
 @FEW
 @given(gaps=steps, numbers=st.lists(st.floats(-1.0, 1.0), min_size=28, max_size=28), share=st.floats(0.0, 1.0),
-       interpolation=st.sampled_from(["cubic", "linear"]))
+       interpolation=st.sampled_from(["cubic", "linear", "monotone"]))
 def test_turns_stay_turns(gaps, numbers, share, interpolation):
     times = np.concatenate([[0.0], np.cumsum(gaps)])
     quaternions = np.array(numbers[:4 * len(times)]).reshape(-1, 4) + [1.5, 0, 0, 0]

@@ -56,7 +56,7 @@ materials = st.one_of(
     st.builds(ep.Material, reflectivity=st.floats(0, 1), lobe_exponent=st.integers(1, 100),
               backscatter_share=st.floats(0.01, 1), backscatter_exponent=st.integers(0, 100)))
 linear_motions = st.builds(ep.LinearMotion, vectors, vectors)
-interpolations = st.sampled_from(["cubic", "linear"])
+interpolations = st.sampled_from(["cubic", "linear", "monotone"])
 
 
 @st.composite

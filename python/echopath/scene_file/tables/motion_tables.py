@@ -21,7 +21,7 @@ class KeyframeMotionTable(Table):
     times: list[Number] = Field(min_length=2, description="s, ascending")
     translations: list[Vector3] | None = Field(None, description="m, one per time")
     rotations: list[Quaternion] | None = Field(None, description="quaternions w, x, y, z, one per time")
-    interpolation: Literal["cubic", "linear"] = Field("cubic", description="between the times")
+    interpolation: Literal["cubic", "linear", "monotone"] = Field("cubic", description="between the times")
 
 
 MotionTable = Annotated[

@@ -192,7 +192,7 @@ def test_rough_and_smooth_bodies_that_cross_a_narrow_beam_together_have_the_echo
 
 
 def stopping_scene() -> tuple[ep.Scene, float]:
-    """A car and a cloth that come to rest within 10 ms before a wall, and when, in s: in the middle of the frame of `make_radar`."""
+    """A car and a cloth that come to rest within 10 ms before a wall, and when, in s: within a frame of `make_radar`."""
     waveform = make_radar().waveform
     stop = 0.41 * waveform.num_chirps * waveform.chirp_interval
     times, ways = [stop - 1.0, stop - 0.01, stop, stop + 5.0, stop + 6.0], [-10.0, -0.1, 0.0, 0.0, 0.0]

@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import interpolate
 
 import echopath as ep
 
@@ -61,6 +62,19 @@ def test_cubic_is_the_default_and_has_no_breakpoints():
     motion = ep.KeyframeMotion(times=[0, 1, 2], translations=np.zeros((3, 3)))
     assert motion.interpolation == "cubic"
     assert len(motion.breakpoints) == 0
+
+
+def test_monotone_keys_along_a_line_are_followed_as_by_scipy():
+    """PCHIP (Fritsch and Butland 1984), from the first key to the last, for keys that lie unevenly and turn back and rest."""
+    random = np.random.default_rng(3)
+    way = np.array([2.0, -1.0, 2.0]) / 3.0
+    for _ in range(50):
+        times = np.cumsum(random.uniform(0.1, 2.0, 7))
+        along = np.cumsum(random.choice([0.0, 1.0], 7) * random.normal(0.3, 1.0, 7))
+        motion = ep.KeyframeMotion(times, np.outer(along, way), interpolation="monotone")
+        at = np.linspace(times[0], times[-1], 101)
+        found = np.array([motion.at(time)[:3, 3] for time in at])
+        np.testing.assert_allclose(found, np.outer(interpolate.PchipInterpolator(times, along)(at), way), rtol=0, atol=ROUNDING)
 
 
 def test_vertex_sequence_of_a_rotating_point_follows_the_circle():

@@ -131,6 +131,18 @@ translations = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 2.0, 0.
     assert np.allclose(scene.world_vertices(0, 2.0) - rest, [1.0, 1.0, 0.0], atol=ROUNDING)
 
 
+def test_keyframes_name_their_interpolation(write):
+    scene = ep.load_scene(write(mesh_object("""material = "metal"
+[objects.motion]
+kind = "keyframes"
+times = [0.0, 1.0, 1.5, 9.0]
+translations = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [6.0, 0.0, 0.0]]
+interpolation = "monotone\""""))).scene
+    stopped = scene.world_vertices(0, 1.5) - scene.world_vertices(0, 0.0)
+    for time in (2.0, 5.0, 8.0):
+        assert np.allclose(scene.world_vertices(0, time) - scene.world_vertices(0, 0.0), stopped, atol=ROUNDING)
+
+
 def test_a_material_table_changes_a_named_material(write):
     table = 'material = {base = "concrete", scattering = 0.3, cross_polarization = 0.1, mirror = true}'
     material = ep.load_scene(write(mesh_object(table))).scene.meshes[0].material

@@ -31,10 +31,10 @@ std::vector<Transform> PlacingNodes::world_from_meshes(double time) const {
   return of_meshes;
 }
 
-MeshesToPose::MeshesToPose(const Scene& scene, std::shared_ptr<const MeshPlaces> places, std::vector<SurfacePatch> patches)
-    : places(std::move(places)), nodes(scene, this->places->meshes), patches(std::move(patches)) {
-  require(this->patches.size() == scene.meshes().size(), "patches", "must be one for each mesh of the scene",
-          this->patches.size());
+MeshesToPose::MeshesToPose(const Scene& scene, std::shared_ptr<const MeshPlaces> mesh_places,
+                           std::vector<SurfacePatch> mesh_patches)
+    : places(std::move(mesh_places)), nodes(scene, places->meshes), patches(std::move(mesh_patches)) {
+  require(patches.size() == scene.meshes().size(), "mesh_patches", "must be one for each mesh of the scene", patches.size());
 }
 
 }  // namespace echopath

@@ -45,8 +45,8 @@ class PlacingNodes {
 
 // Says what of a scene is posed: some of its meshes, and of those that deform only patches. The scene must outlive it.
 struct MeshesToPose {
-  // patches: one for each mesh of the scene. Raises invalid_argument where they are not as many.
-  MeshesToPose(const Scene& scene, std::shared_ptr<const MeshPlaces> places, std::vector<SurfacePatch> patches);
+  // mesh_patches: one for each mesh of the scene. Raises invalid_argument where they are not as many.
+  MeshesToPose(const Scene& scene, std::shared_ptr<const MeshPlaces> mesh_places, std::vector<SurfacePatch> mesh_patches);
 
   std::shared_ptr<const MeshPlaces> places;
   PlacingNodes nodes;                 // of the meshes by their places

@@ -11,6 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr double kLargestSize = 1e6;  // ka
+constexpr double kPointSize = 1e-8;   // ka, below which all but Rayleigh's dipoles are rounding
 constexpr double kTiny = 1e-250;      // where the downward recurrence starts
 constexpr double kHuge = 1e200;       // where it is scaled back
 constexpr int kGuardOrders = 16;      // orders above the last one from which the downward recurrence forgets its start
@@ -76,9 +77,13 @@ double mie_rcs(double radius, double frequency, double bistatic_angle, Scatterin
   const double wavenumber = kTwoPi * frequency / kSpeedOfLight, x = wavenumber * radius;
   require(x <= kLargestSize, "radius", "must be such that 2 pi radius / wavelength <= 1e6", radius);
 
+  const double cosine = -std::cos(bistatic_angle);  // of the scattering angle, measured from straight on
+  if (x < kPointSize) {  // a_1 = 2j x^3 / 3, b_1 = -j x^3 / 3: the functions of the multipoles would overflow
+    const double length = radius * (x * x) * (plane == ScatteringPlane::kH ? 2.0 - cosine : 2.0 * cosine - 1.0);
+    return kPi * length * length;
+  }
   const Coefficients multipoles = coefficients(x);
-  // The loop computes pi_n = P_n^1 / sin, tau_n = d P_n^1 / d theta at the scattering angle, measured from straight on.
-  const double cosine = -std::cos(bistatic_angle);
+  // The loop computes pi_n = P_n^1 / sin, tau_n = d P_n^1 / d theta.
   std::complex<double> sum = 0.0;
   double pi_below = 0.0, pi_here = 1.0;
   for (size_t i = 0; i < multipoles.a.size(); ++i) {

@@ -65,15 +65,21 @@ def test_mie_rcs_agrees_with_library_bessel_functions():
         assert ep.mie_rcs(RADIUS, frequency_of(ka)) / (math.pi * RADIUS**2) == pytest.approx(expected, rel=SERIES, abs=0)
 
 
+@pytest.mark.parametrize("ka", [1e-3, 2e-8, 5e-9, 1e-70])
 @pytest.mark.parametrize("bistatic_deg", [0, 40, 90, 150, 180])
-def test_a_tiny_sphere_is_an_electric_and_a_magnetic_dipole(bistatic_deg):
-    ka, angle = 1e-3, math.radians(bistatic_deg)
+def test_a_tiny_sphere_is_an_electric_and_a_magnetic_dipole(bistatic_deg, ka):
+    angle = math.radians(bistatic_deg)
     scale = 4 * math.pi * RADIUS**2 * ka**4
     frequency = frequency_of(ka)
     across = ep.mie_rcs(RADIUS, frequency, angle, plane="H") / scale
     within = ep.mie_rcs(RADIUS, frequency, angle, plane="E") / scale
     assert across == pytest.approx((1 + 0.5 * math.cos(angle)) ** 2, abs=RAYLEIGH)
     assert within == pytest.approx((math.cos(angle) + 0.5) ** 2, abs=RAYLEIGH)
+
+
+@pytest.mark.parametrize("radius", [1e-110, 1e-150, 1e-200, 5e-324])
+def test_a_sphere_of_no_size_scatters_nothing(radius):
+    assert ep.mie_rcs(radius, 77e9) == 0.0
 
 
 def test_a_large_sphere_scatters_forward_like_its_shadow():

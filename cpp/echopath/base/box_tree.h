@@ -35,6 +35,11 @@ class BoxTree {
   template <class Enters, class Visit>
   void walk(const Enters& enters, const Visit& visit) const;
 
+  // Calls visit(i) of the objects in all leaves whose boxes, and those of the branches above, may_hold(box) lets in, in order
+  // of place. Their own boxes may lie beside.
+  template <class MayHold, class Visit>
+  void for_each(const MayHold& may_hold, const Visit& visit) const;
+
  private:
   using Middle = std::array<float, 3>;  // from that of object 0, as floats in m lose half a metre at 5e6 m
   void halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, uint32_t leaf_size, const Job* job);
@@ -59,6 +64,14 @@ void BoxTree::walk(const Enters& enters, const Visit& visit) const {
       return;
     }
   }
+}
+
+template <class MayHold, class Visit>
+void BoxTree::for_each(const MayHold& may_hold, const Visit& visit) const {
+  walk([&](uint32_t index) { return may_hold(branches_[index].box); }, [&](const Branch& leaf) {
+    for (uint32_t place = leaf.begin; place < leaf.end; ++place) visit(order_[place]);
+    return true;
+  });
 }
 
 }  // namespace echopath

@@ -41,15 +41,9 @@ void TriangleContacts::compare_open_sides(double tolerance) {
   };
   const BoxTree tree(static_cast<uint32_t>(open.size()), box_of, kSidesOfLeaf);
   for (const Side& side : open) {
-    const auto enters = [&](uint32_t index) {
-      return may_lie_near(tree.branches()[index].box, corner(side, 0), corner(side, 1), tolerance);
-    };
-    tree.walk(enters, [&](const BoxTree::Branch& leaf) {
-      for (uint32_t place = leaf.begin; place < leaf.end; ++place) {
-        const Side& other = open[tree.input_index(place)];
-        if (other.triangle != side.triangle) add_contact(side, other, tolerance);
-      }
-      return true;
+    const auto is_near = [&](const Box& box) { return may_lie_near(box, corner(side, 0), corner(side, 1), tolerance); };
+    tree.for_each(is_near, [&](uint32_t index) {
+      if (open[index].triangle != side.triangle) add_contact(side, open[index], tolerance);
     });
   }
   const auto key = [](const Contact& contact) {

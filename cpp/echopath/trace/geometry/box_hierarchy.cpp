@@ -26,13 +26,9 @@ BoxHierarchy::BoxHierarchy(std::vector<Box> boxes)
 
 void BoxHierarchy::find(const std::vector<HalfSpace>& region, std::vector<int>& found) const {
   found.clear();
-  const auto may_hold = [&](uint32_t branch) { return reaches_into(tree_.branches()[branch].box, region); };
-  tree_.walk(may_hold, [&](const BoxTree::Branch& leaf) {
-    for (uint32_t place = leaf.begin; place < leaf.end; ++place) {
-      const uint32_t index = tree_.input_index(place);
-      if (reaches_into(boxes_[index], region)) found.push_back(static_cast<int>(index));
-    }
-    return true;
+  const auto is_in = [&](const Box& box) { return reaches_into(box, region); };
+  tree_.for_each(is_in, [&](uint32_t index) {
+    if (is_in(boxes_[index])) found.push_back(static_cast<int>(index));
   });
   std::ranges::sort(found);
 }

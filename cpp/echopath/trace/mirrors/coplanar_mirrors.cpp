@@ -44,11 +44,7 @@ class MirrorsInPlane {
   // Calls body(mirror) for all whose boxes hold the point, in an order that depends on where the mirrors are alone.
   template <class Body>
   void at(const Vec3& point, const Body& body) const {
-    tree_.walk([&](uint32_t branch) { return tree_.branches()[branch].box.contains(point); },
-               [&](const BoxTree::Branch& leaf) {
-      for (uint32_t place = leaf.begin; place < leaf.end; ++place) body(mirrors_[tree_.input_index(place)]);
-      return true;
-    });
+    tree_.for_each([&](const Box& box) { return box.contains(point); }, [&](uint32_t i) { body(mirrors_[i]); });
   }
 
  private:
@@ -66,16 +62,11 @@ void find_coplanar(const EmbreeScene& geometry, std::vector<Mirror>& mirrors) {
   const BoxTree tree(static_cast<uint32_t>(boxes.size()), [&](uint32_t index) { return boxes[index]; }, kMirrorsOfLeaf);
   std::vector<std::vector<int>> coplanar(mirrors.size());
   for (uint32_t index = 0; index < mirrors.size(); ++index) {
-    const auto may_hold = [&](uint32_t branch) { return tree.branches()[branch].box.intersects(boxes[index]); };
-    tree.walk(may_hold, [&](const BoxTree::Branch& leaf) {
-      for (uint32_t place = leaf.begin; place < leaf.end; ++place) {
-        const uint32_t other = tree.input_index(place);
-        if (other <= index || !boxes[other].intersects(boxes[index])) continue;
-        if (!lie_on_each_other(mirrors[index], mirrors[other], distance)) continue;
-        coplanar[index].push_back(static_cast<int>(other));
-        coplanar[other].push_back(static_cast<int>(index));
-      }
-      return true;
+    const auto meets = [&](const Box& box) { return box.intersects(boxes[index]); };
+    tree.for_each(meets, [&](uint32_t other) {
+      if (other <= index || !meets(boxes[other]) || !lie_on_each_other(mirrors[index], mirrors[other], distance)) return;
+      coplanar[index].push_back(static_cast<int>(other));
+      coplanar[other].push_back(static_cast<int>(index));
     });
   }
   for (size_t index = 0; index < mirrors.size(); ++index) {

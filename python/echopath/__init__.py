@@ -116,7 +116,7 @@ from .signals.interference_ways import interference_radar
 from .signals.measures import power_by_chirp
 from .signals.parts import Parts, decompose
 from .spectra.angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array
-from .spectra.backprojection import backproject
+from .spectra.backprojection import backproject, calibrate
 from .spectra.clutter_removal import remove_clutter
 from .spectra.music import music
 from .spectra.range_doppler import cfar, range_doppler
@@ -148,7 +148,8 @@ __all__ = [
     "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray",
     "VisibilityFromEnd", "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate",
     "annotate_frame", "around_corners",
-    "backproject", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex",
+    "backproject", "beamform", "boltzmann", "calibrate", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose",
+    "demultiplex",
     "detect", "detect_frame", "effects", "estimate_angles", "families", "find_objects", "first", "foreign_materials", "hits",
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",
     "load_model", "load_radar", "load_raw", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",

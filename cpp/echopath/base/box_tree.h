@@ -35,8 +35,8 @@ class BoxTree {
   template <class Enters, class Visit>
   void walk(const Enters& enters, const Visit& visit) const;
 
-  // Calls visit(i) of the objects in all leaves whose boxes, and those of the branches above, may_hold(box) lets in, in order
-  // of place. Their own boxes may lie beside.
+  // Calls visit(i) of the objects in all leaves whose boxes, and those of the branches above, may_hold(box) lets in, in
+  // order of place. Their own boxes may lie beside.
   template <class MayHold, class Visit>
   void for_each(const MayHold& may_hold, const Visit& visit) const;
 

@@ -1,4 +1,6 @@
-"""Images by back-projection: of a radar that moves past a scene, of a thing that turns before a radar, of the near field."""
+"""Images by back-projection: of a radar that moves past a scene, of a thing that turns before a radar, of the near field.
+
+The image of each channel at the place of a reflector tells what the channels differ by."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -52,15 +54,51 @@ def backproject(cube: ArrayLike, radar: _core.Radar, points: ArrayLike, *, posit
     """
     cube, points = _checked_cube(cube, radar), np.asarray(points, float)
     world_from_points = radar.replace(position=position, yaw=yaw, pitch=0.0, motion=motion).world_from_radar
+    image = np.zeros(points.shape[:-1], np.complex128)
+    for _, _, of_chirp in _chirp_images(cube, radar, points, world_from_points, start_time, window, progress):
+        image += of_chirp
+    return image / (cube.shape[0] * cube.shape[1])
+
+
+@checked(position=array("[3]", finite=True), start_time=real(unit="s"))
+def calibrate(cube: ArrayLike, radar: _core.Radar, position: ArrayLike, *, start_time: float = 0.0,
+              window: MapWindow = SignalSettings.window) -> NDArray[np.complex128]:
+    """Corrections of the channels of an array, from the echo of a reflector whose place is known.
+
+    Nothing is taken for far: each channel has a delay of its own to the place. What else the scene has there in range counts
+    too, so that the reflector should stand alone or far above the rest.
+    cube: [tx, rx, chirp, sample] in sqrt(W), of that radar, with the reflector at rest
+    radar: that of the cube, with transmitters in turns and chirps that are all alike
+    position: [3] in m, in the world: where the echo comes from. An error across the array's line of sight turns the corrections
+        as a plane wave does
+    start_time: s, of the frame
+    window: as in `range_doppler`, over the samples and over the chirps
+    Returns [tx, rx], complex: cube * corrections[:, :, None, None] is that of channels which are alike. They leave the mean power
+    of the echo over all channels and the phase of channel [0, 0]. Raises TypeError or ValueError naming the argument, also
+    where a channel has no echo there.
+    """
+    cube, points = _checked_cube(cube, radar), np.asarray(position, float)
+    at_rest = radar.replace(position=(0, 0, 0), yaw=0.0, pitch=0.0, motion=None).world_from_radar
+    found = np.zeros(cube.shape[:2], np.complex128)
+    for tx, rx, of_chirp in _chirp_images(cube, radar, points, at_rest, start_time, window):
+        found[tx, rx] += of_chirp
+    if silent := np.argwhere(found == 0).tolist():
+        raise ValueError(f"cube: must have an echo at {points.tolist()} m in each channel, got none in [tx, rx] = {silent[0]}")
+    level = np.sqrt(np.mean(np.abs(found) ** 2)) * np.exp(1j * np.angle(found[0, 0]))
+    return level / found
+
+
+def _chirp_images(cube, radar, points, world_from_points, start_time: float, window: MapWindow, progress: Progress = None):
+    """(tx, rx, values of the points) of each chirp of each channel, times its share of the window: their sum over the chirps is
+    the image of the channel. Arguments as in `backproject`; world_from_points: function of the time in s"""
     profiles, taper = _Profiles(radar.waveform, window), samples_of(of_velocity(window), radar.waveform.num_chirps)
-    image, weight = np.zeros(points.shape[:-1], np.complex128), 1.0 / (taper.sum() * cube.shape[0] * cube.shape[1])
+    share = taper / taper.sum()
     slots = [(tx, chirp) for chirp in range(cube.shape[2]) for tx in range(cube.shape[0])]
     for tx, chirp in with_progress(slots, len(slots), progress, "image"):
         legs = _legs_at(points, radar, world_from_points, start_time + radar.chirp_time(tx, chirp))
         there = legs(radar.transmitters[tx])
         for rx, receiver in enumerate(radar.receivers):
-            image += weight * taper[chirp] * profiles.at(cube[tx, rx, chirp], there + legs(receiver))
-    return image
+            yield tx, rx, share[chirp] * profiles.at(cube[tx, rx, chirp], there + legs(receiver))
 
 
 def _checked_cube(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]:

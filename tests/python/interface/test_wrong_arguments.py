@@ -54,6 +54,7 @@ def good(tmp_path_factory) -> dict:
         "around_corners": {"scene": scene, "radar": radar, "num_rays": 50},
         "synthesize_around_corners": {"scene": scene, "radar": radar, "num_rays": 50},
         "backproject": {"cube": cube, "radar": radar, "points": (1, 0, 0)},
+        "calibrate": {"cube": cube, "radar": radar, "position": (1, 0, 0)},
         "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},
         "demultiplex": {"cube": cube, "radar": radar}, "load_radar": {"path": folder / "sensor.cfg"},
         "load_sensor": {"path": folder / "sensor.cfg"}, "receive": {"cube": cube, "radar": radar, "seed": 1},

@@ -1,5 +1,6 @@
 #include "echopath/trace/tracer.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include "echopath/base/constants.h"
@@ -20,14 +21,16 @@ static_assert(kRaysPerBlock % kPacketSize == 0, "a packet has rays of one kind (
 constexpr int64_t kBlocksPerWave = 24, kBlocksPerThread = 12;
 constexpr int64_t kBlocksAhead = 64;  // they tell how large a record of several waves will be
 
-// Sets the whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
+// Sets the whole sphere, or the half space in front where all antennas look the same way and have no gain behind. Receivers
+// count as transmitters do, for a way that reaches one from behind is traced from its other end.
 void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
   const auto boresight = [&](const Antenna& antenna) { return in_world(antenna, Vec3::UnitX(), world_from_radar); };
   launch.boresight = boresight(radar.transmitters.front());
-  for (const Antenna& antenna : radar.transmitters) {
-    if (!antenna.pattern.is_dark_behind() || boresight(antenna).dot(launch.boresight) < 1.0 - 1e-9) return;
-  }
-  launch.field_versine = 1.0;
+  const auto looks_ahead = [&](const Antenna& antenna) {
+    return antenna.pattern.is_dark_behind() && boresight(antenna).dot(launch.boresight) >= 1.0 - 1e-9;
+  };
+  if (std::ranges::all_of(radar.transmitters, looks_ahead) && std::ranges::all_of(radar.receivers, looks_ahead))
+    launch.field_versine = 1.0;
 }
 
 TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {

@@ -41,6 +41,47 @@ def test_a_diffuse_end_brings_its_reversal():
     assert abs(sum(by_order[("ball", "plate"), 1]) / forward - 1) < RECIPROCITY
 
 
+def gain_toward(antenna, directions):
+    """[N] power gain of an antenna that is level, along directions [N, 3] of the radar's frame."""
+    cosine, sine = np.cos(antenna.yaw), np.sin(antenna.yaw)
+    return np.abs(antenna.pattern.field(directions @ [[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]))**2
+
+
+def power_by_way_of_wall(center, radius, wall, transmitter, receiver):
+    """W from a ball of the material FLAT over a metal wall across x (m) to a receiver, summed over the ball's surface.
+
+    transmitter, receiver: Antenna, both at the origin, of the radar of `build_radar`
+    """
+    height, turn = np.meshgrid(np.linspace(-1, 1, 801)[1::2], np.arange(800) * np.pi / 400)
+    ring = np.sqrt(1 - height**2)
+    normals = np.stack([ring * np.cos(turn), ring * np.sin(turn), height], axis=-1).reshape(-1, 3)
+    points = center + radius * normals
+    power = 0.01 * (ep.speed_of_light / 77e9 / (4 * np.pi))**2 * 0.5 / np.pi * 4 * np.pi * radius**2 / len(points)
+    for antenna, place, mirrored in ((transmitter, (0, 0, 0), (1, 1, 1)), (receiver, (2 * wall, 0, 0), (-1, 1, 1))):
+        ways = points - place
+        distances = np.linalg.norm(ways, axis=1)
+        cosines = np.maximum(-(normals * ways).sum(axis=1) / distances, 0)
+        power = power * cosines / distances**2 * gain_toward(antenna, ways / distances[:, None] * mirrored)
+    return power.sum()
+
+
+AHEAD, AROUND = ep.Antenna(pattern=ep.CosinePower(2.0)), ep.Antenna()
+LEFT, BACK = (ep.Antenna(yaw=yaw, pattern=ep.CosinePower(2.0)) for yaw in (0.3, np.pi - 0.3))
+
+
+@pytest.mark.parametrize("transmitter, receiver", [(AHEAD, AROUND), (LEFT, BACK)])
+def test_a_receiver_hears_walls_that_the_transmitter_does_not_light(transmitter, receiver):
+    """A wall behind the transmitter sends the receiver what a ball in front scatters onto it."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(1.0, subdivisions=24), name="ball", material=FLAT, position=(3, 0, 0))
+    scene.add(rectangle((-1, -20, -20), (0, 40, 0), (0, 0, 40)), name="wall", material=ep.Material.metal())
+    paths = ep.trace(scene, build_radar([transmitter], [receiver]), num_rays=40_000, max_bounces=2, batches=8,
+                     polarization="scalar")
+    found = ep.received_power(paths.select("T 'ball' 'wall' R"))
+    expected = power_by_way_of_wall(np.array([3.0, 0, 0]), 1.0, -1.0, transmitter, receiver)
+    assert abs(found.power - expected) < 2 * found.standard_error < 0.12 * expected
+
+
 def test_exchanged_antennas_exchange_the_paths():
     """The amplitude of a reversal is that of the forward path with the antennas exchanged, and lengths agree."""
     here, there = (0.0, 0.0, 0.0), (0.0, 0.2, 0.1)

@@ -49,6 +49,20 @@ bool SurfaceAround::is_wall(const RayHit& met) const {
   return std::ranges::any_of(std::array{2.0, 3.0, 4.0}, [&](double n) { return std::abs(angle - kPi / n) < kSameAngle; });
 }
 
+double SurfaceAround::open_foot_of(const Plane& plane, const Vec3& along, double reach) const {
+  const double nearing = -plane.normal.dot(along), foot = plane.height(point_.position) / nearing;
+  if (nearing == 0.0 || !(foot > 0.0 && foot < reach)) return reach;
+  for (const double height : {gap_, crack_}) {
+    if (height < gap_) break;  // the first look has seen as much
+    RayHit met;
+    ++num_queries_;
+    const Vec3 from = point_.position + height * point_.normal;
+    if (geometry_.intersect_near(from, along, reach, met, sees_) != EmbreeScene::Verdict::kHit) continue;
+    if (std::abs(plane.height(met.position)) <= gap_) return is_wall(met) ? reach : foot;
+  }
+  return reach;
+}
+
 // Returns where something that rises from the surface stands in the way; no wall, at `reach`, if nothing is nearer.
 SurfaceEnd SurfaceAround::nearest_wall(const Vec3& along, double reach) const {
   const SurfaceEnd wall = wall_at_height(gap_, along, reach);

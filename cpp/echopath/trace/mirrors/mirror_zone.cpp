@@ -140,9 +140,9 @@ class AxisCover {
   const LitSurface& lit_;
 };
 
-// Returns one over the distance of the mirror's edge in half zones, in the direction of `half`, which reaches to the end of
+// Returns one over the distance of the mirror's rim in half zones, in the direction of `half`, which reaches to the end of
 // the half zone; 0: no edge is so near that it counts. One beside the plane that the wave meets next, if any, counts there.
-double closeness_of_edge(const SurfaceAround& mirror, const Vec3& point, const Vec3& half, const Plane* next) {
+double closeness_of_rim(const SurfaceAround& mirror, const Vec3& point, const Vec3& half, const Plane* next) {
   const double length = half.norm();
   const Vec3 along = half / length;
   for (const double part : kParts) {
@@ -154,6 +154,19 @@ double closeness_of_edge(const SurfaceAround& mirror, const Vec3& point, const V
     return length / std::max(end.distance, 1e-6 * length);
   }
   return 0.0;
+}
+
+// Returns the same of all edges, also of those where planes that the wave has met stand on the mirror.
+double closeness_of_edge(const SurfaceAround& mirror, const Vec3& point, const Vec3& half, std::span<const Plane> met,
+                         const Plane* next) {
+  const double length = half.norm(), reach = kFaded * length;
+  double closeness = closeness_of_rim(mirror, point, half, next);
+  for (const Plane& plane : met) {
+    const double foot = mirror.open_foot_of(plane, half / length, reach);
+    if (foot >= reach || (next && std::abs(next->height(point + foot / length * half)) <= kBesideNext * length)) continue;
+    closeness = std::max(closeness, length / std::max(foot, 1e-6 * length));
+  }
+  return closeness;
 }
 
 // Returns by how much the way over a place that is `shift` (m) beside the point of reflection is longer, over what a square
@@ -186,12 +199,12 @@ std::complex<double> light_beside(const UnfoldedAntennas& antennas, const Vec3& 
 class EdgesAround {
  public:
   EdgesAround(const SurfaceAround& mirror, const MirrorView& view, double wavelength, const UnfoldedAntennas& antennas,
-              const Plane* next) {
+              std::span<const Plane> met, const Plane* next) {
     const std::array<ZoneAxis, 2> axes = zone_axes(view, wavelength);
     for (int k = 0; k < kDirections; ++k) {
       const double angle = kHalfCell * (2 * k + 1);
       const Vec3 half = std::cos(angle) * axes[0].half * axes[0].along + std::sin(angle) * axes[1].half * axes[1].along;
-      closeness_[k] = closeness_of_edge(mirror, view.point.position, half, next);
+      closeness_[k] = closeness_of_edge(mirror, view.point.position, half, met, next);
       if (closeness_[k] == 0.0) continue;
       turn_[k] = kPi * excess_over_square(view, half / closeness_[k]);
       light_[k] = light_beside(antennas, half / closeness_[k]);
@@ -310,11 +323,17 @@ double widest_crack(const MirrorView& view, double wavelength) {
 }
 
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          const UnfoldedAntennas& antennas, int64_t& num_queries, const Plane* next) {
+                                          const UnfoldedAntennas& antennas, int64_t& num_queries, std::span<const Plane> met,
+                                          const Plane* next) {
   const double gap = geometry.plane_tolerance(wavelength);
   const SurfaceAround mirror(geometry, view.point, gap, num_queries, Extent::kPlane, next, widest_crack(view, wavelength));
-  if (mirror.holds_circle(ample_squared(view, wavelength, kFaded))) return 1.0;
-  return 1.0 - EdgesAround(mirror, view, wavelength, antennas, next).lost_field();
+  const double ample = ample_squared(view, wavelength, kFaded);
+  const auto is_far = [&](const Plane& plane) {
+    const double height = plane.height(view.point.position);
+    return height * height >= ample * plane.normal.cross(view.point.normal).squaredNorm();
+  };
+  if (mirror.holds_circle(ample) && std::ranges::all_of(met, is_far)) return 1.0;
+  return 1.0 - EdgesAround(mirror, view, wavelength, antennas, met, next).lost_field();
 }
 
 // Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.

@@ -3,6 +3,7 @@
 // field.
 #include <array>
 #include <complex>
+#include <span>
 
 #include "echopath/posed/posed_antenna.h"
 #include "echopath/trace/geometry/surface_extent.h"
@@ -73,13 +74,15 @@ double widest_crack(const MirrorView& view, double wavelength);
 // followed, straight or round. Where the mirror ends at the inside of a corner of 90, 60 or 45 degrees it has no edge, and
 // of a wave that goes on to a plane that it has a corner with (`next`, which may be null) that plane has it. Where the
 // mirror bends by however little, it has one: the plane behind has echoes of its own, by its image or by rays, with which
-// those of this plane add up. An edge counts by the field with which the antennas light and hear it, over that of the point,
-// by as much as the point at most: a narrow beam that ends before the edge has none. Edges fade between 8 and 16 half zones,
-// so that closed forms of geometrical optics hold beyond. Of the endless mirror's field it is right to 1.6 % in polygons of
-// up to 8 sides, to 7 % in those of more and in disks, and to 5 % beside bends and corners, where geometrical optics is
-// wrong by up to all of it. This is valid where no line from the point meets the edge twice.
+// those of this plane add up. It has one where a plane stands on it from which the wave comes (one of `met`), too: that
+// plane lights nothing of what goes on behind it. An edge counts by the field with which the antennas light and hear it,
+// over that of the point, by as much as the point at most: a narrow beam that ends before the edge has none. Edges fade
+// between 8 and 16 half zones, so that closed forms of geometrical optics hold beyond. Of the endless mirror's field it is
+// right to 1.6 % in polygons of up to 8 sides, to 7 % in those of more and in disks, and to 5 % beside bends and corners,
+// where geometrical optics is wrong by up to all of it. This is valid where no line from the point meets the edge twice.
 std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          const UnfoldedAntennas& antennas, int64_t& num_queries, const Plane* next);
+                                          const UnfoldedAntennas& antennas, int64_t& num_queries, std::span<const Plane> met,
+                                          const Plane* next);
 
 // Returns the field `within` half zones inside the shadow boundary of a straight edge, over that without the edge; e^{+jwt}.
 std::complex<double> field_beside_edge(double within);

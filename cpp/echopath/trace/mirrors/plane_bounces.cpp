@@ -75,12 +75,12 @@ UnfoldedAntennas PlaneBounces::antennas_of(size_t bounce, const MirrorView& view
 
 std::complex<double> PlaneBounces::field_beside_edges(double wavelength, int64_t& num_queries) const {
   std::complex<double> field = 1.0;
+  std::vector<Plane> planes;
+  for (const RayHit& point : points_) planes.push_back({point.position, point.normal});
   for (size_t k = 0; k < points_.size(); ++k) {
-    Plane next;
-    const bool is_last = k + 1 == points_.size();
-    if (!is_last) next = {points_[k + 1].position, points_[k + 1].normal};
     const MirrorView seen = view(k);
-    field *= field_of_flat_mirror(geometry_, seen, wavelength, antennas_of(k, seen), num_queries, is_last ? nullptr : &next);
+    const Plane* const next = k + 1 == points_.size() ? nullptr : &planes[k + 1];
+    field *= field_of_flat_mirror(geometry_, seen, wavelength, antennas_of(k, seen), num_queries, {planes.data(), k}, next);
   }
   return field;
 }

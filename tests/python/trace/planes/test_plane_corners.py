@@ -40,12 +40,13 @@ def half_plane(within):
     return (0.5 + cosine - 1j * (0.5 + sine)) * np.exp(0.25j * np.pi) / np.sqrt(2.0)
 
 
-def traced_field(angle, transmitter, receiver):
-    """The same, of all coherent paths."""
+def traced_field(angle, transmitter, receiver, beyond=()):
+    """The same, of all coherent paths; beyond: names of planes that go on behind the other one, where nothing sees them."""
     scene = ep.Scene()
     for name, azimuth in (("first", 0.0), ("second", angle)):
-        end = ALONG * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-        corners = np.array([[0, 0, -UP], end - [0, 0, UP], end + [0, 0, UP], [0, 0, UP]])
+        along = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        end, begin = ALONG * along, -ALONG * along if name in beyond else np.zeros(3)
+        corners = np.array([begin - [0, 0, UP], end - [0, 0, UP], end + [0, 0, UP], begin + [0, 0, UP]])
         scene.add(ep.Mesh(corners[::-1] if name == "first" else corners, [[0, 1, 2], [0, 2, 3]]), name=name, material="metal")
     places = [(far * np.cos(azimuth), far * np.sin(azimuth), 0.0) for far, azimuth in (transmitter, receiver)]
     radar = build_radar(places[:1], places[1:], start_frequency=77e9, num_chirps=1)
@@ -80,9 +81,20 @@ def test_an_image_beside_a_corner_has_what_its_edge_leaves(degrees, before):
     assert traced_field(*ways) == pytest.approx(field_of_images(*ways), abs=tolerance)
 
 
-def test_a_right_angle_has_no_edge():
+@pytest.mark.parametrize("beyond", ["first", "second"])
+@pytest.mark.parametrize("before", [0.35, 1.0, 2.0])
+def test_a_plane_that_goes_on_behind_the_corner_ends_there_too(before, beyond):
+    """As a road does under a wall that leans: it had the whole field of an endless one, up to 0.4 too much."""
+    angle = np.radians(88.0)
+    azimuth, seen = azimuths_beside_a_border(angle, before)
+    for ways in (((FAR, azimuth), (OTHER, seen)), ((FAR, angle - azimuth), (OTHER, angle - seen))):
+        assert traced_field(angle, *ways, beyond) == pytest.approx(field_of_images(angle, *ways), abs=0.05)
+
+
+@pytest.mark.parametrize("beyond", [(), ("first",), ("second",), ("first", "second")])
+def test_a_right_angle_has_no_edge(beyond):
     """Images in both planes and in their corner add up to the whole field."""
-    found = traced_field(0.5 * np.pi, (FAR, 0.7), (OTHER, 0.9))
+    found = traced_field(0.5 * np.pi, (FAR, 0.7), (OTHER, 0.9), beyond)
     lengths = np.array([np.sqrt(FAR**2 + OTHER**2 - 2.0 * FAR * OTHER * np.cos(off)) for off in (1.6, np.pi - 1.6, np.pi - 0.2)])
     signs = np.array([-1.0, -1.0, 1.0])
     truth = abs(np.sum(signs * np.exp(-1j * WAVENUMBER * lengths) * (FAR + OTHER) / lengths))

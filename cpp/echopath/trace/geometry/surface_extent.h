@@ -55,8 +55,8 @@ class SurfaceAround {
   // Returns whether the wall whose foot stands at `distance` (m) rises to a height (m), straight up or in its plane, leaning
   // back by no more than 45 degrees; this costs a ray.
   bool wall_rises(const Vec3& along, double distance, double height) const;
-  // Returns the distance in m at which a plane across stands on it that is no wall (SurfaceEnd::is_wall), whether the surface
-  // goes on behind it or not; `reach` where none stands nearer. This costs up to two rays.
+  // Returns the distance in m at which a plane across stands on it that is no wall (SurfaceEnd::is_wall), whether the
+  // surface goes on behind it or not; `reach` where none stands nearer. This costs up to two rays.
   double open_foot_of(const Plane& plane, const Vec3& along, double reach) const;
   // Finds its end where it does not reach as far as `reach` (m). An edge lies where the last triangle ends, so that the
   // distance does not depend on how the surface is cut into triangles and meshes. This costs some ten rays.

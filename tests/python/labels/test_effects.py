@@ -151,6 +151,17 @@ def test_echoes_that_come_after_the_next_chirp_has_begun_are_named(interval, wor
     assert words in reason and ("meet" in reason) == ("meet" in words)
 
 
+def test_a_record_does_not_deny_the_other_radars_of_its_scene():
+    """Paths keep neither other radars nor their signals, the scene of a frame does: each speaks of what it knows."""
+    scene = ep.Scene(make_scene(), interferers=[ep.Interferer(radar=make_radar().replace(position=(0, 3, 0)))])
+    for surroundings, of_frame in ((scene, "dBm of other radars"), (make_scene(), "the scene has no other radars")):
+        frame = ep.simulate(surroundings, make_radar(), num_rays=200, guard=False)
+        reasons = [next(effect.reason for effect in told if effect.name == "interference")
+                   for told in (frame.effects, frame.paths.effects)]
+        assert of_frame in reasons[0]
+        assert reasons[1] == "a record has none; simulate adds those of a scene"
+
+
 def test_every_rule_has_a_case():
     assert set(CASES) == {rule.name for rule in rules.RULES}
 
@@ -205,15 +216,15 @@ def test_what_is_never_modelled_is_said():
     assert never and not any(effect.modelled for effect in never)
 
 
-def without_planes(effects) -> list:
-    """All but the planes that image themselves, of which only a trace can tell."""
-    return [effect for effect in effects if effect.name != "large planes by images"]
+def told_by_both(effects) -> list:
+    """All but the planes that image themselves, of which only a trace can tell, and other radars, of which none can."""
+    return [effect for effect in effects if effect.name not in ("large planes by images", "interference")]
 
 
 def test_the_record_knows_its_effects_and_writes_them(tmp_path):
     paths = ep.trace(make_scene(), make_radar(), num_rays=100, max_bounces=1, footprint="first_order")
     asked = ep.effects(make_scene(), make_radar(), max_bounces=1, footprint="first_order")
-    assert without_planes(paths.effects) == without_planes(asked)
+    assert told_by_both(paths.effects) == told_by_both(asked)
     paths.save(tmp_path / "paths.h5")
     assert ep.Paths.load(tmp_path / "paths.h5").effects == paths.effects
     with h5py.File(tmp_path / "paths.h5") as file:

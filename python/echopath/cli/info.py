@@ -78,7 +78,7 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     if not path.exists():
         raise ep.FileError(f"{path}: no such file or folder")
     raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}; trajectories are read by "
-                     "ep.read_trajectories, configurations of sensors by ep.load_sensor")
+                     "ep.read_trajectories, configurations of sensors by ep.load_sensor, antenna patterns by ep.load_antenna")
 
 
 def _describe_foreign(path, unit, up, *, with_overlaps: bool = True) -> list[str]:

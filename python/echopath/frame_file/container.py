@@ -15,6 +15,7 @@ KINDS = FRAME, SEQUENCE = "frame", "sequence"
 _OTHER_KIND = {FRAME: "is a single frame, not a sequence: ep.load_frame reads it",
                SEQUENCE: "is a sequence, not a single frame: ep.load_sequence reads its frames"}
 OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
+NEW_LAYOUT = "; a later release of echopath wrote it, and reads it"
 
 
 @contextmanager
@@ -41,7 +42,7 @@ def our_file(path, kind: str = FRAME):
         version = read_attribute(file, "schema_version", int)
         if version != SCHEMA_VERSION:
             raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}"
-                                  f"{OLD_LAYOUT if version < SCHEMA_VERSION else ''}")
+                                  f"{OLD_LAYOUT if version < SCHEMA_VERSION else NEW_LAYOUT}")
         found = read_attribute(file, "format", str).removeprefix("echopath ")
         if found != kind:
             beside = folder_hint(Path(path).parent) if found == FRAME else ""

@@ -168,6 +168,8 @@ def _one_that_comes_along(path: Path) -> str:
 
 def parsed(text: str, path: Path) -> dict:
     """The table of a text in TOML; path: of its file. Raises ValueError naming the file and the line."""
+    if text.lstrip().startswith("{"):  # which no TOML does
+        raise ValueError(f"{path}: must be TOML, which begins with a key or a [table], but begins with a brace, as JSON does")
     try:
         return tomllib.loads(text)
     except RecursionError:

@@ -154,10 +154,11 @@ def change_without_check_sums(path, edit):
         edit(file)
 
 
-def test_files_of_the_layout_before_are_told_why_not(tmp_path):
+@pytest.mark.parametrize("version, told", [(3, "check sums"), (5, "later release")])
+def test_files_of_other_layouts_are_told_why_not(tmp_path, version, told):
     with h5py.File(tmp_path / "frame.h5", "w") as file:
-        file.attrs["format"], file.attrs["schema_version"] = "echopath frame", 3
-    refuse(tmp_path / "frame.h5", "has schema version 3, this program reads 4; .*check sums")
+        file.attrs["format"], file.attrs["schema_version"] = "echopath frame", version
+    refuse(tmp_path / "frame.h5", f"has schema version {version}, this program reads 4; .*{told}")
 
 
 @pytest.mark.hard

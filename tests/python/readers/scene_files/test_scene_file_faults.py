@@ -179,6 +179,7 @@ def test_names_must_not_hold_nul(write):
 
 
 @pytest.mark.parametrize("text, message", [("a = " + "[" * 100_000, "nested too deeply"),
+                                           ('\n{"radar": {}}', "must be TOML, .* begins with a brace, as JSON does"),
                                            ("a = " + "1" * 10_000, "digits")])
 def test_texts_that_the_parser_cannot_take_name_the_file(tmp_path, text, message):
     (tmp_path / "scene.toml").write_text(text)

@@ -37,9 +37,9 @@ inline constexpr double kValidityLimit = 0.01;   // share of the power above whi
 inline constexpr double kObjectLimit = 0.05;     // the same for the power of an object
 inline constexpr double kObjectErrorDb = 0.5;    // dB, the same for the error of an object's power over the frame
 inline constexpr double kDynamicRangeDb = 60.0;  // objects this far below the strongest need not be right
-inline constexpr int kOcclusionKeyframes = 16;   // where something is blocked or comes into view
+inline constexpr int kOcclusionKeyframes = 16;   // where echoes come, go or change their strength
 inline constexpr int kMaxKeyframes = 1000000;    // most that are advised; no frame has as many chirps
-inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what shows new surface may turn from keyframe to keyframe
+inline constexpr double kKeyframeTurn = 0.2;     // rad: how far what changes so may turn from keyframe to keyframe
 
 // Holds what was found of each path, [P] each, with hits in the order of the record; empty unless asked for.
 struct ValidityArrays {
@@ -90,8 +90,8 @@ struct Validity {
 
   // Returns how many traces, each for its own part of the frame, serve it. The phase error of motion, which falls with the
   // square of the time from the trace, is then below kPhaseLimit, the change of what edges leave is below kEdgeLimit, and
-  // what shows new surface turns by kKeyframeTurn at most. There are at least kOcclusionKeyframes where something is blocked
-  // or comes into view.
+  // what changes turns by kKeyframeTurn at most. There are at least kOcclusionKeyframes where something is blocked, comes
+  // into view, leaves its surface or turns, and for objects whose power is off. What stands still needs no further ones.
   int keyframes() const;
   bool shares_hold() const;  // each share of the whole is below kValidityLimit
   // Returns what does not hold and what to do about it, a sentence each; empty where one trace serves.

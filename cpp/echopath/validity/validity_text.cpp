@@ -157,18 +157,27 @@ std::string object_lines(const Validity& report) {
   return text;
 }
 
+// Returns whether the object has other echoes, or echoes of another strength, at other times of the frame.
+bool changes(const ObjectValidity& object) {
+  const bool is_off = !object.has_paths || std::abs(object.error_db) > kObjectErrorDb;
+  return is_off ||
+         std::max({object.left, object.blocked, object.turned, object.new_surface, object.disappears}) > kObjectLimit;
+}
+
 }  // namespace
 
 int Validity::keyframes() const {
+  if (is_still) return 1;  // what an array lacks is the same at all times
   double most = std::max(1.0, std::sqrt(motion_phase_error / kPhaseLimit));
-  if (std::max({shares.blocked, shares.left, shares.new_surface}) > kValidityLimit)
+  bool has_new_edges = shares.beside_edges > kValidityLimit;
+  if (std::max({shares.left, shares.blocked, shares.turned, shares.new_surface}) > kValidityLimit)
     most = std::max<double>(most, kOcclusionKeyframes);
-  if (shares.beside_edges > kValidityLimit) most = std::max({most, 2.0, kMostPerHalfZone * edge_slide / kEdgeLimit});
   for (const ObjectValidity& object : objects) {
-    const bool changes = std::max({object.blocked, object.new_surface, object.disappears}) > kObjectLimit;
-    if (object.ok() || !(changes || !object.has_paths)) continue;
-    most = std::max({most, static_cast<double>(kOcclusionKeyframes), object.turn / kKeyframeTurn});
+    if (object.ok()) continue;
+    has_new_edges |= object.beside_edges > kObjectLimit;
+    if (changes(object)) most = std::max({most, static_cast<double>(kOcclusionKeyframes), object.turn / kKeyframeTurn});
   }
+  if (has_new_edges) most = std::max({most, 2.0, kMostPerHalfZone * edge_slide / kEdgeLimit});
   return static_cast<int>(std::ceil(std::min<double>(most, kMaxKeyframes)));
 }
 

@@ -52,6 +52,19 @@ def test_weights_of_images_take_the_angles_of_their_time(mirror, field):
         assert ep.renew(paths, time=time).paths.weight[0] == pytest.approx(expected, rel=ROUNDING)
 
 
+@pytest.mark.parametrize("mirror", [True, False])
+def test_coefficients_that_change_are_renewed_unless_told_how_often(mirror):
+    """In the middle of each of the 16 stretches the echo is Fresnel's coefficient over the way, from near Brewster's angle on."""
+    paths = receding_wall(mirror, "scalar", LEVEL)
+    cube = ep.synthesize(paths, retrace="invalid")
+    size = np.sqrt(np.mean(np.abs(cube[0, 0])**2, axis=1)).reshape(16, 4)[:, 1:3].mean(axis=1)
+    times = chirp_times(paths.radar).reshape(16, 4).mean(axis=1)
+    coefficient = np.abs(fresnel(cosines(paths, times), False))
+    expected = coefficient / np.hypot(2.0 + SPEED * times, ASIDE)
+    np.testing.assert_allclose(size / size[-1], expected / expected[-1], rtol=2e-3)
+    assert coefficient[-1] / coefficient[0] > 2.0
+
+
 @pytest.mark.parametrize("is_from_behind", [False, True])
 def test_weights_of_a_wall_of_two_layers_are_those_of_the_side_that_is_seen(is_from_behind):
     """Each layer is so thick and lossy that nothing comes back from beyond it."""

@@ -3154,7 +3154,7 @@ class SignalProbe:
     @property
     def amplitude_error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        [N] rms of the differences of amplitudes in sqrt(W) over their rms
+        [N] rms of the differences of amplitudes in sqrt(W) over that of their largest in the frame, which count no less than a thousandth of the noise of a range-Doppler cell
         """
     @property
     def amplitude_sum(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -65,8 +65,8 @@ void bind_probed_chirps(py::module_& m) {
              field("phase_error", &ProbedChirp::phase_error),
              field("largest_phase_error", &ProbedChirp::largest_phase_error),
              field("amplitude_error", &ProbedChirp::amplitude_error), field("compared_power", &ProbedChirp::compared_power),
-             field("shares", &ProbedChirp::shares), field("power_sum", &ProbedChirp::power_sum),
-             field("strongest", &ProbedChirp::strongest));
+             field("strongest_power", &ProbedChirp::strongest_power), field("shares", &ProbedChirp::shares),
+             field("power_sum", &ProbedChirp::power_sum), field("strongest", &ProbedChirp::strongest));
 }
 
 }  // namespace
@@ -93,8 +93,10 @@ there. Raises TypeError or ValueError naming the argument.)");
       .def_property_readonly("phase_error", column(&ProbedChirp::phase_error),
                              "[N] in rad at the start frequency, rms over these echoes, weighted by power")
       .def_property_readonly("largest_phase_error", column(&ProbedChirp::largest_phase_error), "[N] in rad")
-      .def_property_readonly("amplitude_error", column(&ProbedChirp::amplitude_error),
-                             "[N] rms of the differences of amplitudes in sqrt(W) over their rms")
+      .def_property_readonly(
+          "amplitude_error", column(&ProbedChirp::amplitude_error),
+          "[N] rms of the differences of amplitudes in sqrt(W) over that of their largest in the frame, which "
+          "count no less than a thousandth of the noise of a range-Doppler cell")
       .def_property_readonly("share_field", &share_fields,
                              "[2 batches + 1, 8] in sqrt(W): sums of the coherent paths at the samples of the first chirp, "
                              "of both halves of the rays of each batch in turn, then of the paths that rays did not find")

@@ -10,7 +10,7 @@ namespace {
 ProbedChirp compared(double power, double phase_error, double amplitude_error) {
   ProbedChirp chirp;
   chirp.num_echoes = 1;
-  chirp.compared_power = power;
+  chirp.compared_power = chirp.strongest_power = power;
   chirp.phase_error = phase_error;
   chirp.amplitude_error = amplitude_error;
   return chirp;

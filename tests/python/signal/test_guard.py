@@ -153,6 +153,27 @@ def test_tells_of_polynomials_of_too_low_an_order():
     assert disagreeing(cube, probe) == ["moving echoes, phase"]
 
 
+@pytest.mark.parametrize("rate, turn, is_heard", [(30.0, 0.0, True), (100.0, 0.1, True), (30.0, 0.3, False)])
+def test_silent_of_blades_that_flash_and_of_dark_ones(rate, turn, is_heard):
+    """Metal blades that are broadside once in the frame, and one of which footprints leave less than a millionth of the noise."""
+    radar = make_radar(chirps=128, chirp_interval=20e-6, bandwidth=150e6)
+    scene = ep.Scene()
+    scene.add(name="hub", position=(20, 0, 1), motion=ep.LinearMotion(angular_velocity=(0, 0, rate)))
+    yaw = turn - rate * radar.middle_of_frame()
+    scene.add(ep.actors.plate(2.0, 0.2), name="blade", parent="hub", material="metal", yaw=yaw)
+    paths = ep.trace(scene, radar, num_rays=1000, max_bounces=1)
+    sizes = np.abs(paths.amplitudes(np.linspace(0.0, radar.frame_duration, 257)))
+    noise = ep.noise_power(radar) / (128 * 32)  # of a cell
+    assert 0.0 < sizes.max() and (np.sum(sizes.max(axis=0)**2) > 1e-6 * noise) == is_heard
+    is_strict = []
+    for seed in range(SEEDS):
+        probe = ep.SignalProbe(seed=seed)
+        cube = ep.synthesize(paths, probe=probe)
+        assert probe.num_echoes.sum() > 0 and disagreeing(cube, probe) == []
+        is_strict += disagreeing(cube, probe, phase_tolerance=1e-9)
+    assert ("moving echoes, size" in is_strict) == is_heard
+
+
 @pytest.mark.parametrize("lost", [1, 20])
 def test_tells_of_lost_echoes(paths, lost):
     probe = ep.SignalProbe()

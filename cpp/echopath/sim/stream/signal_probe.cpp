@@ -8,6 +8,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
+#include "echopath/radar/noise_power.h"
 #include "echopath/signal/echoes/echo_states.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/kernels/kernels.h"
@@ -22,6 +23,7 @@ struct DrawnEcho {
   int64_t path;
   double delay;                    // s
   std::complex<double> amplitude;  // sqrt(W)
+  double strongest;                // W, |amplitude|^2 at the strongest node of the frame
 };
 
 namespace {
@@ -30,6 +32,7 @@ constexpr int kSamples = ProbedChirp::kSamples;
 constexpr int kMostChirps = 2;           // of a pass
 constexpr size_t kRandom = 4;            // echoes drawn of a block, beside the strongest
 constexpr size_t kEchoesOfChirp = 1024;  // that are evaluated, at most
+constexpr double kUnheard = 1e-6;        // of the noise of a cell: the share that counts as nothing
 constexpr size_t kSumsOfShare = 4;       // side by side, because additions to one sum would wait for each other
 
 // Returns a number below `count` that depends on nothing but the arguments.
@@ -38,19 +41,23 @@ int draw(uint64_t seed, int64_t index, int dimension, int count) {
   return std::min(count - 1, static_cast<int>(unit * count));
 }
 
-// Returns whether the amplitude of an echo is 0 at all nodes, of which there is no logarithm.
-bool has_no_amplitude(const Echoes& echoes, int64_t echo) {
-  if (echoes.sampling.rows == TimeSampling::Rows::kLogarithms) return false;
-  for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
-    if (echoes.amplitude[i] != 0.0) return false;
+// Returns |amplitude|^2 in W of an echo at its strongest node.
+double power_at_strongest_node(const Echoes& echoes, int64_t echo) {
+  const TimeSampling& sampling = echoes.sampling;
+  const bool is_logarithm = sampling.rows == TimeSampling::Rows::kLogarithms;
+  const int step = sampling.rows == TimeSampling::Rows::kDerivatives ? sampling.order : 1;  // further rows have none
+  double most = 0.0;
+  for (int64_t row = 0; row < sampling.num_rows; row += step) {
+    const std::complex<double> amplitude = echoes.amplitude[row * echoes.num_echoes + echo];
+    most = std::max(most, is_logarithm ? std::exp(2.0 * amplitude.real()) : std::norm(amplitude));
   }
-  return true;
+  return most;
 }
 
 DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
   EchoStates state;
   evaluate_states(block, chirp, echo, 1, state);
-  return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}};
+  return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}, power_at_strongest_node(block, echo)};
 }
 
 // Keeps at most kEchoesOfChirp: the strongest half and an even choice of the others.
@@ -89,15 +96,14 @@ void ProbedChirp::add(const ProbedChirp& other) {
   for (size_t s = 0; s < value.size(); ++s) value[s] += other.value[s];
   amplitude_sum += other.amplitude_sum;
   num_echoes += other.num_echoes;
-  const double power = compared_power + other.compared_power;
-  const auto of_both = [&](double error, double other_error) {
-    if (power == 0.0) return std::max(error, other_error);
-    return std::sqrt((error * error * compared_power + other_error * other_error * other.compared_power) / power);
+  const auto of_both = [](double error, double& power, double other_error, double other_power) {
+    const double squares = error * error * power + other_error * other_error * other_power;
+    power += other_power;
+    return power > 0.0 ? std::sqrt(squares / power) : std::max(error, other_error);
   };
-  phase_error = of_both(phase_error, other.phase_error);
+  phase_error = of_both(phase_error, compared_power, other.phase_error, other.compared_power);
   largest_phase_error = std::max(largest_phase_error, other.largest_phase_error);
-  amplitude_error = of_both(amplitude_error, other.amplitude_error);
-  compared_power = power;
+  amplitude_error = of_both(amplitude_error, strongest_power, other.amplitude_error, other.strongest_power);
   for (size_t i = 0; i < shares.size(); ++i) {
     for (size_t s = 0; s < shares[i].field.size(); ++s) shares[i].field[s] += other.shares[i].field[s];
     shares[i].power += other.shares[i].power;
@@ -231,7 +237,8 @@ void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std:
   std::ranges::sort(echoes);
   echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
   for (const int64_t echo : echoes) {
-    if (!has_no_amplitude(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[echo]));
+    const DrawnEcho drawn = state_of(block, target.chirp, echo, paths[echo]);
+    if (drawn.strongest > 0.0) tally.drawn.push_back(drawn);
   }
 }
 
@@ -279,10 +286,11 @@ void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Jo
   replayer_.evaluate(paths, paths_.frame.start_time + radar_.chirp_time(chirp.tx, target.chirp), lengths, amplitudes, job);
   const size_t first = static_cast<size_t>(target.channel) * paths.size();
   const double wavenumber = kTwoPi * radar_.waveform.start_frequency / kSpeedOfLight;
-  double power = 0.0, of_phase = 0.0, of_amplitude = 0.0;
+  double power = 0.0, strongest = 0.0, of_phase = 0.0, of_amplitude = 0.0;
   for (size_t i = 0; i < paths.size(); ++i) {
     const std::complex<double> exact = amplitudes[first + i];
     power += std::norm(exact);
+    strongest += std::max(std::norm(exact), drawn[i].strongest);
     of_amplitude += std::norm(drawn[i].amplitude - exact);
     if (exact == 0.0) continue;
     const double phase = wavenumber * std::abs(kSpeedOfLight * drawn[i].delay - lengths[first + i]);
@@ -290,13 +298,11 @@ void PassProbe::compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Jo
     chirp.largest_phase_error = std::max(chirp.largest_phase_error, phase);
   }
   chirp.num_echoes = std::ssize(paths);
-  chirp.compared_power = power > 0.0 ? power : of_amplitude;
-  if (power > 0.0) {
-    chirp.phase_error = std::sqrt(of_phase / power);
-    chirp.amplitude_error = std::sqrt(of_amplitude / power);
-  } else if (of_amplitude > 0.0) {
-    chirp.amplitude_error = 1.0;
-  }
+  chirp.compared_power = power;
+  if (power > 0.0) chirp.phase_error = std::sqrt(of_phase / power);
+  // Polynomials follow an amplitude to a share of its largest over the frame, and none that nobody could hear.
+  chirp.strongest_power = std::max(strongest, kUnheard * noise_power_in_cell(radar_));
+  chirp.amplitude_error = std::sqrt(of_amplitude / chirp.strongest_power);
 }
 
 }  // namespace echopath

@@ -34,8 +34,9 @@ struct ProbedChirp {
   int64_t num_echoes = 0;
   double phase_error = 0.0;          // rad at the start frequency, rms weighted by the power of the echoes
   double largest_phase_error = 0.0;  // rad
-  double amplitude_error = 0.0;      // rms of the differences over rms of the amplitudes
-  double compared_power = 0.0;       // W, sum of |amplitude|^2 of these echoes; where all are 0, of the differences
+  double amplitude_error = 0.0;  // rms of the differences over rms of the largest amplitudes of these echoes in the frame
+  double compared_power = 0.0;   // W, sum of |amplitude|^2 of these echoes
+  double strongest_power = 0.0;  // W, of their largest in the frame, and no less than what could be heard
   // These are the shares of halves 0 and 1 (half_of_ray) of the rays of each batch in turn, and last of the image method's
   // paths: 2 batches + 1.
   std::vector<RayShare> shares;

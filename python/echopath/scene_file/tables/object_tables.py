@@ -100,6 +100,8 @@ class ObjectTable(ModelKeys):
 
     @classmethod
     def _advice(cls, key: str, data: dict) -> str:
+        if key in ("file", "path"):
+            return "an object names its file by mesh (OBJ, PLY, STL, OFF) or model"
         return f"actors have it in parameters = {{{key} = ...}}" if has_parameter(data.get("actor"), key) else ""
 
     @model_validator(mode="after")

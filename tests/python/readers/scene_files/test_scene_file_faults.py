@@ -253,6 +253,8 @@ def test_a_mirror_of_layers_without_a_whole_material_of_its_name_gets_no_name_in
     (RADAR + mesh_object("material = 'metal'\nvelocity = [1, 0, 0]"),
      "objects[0].velocity: unknown key; it belongs to [objects.motion] or [angle]"),
     (RADAR + mesh_object("conductor = true"), "objects[0].conductor: unknown key; it belongs to [objects.material]"),
+    (RADAR + "[[objects]]\nname = 'a'\nfile = 'a.obj'\n",
+     "objects[0].file: unknown key; an object names its file by mesh (OBJ, PLY, STL, OFF) or model"),
     (RADAR + "[[objects]]\nname = 'a'\nactor = 'sphere'\nradius = 1\n",
      "objects[0].radius: unknown key; actors have it in parameters = {radius = ...}"),
     (RADAR + "[[objects]]\nname = 'a'\nactor = 'sphere'\nparameters = {radius = 1, visible = false}\n",

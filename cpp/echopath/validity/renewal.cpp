@@ -19,7 +19,7 @@ constexpr double kStaysPut = 1e-3;   // rad: points of reflection that change th
 constexpr double kConverged = 1e-6;  // rad, of the length that the next Newton step would change
 constexpr int kMaxNewtonSteps = 12;  // they converge quadratically; what needs more is at a caustic
 
-enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kLost };
+enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kOffMirror, kLost };
 
 bool stays(Outcome outcome) { return outcome == Outcome::kKept || outcome == Outcome::kMoved; }
 
@@ -58,8 +58,9 @@ class Renewer {
     Scratch scratch(local.longest);
     for (size_t i = 0; i < indices.size(); ++i) {
       const LocalPath& path = local.paths[i];
-      block.of_path.push_back(renew_path(path, scratch, block.moved_hits));
-      if (!with_fields || !stays(block.of_path.back())) continue;
+      Outcome& outcome = block.of_path.emplace_back(renew_path(path, scratch, block.moved_hits));
+      if (!with_fields && is_seen_by_rays(path, scratch.posed.data(), outcome)) outcome = Outcome::kKept;
+      if (!with_fields || !stays(outcome)) continue;
       const FieldNow field = renew_field(indices[i], path, scratch);
       if (!field.is_as_recorded()) block.fields.push_back(field);
     }
@@ -85,7 +86,9 @@ class Renewer {
     Outcome outcome = Outcome::kKept;
     if (path.sliding != 0) outcome = find_reflections(path, scratch);
     if (outcome == Outcome::kLost) return outcome;
-    if (is_blocked(path, scratch.posed.data())) return Outcome::kBlocked;
+    const LegShadows shadows = shadows_of(path, scratch.posed.data());
+    if (shadows.blocked != 0 || shadows.is_end_blocked) return Outcome::kBlocked;
+    if (shadows.off_mirror != 0) return Outcome::kOffMirror;
     if (outcome == Outcome::kMoved) append_hits(path, moved_hits);
     return outcome;
   }
@@ -161,7 +164,7 @@ class Renewer {
     return true;
   }
 
-  bool is_blocked(const LocalPath& path, const PosedHit* hits) const {
+  LegShadows shadows_of(const LocalPath& path, const PosedHit* hits) const {
     LegTester tester(geometry_, path, hits);
     if (path.first_material < 0) {
       tester.test_images(start_of(path).position, end_of(path).position);
@@ -170,8 +173,25 @@ class Renewer {
       tester.test_inner();
       tester.test_end(end_of(path).position);
     }
-    const LegShadows& shadows = tester.shadows();
-    return shadows.blocked != 0 || shadows.is_end_blocked || shadows.off_mirror != 0;
+    return tester.shadows();
+  }
+
+  // Returns whether a trace meets by its rays what it had met as an image, had that not left its plane: of unflagged planes
+  // without an image it has the paths over all points that both antennas see from one side.
+  bool is_seen_by_rays(const LocalPath& path, const PosedHit* hits, Outcome outcome) const {
+    if (outcome != Outcome::kOffMirror || !is_over_unflagged_planes(path, preparer_)) return false;
+    LocalPath over_points = path;
+    over_points.image = 0;
+    over_points.first_material = 0;
+    over_points.last_material = path.count - 1;
+    for (int k = 0; k < path.count; ++k) {
+      const Vec3 before = k > 0 ? hits[k - 1].point : start_of(path).position;
+      const Vec3 behind = k + 1 < path.count ? hits[k + 1].point : end_of(path).position;
+      const auto side_of = [&](const Vec3& point) { return (point - hits[k].point).dot(hits[k].normal); };
+      if (side_of(before) * side_of(behind) <= 0) return false;
+    }
+    const LegShadows shadows = shadows_of(over_points, hits);
+    return shadows.blocked == 0 && !shadows.is_end_blocked;
   }
 
   static void append_hits(const LocalPath& path, std::vector<Hit>& out) {
@@ -232,7 +252,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
     for (const Outcome outcome : block.of_path) {
       const auto path = keep.size();
       keep.push_back(stays(outcome));
-      renewal.num_blocked += outcome == Outcome::kBlocked;
+      renewal.num_blocked += outcome == Outcome::kBlocked || outcome == Outcome::kOffMirror;
       renewal.num_lost += outcome == Outcome::kLost;
       renewal.num_moved += outcome == Outcome::kMoved;
       if (!keep.back()) continue;

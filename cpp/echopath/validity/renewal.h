@@ -23,8 +23,9 @@ struct Renewal {
 // the time; raises DeviceError and Cancelled. `kept` is as in `trace`.
 Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
-// Returns [P] 1 where `renew` keeps the path at `time`. For paths of another trace it tells those that one at `time` could
-// have had.
+// Returns [P] 1 where `renew` keeps the path at `time`, or where an image has left its unflagged plane, of which a trace
+// then has paths of rays. For paths of another trace it tells those that one at `time` could have had, in one way or the
+// other.
 std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept);
 
 }  // namespace echopath

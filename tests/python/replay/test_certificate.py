@@ -216,6 +216,56 @@ def test_what_leaves_a_shadow_has_its_power_at_keyframes():
     assert 10 * np.log10(np.mean(found) / expected) == pytest.approx(0, abs=SPECKLE_DB)
 
 
+def plate_field(points, area, normal, antennas, wavelength):
+    """Physical optics of a metal plate by a sum over its points, sqrt(W) for 1 W and isotropic antennas."""
+    ways = [point - points for point in antennas]
+    length = [np.linalg.norm(way, axis=-1) for way in ways]
+    cosine = np.abs(ways[0] @ normal) / length[0]
+    phase = 2 * np.pi / wavelength * (length[0] + length[1])
+    return np.sum(cosine * area / (length[0] * length[1]) * np.exp(-1j * phase)) / (4 * np.pi)
+
+
+def test_a_plate_that_turns_into_its_flash_is_heard_once():
+    """At mid-frame rays meet it, in the flash it has an image: either is the echo of the same surface, which nothing hid."""
+    radar = build_radar(receivers=[(0, 0.05, 0)], num_samples=32, num_chirps=16, chirp_interval=1.5e-3, bandwidth=100e6,
+                        start_frequency=24e9, transmit_power=1.0)
+    rate, turn, side = 3.0, 0.08, 0.7
+    begin = turn - rate * radar.middle_of_frame()
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(side, side), name="plate", material="metal", position=(5, 0, 0), yaw=begin,
+              motion=ep.LinearMotion(angular_velocity=(0, 0, rate)))
+    at = (np.arange(300) + 0.5) / 300 * side - side / 2
+    across, up = map(np.ravel, np.meshgrid(at, at))
+    power = []
+    for angle in begin + rate * chirp_times(radar):
+        points = np.stack([5 - np.sin(angle) * across, np.cos(angle) * across, up], axis=-1)
+        normal, antennas = np.array([np.cos(angle), np.sin(angle), 0]), np.array([[0, 0, 0], [0, 0.05, 0]])
+        power.append(abs(plate_field(points, (side / 300)**2, normal, antennas, radar.waveform.wavelength))**2)
+    paths = ep.trace(scene, radar, num_rays=20000, max_bounces=1)
+    assert paths.num_paths > 1000 and ep.trace(scene, radar, num_rays=20000, start_time=-radar.middle_of_frame()).num_paths == 1
+    report = ep.validity(paths)
+    assert report.ok and report.new_surface_share == 0.0
+    flash = np.array(power) > 0.1 * max(power)
+    for keyframes in (4, 16):
+        found = np.mean(np.abs(ep.synthesize(paths, radar, retrace="invalid", keyframes=keyframes)[0, 0])**2, axis=-1)
+        np.testing.assert_allclose(10 * np.log10(found[flash] / np.array(power)[flash]), 0.0, atol=SAME_DB)
+
+
+def test_the_image_in_a_plate_that_a_screen_uncovers_is_new():
+    radar = build_radar(num_samples=32, num_chirps=16, chirp_interval=800e-6, bandwidth=100e6, start_frequency=24e9,
+                        transmit_power=1.0)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.7, 0.7), name="plate", material="metal", position=(5, 0, 0))
+    scene.add(ep.actors.plate(2.0, 2.0), name="screen", material=ROUGH, position=(3, -0.4 - 150 * radar.middle_of_frame(), 0),
+              motion=ep.LinearMotion(velocity=(0, 150, 0)))
+    paths = ep.trace(scene, radar, num_rays=4000, max_bounces=1)
+    cubes = [ep.decompose(paths, radar, {"plate": "T 'plate' R"}, retrace=retrace, keyframes=16)["plate"][0, 0]
+             for retrace in ("invalid", "always")]
+    whole = np.abs(cubes[1][:3])  # then the screen's edge comes between
+    assert whole.min() > 0 and not cubes[1][8].any()
+    np.testing.assert_allclose(cubes[0][:3], cubes[1][:3], rtol=0, atol=1e-3 * whole.max())
+
+
 def open_tube(radar):
     """Metal, as a blade that turns through 0.16 rad about one end: the other opens toward the radar, which sees farther in."""
     angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)

@@ -26,10 +26,10 @@ struct SurfaceSearchSettings {
 };
 
 // Traces the record's scene at another time and marks the paths that the record cannot have: then something blocked a leg,
-// or a point of reflection did not lie on its surface. It is the reverse of what `renew` takes out, so that a record without
-// its blocked paths, together with the new paths, is a whole. `then` and `now` keep geometry at the time of the record and
-// from look to look. The result has the same bits for any number of threads. Raises invalid_argument when a motion does not
-// cover the time; raises Cancelled.
+// or a point of reflection did not lie on its surface, and no rays met the surface instead. It is the reverse of what
+// `renew` takes out, so that a record without its blocked paths, together with the new paths, is a whole. `then` and `now`
+// keep geometry at the time of the record and from look to look. The result has the same bits for any number of threads.
+// Raises invalid_argument when a motion does not cover the time; raises Cancelled.
 SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const SurfaceSearchSettings& settings, Job* job,
                                 KeptGeometry* then, KeptGeometry* now);
 

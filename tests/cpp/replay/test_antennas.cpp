@@ -124,15 +124,21 @@ TEST(AntennaTable, PathsOverMirrorsAloneHaveThePhasesOfBothAntennas) {
   EXPECT_NEAR(std::abs(replayed(paths).amplitudes[0] / plain - std::polar(0.9, 0.7)), 0.0, kPhaseTolerance);
 }
 
-TEST(AntennaTable, RaysFillTheHalfSpaceWhereThereIsNoGainBehind) {
+TEST(AntennaTable, RaysFillTheHalfSpaceWhereNoAntennaHasGainBehind) {
   Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
-  radar.transmitters[0].orientation = Quaternion(Eigen::AngleAxisd(0.6, Vec3::UnitZ()));
-  radar.transmitters[0].pattern = table(even, nullptr, 90);
+  for (Antenna* antenna : {&radar.transmitters[0], &radar.receivers[0]}) {
+    EXPECT_EQ(paths_around(radar).frame.strata.back().versine, 2.0);
+    antenna->orientation = Quaternion(Eigen::AngleAxisd(0.6, Vec3::UnitZ()));
+    antenna->pattern = table(even, nullptr, 90);
+  }
   const Stratum front = paths_around(radar).frame.strata.back();
   EXPECT_EQ(front.versine, 1.0);
   EXPECT_NEAR((front.axis - Vec3(std::cos(0.6), std::sin(0.6), 0)).norm(), 0.0, kRounding);
-  radar.transmitters[0].pattern = table(even, nullptr, 92);
-  EXPECT_EQ(paths_around(radar).frame.strata.back().versine, 2.0);
+  for (Antenna* antenna : {&radar.transmitters[0], &radar.receivers[0]}) {
+    antenna->pattern = table(even, nullptr, 92);
+    EXPECT_EQ(paths_around(radar).frame.strata.back().versine, 2.0);
+    antenna->pattern = table(even, nullptr, 90);
+  }
 }
 
 }  // namespace

@@ -2913,7 +2913,7 @@ class Validity:
     @property
     def keyframes(self) -> int:
         """
-        traces, each for its own part of the frame, that bring the error by motion below 0.3 rad
+        traces, each for its own part of the frame, that serve it: the error by motion is then below 0.3 rad, and echoes that come, go or change their strength have 16 parts or more
         """
     @property
     def largest_cosine_change(self) -> float:

@@ -77,17 +77,18 @@ struct KeyframeMotion::Data {
     return 2.0 * (chord.norm() + step / 3.0 * (before.norm() + after.norm())) / kMinQuaternionLength;
   }
 
-  // The same of kMonotone, of the chord's derivative and those at the two knots, per s: a cubic lies in the hull of its four
-  // control points, and its derivative in the hull of their three differences.
+  // The same of kMonotone, a bound but where the curve comes near no rotation at all, of the chord's derivative and those
+  // at the two knots, per s: a cubic lies in the hull of its four control points, and its derivative in the hull of their
+  // three differences.
   double monotone_angular_speed(size_t k, double step, const Eigen::Vector4d& chord, const Eigen::Vector4d& before,
                                 const Eigen::Vector4d& after) const {
-    constexpr double kMinQuaternionLength = 0.05;  // of keys that are nearly 180 degrees apart
+    constexpr double kLeastLength = 0.05;  // of keys that are nearly 180 degrees apart
     const Eigen::Vector4d &first = rotations[k].coeffs(), &second = rotations[k + 1].coeffs();
     const Eigen::Vector4d middle = (first + second).normalized();
     const double length = std::min({middle.dot(first), middle.dot(first + step / 3.0 * before),
                                     middle.dot(second - step / 3.0 * after), middle.dot(second)});
     const double speed = std::max({before.norm(), (3.0 * chord - before - after).norm(), after.norm()});
-    return 2.0 * speed / std::max(length, kMinQuaternionLength);
+    return 2.0 * speed / std::max(length, kLeastLength);
   }
 
   Quaternion rotation(const SplineKnots::Weights& w) const {

@@ -22,15 +22,17 @@ constexpr int64_t kBlocksPerWave = 24, kBlocksPerThread = 12;
 constexpr int64_t kBlocksAhead = 64;  // they tell how large a record of several waves will be
 
 // Sets the whole sphere, or the half space in front where all antennas look the same way and have no gain behind. Receivers
-// count as transmitters do, for a way that reaches one from behind is traced from its other end.
-void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
+// count as transmitters do where there may be several bounces, for a way that reaches one from behind is traced from its
+// other end.
+void set_field_of_view(const Radar& radar, const Transform& world_from_radar, int max_bounces, LaunchSettings& launch) {
   const auto boresight = [&](const Antenna& antenna) { return in_world(antenna, Vec3::UnitX(), world_from_radar); };
   launch.boresight = boresight(radar.transmitters.front());
   const auto looks_ahead = [&](const Antenna& antenna) {
     return antenna.pattern.is_dark_behind() && boresight(antenna).dot(launch.boresight) >= 1.0 - 1e-9;
   };
-  if (std::ranges::all_of(radar.transmitters, looks_ahead) && std::ranges::all_of(radar.receivers, looks_ahead))
-    launch.field_versine = 1.0;
+  const bool is_of_receivers = max_bounces > 1;
+  if (!std::ranges::all_of(radar.transmitters, looks_ahead)) return;
+  if (!is_of_receivers || std::ranges::all_of(radar.receivers, looks_ahead)) launch.field_versine = 1.0;
 }
 
 TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
@@ -105,7 +107,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted
   launch.is_steady = has_steady_rays(*empty_.scene, empty_.radar, settings.scatterers);
   launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
-  set_field_of_view(empty_.radar, world_from_radar_, launch);
+  set_field_of_view(empty_.radar, world_from_radar_, settings.max_bounces, launch);
   return plan_launch(*empty_.scene, geometry_, mirrors_, launch);
 }
 

@@ -19,6 +19,7 @@ constexpr double kStaysPut = 1e-3;   // rad: points of reflection that change th
 constexpr double kConverged = 1e-6;  // rad, of the length that the next Newton step would change
 constexpr int kMaxNewtonSteps = 12;  // they converge quadratically; what needs more is at a caustic
 
+enum class Purpose : uint8_t { kRenew, kLookUp };
 enum class Outcome : uint8_t { kKept, kMoved, kBlocked, kOffMirror, kLost };
 
 bool stays(Outcome outcome) { return outcome == Outcome::kKept || outcome == Outcome::kMoved; }
@@ -51,16 +52,19 @@ class Renewer {
         scene_at_trace_(*paths.scene, radar_, preparer_.meshes(), origin_, paths.frame.trace_time),
         coefficients_(paths, kSpeedOfLight / kTwoPi * wavenumber_) {}
 
-  // Fields are found of what stays, and only where they are asked for.
-  BlockOutcome renew_block(std::span<const int64_t> indices, bool with_fields) const {
+  // Renewed paths have the fields of what stays. A look-up needs none, and finds images that a trace has as rays by now.
+  BlockOutcome renew_block(std::span<const int64_t> indices, Purpose purpose) const {
     BlockOutcome block;
     const LocalPaths local = preparer_(indices);
     Scratch scratch(local.longest);
     for (size_t i = 0; i < indices.size(); ++i) {
       const LocalPath& path = local.paths[i];
       Outcome& outcome = block.of_path.emplace_back(renew_path(path, scratch, block.moved_hits));
-      if (!with_fields && is_seen_by_rays(path, scratch.posed.data(), outcome)) outcome = Outcome::kKept;
-      if (!with_fields || !stays(outcome)) continue;
+      if (purpose == Purpose::kLookUp) {
+        if (is_seen_by_rays(path, scratch.posed.data(), outcome)) outcome = Outcome::kKept;
+        continue;
+      }
+      if (!stays(outcome)) continue;
       const FieldNow field = renew_field(indices[i], path, scratch);
       if (!field.is_as_recorded()) block.fields.push_back(field);
     }
@@ -269,7 +273,7 @@ void assemble(const Paths& record, const std::vector<BlockOutcome>& blocks, Rene
   }
 }
 
-std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, bool with_fields, Job* job,
+std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, double time, Purpose purpose, Job* job,
                                        KeptGeometry* kept) {
   const Renewer renewer(paths, radar, time, job, kept);
   std::vector<BlockOutcome> blocks(num_chunks(paths.num_paths(), kPathsRenewedTogether));
@@ -277,7 +281,7 @@ std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, d
   parallel_for_chunks(paths.num_paths(), kPathsRenewedTogether, [&](int64_t begin, int64_t end) {
     std::vector<int64_t> indices(end - begin);
     std::iota(indices.begin(), indices.end(), begin);
-    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices, with_fields);
+    blocks[begin / kPathsRenewedTogether] = renewer.renew_block(indices, purpose);
   }, job);
   return blocks;
 }
@@ -286,13 +290,13 @@ std::vector<BlockOutcome> renew_blocks(const Paths& paths, const Radar& radar, d
 
 Renewal renew(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   Renewal renewal;
-  assemble(paths, renew_blocks(paths, radar, time, true, job, kept), renewal, job);
+  assemble(paths, renew_blocks(paths, radar, time, Purpose::kRenew, job, kept), renewal, job);
   return renewal;
 }
 
 std::vector<uint8_t> still_there(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept) {
   std::vector<uint8_t> out;
-  for (const BlockOutcome& block : renew_blocks(paths, radar, time, false, job, kept)) {
+  for (const BlockOutcome& block : renew_blocks(paths, radar, time, Purpose::kLookUp, job, kept)) {
     std::ranges::transform(block.of_path, std::back_inserter(out), stays);
   }
   return out;

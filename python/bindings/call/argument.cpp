@@ -22,7 +22,7 @@ std::string any_of(py::handle type) {
   return with_article(name_of(type)) + (names.empty() ? "" : " (" + names + ")");
 }
 
-bool is_numpy(py::handle value) { return py::hasattr(value, "dtype"); }
+bool is_numpy(py::handle value) { return has_attribute(value, "dtype"); }
 
 bool is_bool(py::handle value) {
   if (PyBool_Check(value.ptr())) return true;

@@ -11,6 +11,12 @@ void forget_fault() {
   PyErr_Clear();
 }
 
+bool has_attribute(py::handle value, const char* name) {
+  const py::object found = py::reinterpret_steal<py::object>(PyObject_GetAttrString(value.ptr(), name));
+  if (!found) forget_fault();
+  return static_cast<bool>(found);
+}
+
 py::array array_or_none(py::handle value) {
   try {
     return py::array(py::reinterpret_borrow<py::object>(value));

@@ -152,8 +152,10 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
       .def_property_readonly(
           "replay", [](const Validity& self) { return kSpecularPoints.name_of(self.specular); },
           "\"material\" or \"fermat\": the replay that was certified")
-      .def_property_readonly("keyframes", &Validity::keyframes,
-                             "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
+      .def_property_readonly(
+          "keyframes", &Validity::keyframes,
+          "traces, each for its own part of the frame, that serve it: the error by motion is then below 0.3 rad, and "
+          "echoes that come, go or change their strength have 16 parts or more")
       .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
       .def_property_readonly(
           "ok", [](const Validity& self) { return self.warnings().empty(); },

@@ -44,7 +44,7 @@ std::string rule(std::string_view argument, std::string_view shape, std::string_
 
 // Whether some values of a numpy.ma.MaskedArray are masked: what stands in their places means nothing.
 bool is_masked(py::handle value) {
-  return py::hasattr(value, "mask") && py::isinstance<py::array>(value) &&
+  return has_attribute(value, "mask") && py::isinstance<py::array>(value) &&
          py::module_::import("numpy.ma").attr("is_masked")(value).cast<bool>();
 }
 

@@ -61,7 +61,7 @@ class Case:
         around = scene if surroundings is None else surroundings
         self.weather, self.rain_cube = weather_of(around), rain_cube
         self.interferers, self.interference_cube = interferers_of(around), interference_cube
-        self.is_of_record = paths is not None and surroundings is None  # which keeps neither weather nor other radars
+        self.is_of_record = paths is not None and surroundings is None  # which keeps neither rain nor other radars
         self.scene, self.radar, self.settings, self.paths = scene, radar, settings, paths
         self.statistics = statistics or (None if paths is None else paths.frame.statistics)
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency

@@ -22,8 +22,9 @@ def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float 
     cube: complex [tx, rx, chirp, sample] in sqrt(W), of `synthesize` or the sum of the parts of `decompose`; probe: the
     SignalProbe that was filled with it; tolerance: rms of the samples, relative, and phase_tolerance: rad, as promised
     Returns list [C] of Check: samples against direct sums of all echoes, then phases and amplitudes of moving echoes between
-    nodes against evaluation at the chirp (none where nothing moves). Raises TypeError or ValueError naming
-    the argument, also for a probe that no signal has filled and for a cube without the samples that it has drawn.
+    nodes against evaluation at the chirp (none where nothing moves), amplitudes over the largest that the echoes have in the frame.
+    Raises TypeError or ValueError naming the argument, also for a probe that no signal has filled and for a cube without the
+    samples that it has drawn.
     """
     _require_samples(cube, probe)
     checks = [_samples(cube, probe, tolerance)]
@@ -33,7 +34,8 @@ def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float 
     name = "moving echoes"
     phase, amplitude = float(np.max(probe.phase_error)), float(np.max(probe.amplitude_error))
     return [*checks, Check(f"{name}, phase", phase, BEYOND_TAIL * phase_tolerance, "rad rms", count),
-            Check(f"{name}, size", amplitude, BEYOND_TAIL * amplitude_tolerance(phase_tolerance), "of the amplitude rms", count)]
+            Check(f"{name}, size", amplitude, BEYOND_TAIL * amplitude_tolerance(phase_tolerance), "of the largest amplitude rms",
+                  count)]
 
 
 def _require_samples(cube, probe) -> None:

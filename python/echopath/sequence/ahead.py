@@ -58,7 +58,8 @@ class _Ahead(Generic[Result]):
     def begin_next(self) -> bool:
         """Begins the next work, after the result of the one before; False, and nothing begins, where there is none."""
         for work in self._works:
-            self._told, self._has_begun, self._has_ended = None, threading.Event(), threading.Event()
+            self._thread, self._told = None, None
+            self._has_begun, self._has_ended = threading.Event(), threading.Event()
             # Kept before it starts: Ctrl-C may come at any step, and `stop` is to find it.
             self._thread = threading.Thread(target=at_line_of_user(functools.partial(self._run, work)), daemon=True,
                                             name="echopath-ahead")
@@ -71,6 +72,7 @@ class _Ahead(Generic[Result]):
         while not self._has_ended.wait(POLL):
             self._tell(progress)
         self._tell(progress)
+        self._thread.join()
         if self._failure is not None:
             try:
                 raise self._failure

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, Progress, anything, array, checked, real, refused
 from ..arguments.settings import SignalSettings
+from ..base.process.callers import warn_user
 from ..base.process.progress import with_progress
 from ..transmit import is_coded, signal_shape
 from ..transmit.signals import has_steps
 from .windows import of_range, of_velocity, samples_of
 
+CLEAR_ECHO = 100.0  # times the noise: 20 dB
 FINER = 16  # bins of a profile for each range cell: between them it is a line, within 0.01 dB of a Hann window's lobe
 
 
@@ -65,8 +67,9 @@ def calibrate(cube: ArrayLike, radar: _core.Radar, position: ArrayLike, *, start
               window: MapWindow = SignalSettings.window) -> NDArray[np.complex128]:
     """Corrections of the channels of an array, from the echo of a reflector whose place is known.
 
-    Nothing is taken for far: each channel has a delay of its own to the place. What else the scene has there in range counts
-    too, so that the reflector should stand alone or far above the rest.
+    Nothing is taken for far: each channel has a delay of its own to the place, and a level by the lengths of its two legs. What
+    the patterns of the antennas have toward the place stays in, and what else the scene has there in range, so that the
+    reflector should stand alone or far above the rest, and where antennas look alike.
     cube: [tx, rx, chirp, sample] in sqrt(W), of that radar, with the reflector at rest
     radar: that of the cube, with transmitters in turns and chirps that are all alike
     position: [3] in m, in the world: where the echo comes from. An error across the array's line of sight turns the corrections
@@ -75,7 +78,8 @@ def calibrate(cube: ArrayLike, radar: _core.Radar, position: ArrayLike, *, start
     window: as in `range_doppler`, over the samples and over the chirps
     Returns [tx, rx], complex: cube * corrections[:, :, None, None] is that of channels which are alike. They leave the mean power
     of the echo over all channels and the phase of channel [0, 0]. Raises TypeError or ValueError naming the argument, also
-    where a channel has no echo there.
+    where a channel has no signal there. Warns (RuntimeWarning) where an echo is less than 20 dB above the noise of the radar,
+    from which on noise turns corrections by more than 0.07 rad rms.
     """
     cube, points = _checked_cube(cube, radar), np.asarray(position, float)
     at_rest = radar.replace(position=(0, 0, 0), yaw=0.0, pitch=0.0, motion=None).world_from_radar
@@ -84,8 +88,20 @@ def calibrate(cube: ArrayLike, radar: _core.Radar, position: ArrayLike, *, start
         found[tx, rx] += of_chirp
     if silent := np.argwhere(found == 0).tolist():
         raise ValueError(f"cube: must have an echo at {points.tolist()} m in each channel, got none in [tx, rx] = {silent[0]}")
+    _warn_of_noise(np.min(np.abs(found) ** 2) / _core.cell_noise_power(radar, window))
+    legs = _legs_at(points, radar, at_rest, radar.middle_of_frame(start_time))
+    sent, heard = ([legs(antenna).length for antenna in antennas] for antennas in (radar.transmitters, radar.receivers))
+    found *= np.multiply.outer(sent, heard)
     level = np.sqrt(np.mean(np.abs(found) ** 2)) * np.exp(1j * np.angle(found[0, 0]))
     return level / found
+
+
+def _warn_of_noise(ratio: float) -> None:
+    """ratio: power of the weakest channel's echo over that of the noise"""
+    if ratio < CLEAR_ECHO:
+        warn_user(f"calibrate: the echo stands {10.0 * np.log10(ratio):.1f} dB above the noise of the radar in its weakest "
+                  f"channel, which turns its correction by some {np.sqrt(0.5 / ratio):.2f} rad, unless the reflector is "
+                  "elsewhere or the cube has no noise; more chirps and a stronger or nearer reflector help")
 
 
 def _chirp_images(cube, radar, points, world_from_points, start_time: float, window: MapWindow, progress: Progress = None):

@@ -48,6 +48,9 @@ TEST(Validity, AdvisesSeveralKeyframesForObjectsAlone) {
     }
   }
   report.objects = {heard_object()};
+  report.objects.front().has_paths = false;
+  EXPECT_EQ(report.keyframes(), kOcclusionKeyframes);
+  report.objects = {heard_object()};
   report.objects.front().beside_edges = 0.06;
   EXPECT_EQ(report.keyframes(), 2);
 }

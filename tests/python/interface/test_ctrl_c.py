@@ -123,6 +123,20 @@ class Raises:
     __float__ = __index__ = __iter__ = __len__ = __getitem__ = __array__ = _raise
 
 
+class RaisesAsArray(Raises):
+    """Likewise; it begins as arrays of other libraries do, by its `dtype`."""
+
+    @property
+    def dtype(self):
+        raise self.error
+
+
+class RaisesOfArray(Raises):
+    """Likewise; it is taken for an array, which it then fails to become."""
+
+    dtype = np.dtype(float)
+
+
 READERS = {
     "array": lambda value: ep.LinearMotion(velocity=value),
     "array of numbers": lambda value: ep.LinearMotion(velocity=[value, 0.0, 0.0]),
@@ -135,10 +149,11 @@ READERS = {
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
+@pytest.mark.parametrize("kind", [Raises, RaisesAsArray, RaisesOfArray])
 @pytest.mark.parametrize("reader", READERS)
-def test_ctrl_c_while_an_argument_is_read_is_no_fault_of_the_argument(reader, error):
+def test_ctrl_c_while_an_argument_is_read_is_no_fault_of_the_argument(reader, kind, error):
     with pytest.raises(error):
-        READERS[reader](Raises(error))
+        READERS[reader](kind(error))
 
 
 @pytest.mark.hard

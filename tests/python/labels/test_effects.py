@@ -217,8 +217,8 @@ def test_what_is_never_modelled_is_said():
 
 
 def told_by_both(effects) -> list:
-    """All but the planes that image themselves, of which only a trace can tell, and other radars, of which none can."""
-    return [effect for effect in effects if effect.name not in ("large planes by images", "interference")]
+    """All but the planes that image themselves, of which only a trace can tell, and rain and other radars, of which none can."""
+    return [effect for effect in effects if effect.name not in ("large planes by images", "echoes of rain", "interference")]
 
 
 def test_the_record_knows_its_effects_and_writes_them(tmp_path):

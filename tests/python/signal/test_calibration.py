@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 
-CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=3e8, num_samples=128, sampling_rate=5e6, num_chirps=32,
+CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=3e8, num_samples=128, sampling_rate=5e6, num_chirps=128,
                           chirp_interval=3e-5)
 WAVELENGTH = CHIRPS.wavelength
 BETWEEN_BINS = 4e-3   # of the field: what a line between bins leaves of a lobe
@@ -30,9 +30,10 @@ def cube_of(radar, point, errors) -> np.ndarray:
     for tx, rx, chirp in np.ndindex(len(radar.transmitters), len(radar.receivers), waveform.num_chirps):
         place = radar.world_from_radar(radar.chirp_time(tx, chirp))
         ends = [place[:3, :3] @ antenna.position + place[:3, 3] for antenna in (radar.transmitters[tx], radar.receivers[rx])]
-        delay = sum(np.linalg.norm(point - end) for end in ends) / ep.speed_of_light
+        legs = [np.linalg.norm(point - end) for end in ends]
+        delay = sum(legs) / ep.speed_of_light
         cycles = (waveform.start_frequency + waveform.slope * (within - delay / 2)) * delay
-        cube.append(errors[tx, rx] * np.exp(2j * np.pi * cycles))
+        cube.append(errors[tx, rx] * np.exp(2j * np.pi * cycles) * np.linalg.norm(point) ** 2 / np.prod(legs))
     return np.reshape(cube, (len(radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples))
 
 
@@ -87,6 +88,14 @@ def test_angles_in_a_street_are_right_again(position):
     mended = bearings(corrections[:, :, None, None] * received, faulty)
     assert np.abs(wrong - ideal).max() > 5.0
     assert np.abs(mended - ideal).max() < ANGLE
+
+
+def test_noise_in_the_place_of_an_echo_is_told():
+    """Of a phase with a ratio S of signal to noise the rms error is sqrt(1 / (2 S)): half a radian or more, without any."""
+    radar = make_radar()
+    noise = ep.add_noise(np.zeros((2, 4, CHIRPS.num_chirps, CHIRPS.num_samples), complex), radar, seed=3)
+    with pytest.warns(RuntimeWarning, match=r"^calibrate: the echo stands -?\d+\.\d dB above the noise .* by some \d+\.\d\d rad"):
+        ep.calibrate(noise, radar, (5, 0, 0))
 
 
 def test_a_channel_without_an_echo_is_named():

@@ -22,7 +22,7 @@ def check_signal(cube: ArrayLike, probe: _core.SignalProbe, *, tolerance: float 
     cube: complex [tx, rx, chirp, sample] in sqrt(W), of `synthesize` or the sum of the parts of `decompose`; probe: the
     SignalProbe that was filled with it; tolerance: rms of the samples, relative, and phase_tolerance: rad, as promised
     Returns list [C] of Check: samples against direct sums of all echoes, then phases and amplitudes of moving echoes between
-    nodes against evaluation at the chirp (none where nothing moves), amplitudes over the largest that the echoes have in the frame.
+    nodes against evaluation at the chirp (none where nothing moves), amplitudes over the largest of the echoes in the frame.
     Raises TypeError or ValueError naming the argument, also for a probe that no signal has filled and for a cube without the
     samples that it has drawn.
     """

@@ -87,7 +87,8 @@ def calibrate(cube: ArrayLike, radar: _core.Radar, position: ArrayLike, *, start
     for tx, rx, of_chirp in _chirp_images(cube, radar, points, at_rest, start_time, window):
         found[tx, rx] += of_chirp
     if silent := np.argwhere(found == 0).tolist():
-        raise ValueError(f"cube: must have an echo at {points.tolist()} m in each channel, got none in [tx, rx] = {silent[0]}")
+        raise ValueError(f"cube: must have an echo of the position {points.tolist()} m in each channel, from where the radar is "
+                         f"at the start_time {start_time:g} s, got none in [tx, rx] = {silent[0]}")
     _warn_of_noise(np.min(np.abs(found) ** 2) / _core.cell_noise_power(radar, window))
     legs = _legs_at(points, radar, at_rest, radar.middle_of_frame(start_time))
     sent, heard = ([legs(antenna).length for antenna in antennas] for antennas in (radar.transmitters, radar.receivers))

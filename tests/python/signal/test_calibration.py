@@ -101,5 +101,5 @@ def test_noise_in_the_place_of_an_echo_is_told():
 def test_a_channel_without_an_echo_is_named():
     radar = make_radar()
     cube = cube_of(radar, np.array([5.0, 0.0, 0.0]), np.array([[1, 1, 1, 1], [1, 1, 0, 1]]))
-    with pytest.raises(ValueError, match=r"^cube: must have an echo at .* m in each channel, got none in \[tx, rx\] = \[1, 2\]"):
+    with pytest.raises(ValueError, match=r"^cube: must have an echo of the position .* s, got none in \[tx, rx\] = \[1, 2\]"):
         ep.calibrate(cube, radar, (5, 0, 0))

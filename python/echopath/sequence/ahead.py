@@ -30,12 +30,7 @@ def one_ahead(works: Iterable[Work[Result]], progress=None) -> Iterator[Result]:
         return
     ahead = _Ahead(iter(works))
     try:
-        has_next = ahead.begin_next()
-        while has_next:
-            result = ahead.result(progress)
-            has_next = ahead.begin_next()
-            yield result
-            del result  # it is not to live as long as the next one is waited for
+        yield from ahead.results(progress)  # a loop here would let Ctrl-C at its backward jump pass by, from Python 3.12 on
     finally:
         ahead.stop()
 
@@ -55,9 +50,27 @@ class _Ahead(Generic[Result]):
         self._thread: threading.Thread | None = None
         self._is_stopped, self._has_begun, self._has_ended = False, threading.Event(), threading.Event()
 
-    def begin_next(self) -> bool:
+    def results(self, progress) -> Iterator[Result]:
+        """The result of each work, in order, while the next one is under way."""
+        has_next = self._begin_next()
+        while has_next:
+            result = self._result_of_work(progress)
+            has_next = self._begin_next()
+            yield result
+            del result  # it is not to live as long as the next one is waited for
+
+    def stop(self) -> None:
+        """Has the work end early, if there is one, and waits for it."""
+        self._is_stopped = True
+        # Ctrl-C may have come before the start, or into it: then the thread is yet to run, or was not made.
+        if self._thread in threading.enumerate() and self._has_begun.wait(BEGINNING):
+            self._thread.join()
+
+    def _begin_next(self) -> bool:
         """Begins the next work, after the result of the one before; False, and nothing begins, where there is none."""
         for work in self._works:
+            if self._thread is not None:
+                self._thread.join()  # its work has ended
             self._thread, self._told = None, None
             self._has_begun, self._has_ended = threading.Event(), threading.Event()
             # Kept before it starts: Ctrl-C may come at any step, and `stop` is to find it.
@@ -67,25 +80,17 @@ class _Ahead(Generic[Result]):
             return True
         return False
 
-    def result(self, progress) -> Result:
+    def _result_of_work(self, progress) -> Result:
         """Waits for the end of the work; returns or raises what it did. To be called once for each."""
         while not self._has_ended.wait(POLL):
             self._tell(progress)
         self._tell(progress)
-        self._thread.join()
         if self._failure is not None:
             try:
                 raise self._failure
             finally:
                 self._failure = None  # an exception that holds its own traceback lives on
         return self._result.pop()
-
-    def stop(self) -> None:
-        """Has the work end early, if there is one, and waits for it."""
-        self._is_stopped = True
-        # Ctrl-C may have come before the start, or into it: then the thread is yet to run, or was not made.
-        if self._thread in threading.enumerate() and self._has_begun.wait(BEGINNING):
-            self._thread.join()
 
     def _run(self, work: Work[Result]) -> None:
         self._has_begun.set()

@@ -205,7 +205,7 @@ class CtrlCAtStep:
         if self.is_over or code.co_filename != ahead.__file__:
             return None
         frame.f_trace_opcodes = True
-        self.results += event == "call" and code.co_name == "result"
+        self.results += event == "call" and code.co_name == "_result_of_work"
         self.is_over = event == "call" and code.co_name == "stop" or self.results == 2
         self.steps_left -= event == "opcode"
         if self.results == 2 or self.steps_left < 0:

@@ -15,8 +15,7 @@ def _interference(case: Case):
             return True, "no other radar is heard in the frame"
         return True, f"{in_dbm(float(np.mean(np.abs(case.interference_cube)**2))):.1f} dBm of other radars, on the whole alone"
     if not case.interferers:
-        in_record = "a record has none; simulate adds those of a scene"
-        return False, in_record if case.is_of_record else "the scene has no other radars"
+        return False, case.why_none("other radars")
     radars = "another radar" if len(case.interferers) == 1 else f"{len(case.interferers)} other radars"
     if not is_on(case.settings.effects, INTERFERENCE, True, ""):
         return False, f"effects has it off: {radars}"

@@ -61,11 +61,15 @@ class Case:
         around = scene if surroundings is None else surroundings
         self.weather, self.rain_cube = weather_of(around), rain_cube
         self.interferers, self.interference_cube = interferers_of(around), interference_cube
-        self.is_of_record = paths is not None and surroundings is None  # which keeps neither rain nor other radars
+        self._is_of_record = paths is not None and surroundings is None
         self.scene, self.radar, self.settings, self.paths = scene, radar, settings, paths
         self.statistics = statistics or (None if paths is None else paths.frame.statistics)
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency
         self.materials, self._of_mesh, self._smooth, self._moving, self._deforming = _core.mesh_traits(scene)
+
+    def why_none(self, what: str) -> str:
+        """Why there is none of `what` that a scene has beside its meshes: a record keeps neither rain nor other radars."""
+        return "a record has none; simulate adds those of a scene" if self._is_of_record else f"the scene has no {what}"
 
     @cached_property
     def model(self) -> str:

@@ -39,7 +39,7 @@ def _rain(case: Case):
     if case.rain_cube is not None:
         return True, f"{in_dbm(float(np.mean(np.abs(case.rain_cube)**2))):.1f} dBm, on the whole alone"
     if case.weather is None or case.weather.rain_mm_per_hour == 0:
-        return False, "a record has none; simulate adds those of a scene" if case.is_of_record else "the scene has no rain"
+        return False, case.why_none("rain")
     power = rain_power(case.radar, case.weather, attenuation_of_weather(case.weather, case.radar, case.settings.effects))
     text = f"{in_dbm(power):.1f} dBm where nothing hides it"
     if not is_on(case.settings.effects, RAIN_ECHOES, True, ""):

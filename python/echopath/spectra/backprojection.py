@@ -82,19 +82,23 @@ def calibrate(cube: ArrayLike, radar: _core.Radar, position: ArrayLike, *, start
     from which on noise turns corrections by more than 0.07 rad rms.
     """
     cube, points = _checked_cube(cube, radar), np.asarray(position, float)
-    at_rest = radar.replace(position=(0, 0, 0), yaw=0.0, pitch=0.0, motion=None).world_from_radar
     found = np.zeros(cube.shape[:2], np.complex128)
-    for tx, rx, of_chirp in _chirp_images(cube, radar, points, at_rest, start_time, window):
+    for tx, rx, of_chirp in _chirp_images(cube, radar, points, _in_world, start_time, window):
         found[tx, rx] += of_chirp
     if silent := np.argwhere(found == 0).tolist():
         raise ValueError(f"cube: must have an echo of the position {points.tolist()} m in each channel, from where the radar is "
                          f"at the start_time {start_time:g} s, got none in [tx, rx] = {silent[0]}")
     _warn_of_noise(np.min(np.abs(found) ** 2) / _core.cell_noise_power(radar, window))
-    legs = _legs_at(points, radar, at_rest, radar.middle_of_frame(start_time))
+    legs = _legs_at(points, radar, _in_world, radar.middle_of_frame(start_time))
     sent, heard = ([legs(antenna).length for antenna in antennas] for antennas in (radar.transmitters, radar.receivers))
     found *= np.multiply.outer(sent, heard)
     level = np.sqrt(np.mean(np.abs(found) ** 2)) * np.exp(1j * np.angle(found[0, 0]))
     return level / found
+
+
+def _in_world(time: float) -> NDArray[np.float64]:
+    """As `world_from_points` of points that the world's axes tell."""
+    return np.eye(4)
 
 
 def _warn_of_noise(ratio: float) -> None:

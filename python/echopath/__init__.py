@@ -107,7 +107,7 @@ from .scene.sheets import SheetCoefficients, sheet_coefficients
 from .scene.traffic import Traffic, add_traffic
 from .scene_file import SceneFile, load_scene
 from .sensor_files import SensorConfig, load_radar, load_raw, load_sensor, save_raw
-from .sensor_files.antenna_patterns import load_antenna
+from .sensor_files.antennas import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .signals.around_corners import synthesize_around_corners
 from .signals.if_signal import add_noise, noise_power, synthesize

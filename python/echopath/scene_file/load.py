@@ -22,7 +22,7 @@ from ..scene.interferers import Interferer
 from ..scene.large_planes import mark_mirrors
 from ..scene.scene import Scene
 from ..sensor_files import load_radar
-from ..sensor_files.antenna_patterns import load_antenna
+from ..sensor_files.antennas import load_antenna
 from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
 from ..trajectories import Trajectory
@@ -256,7 +256,7 @@ def _pattern(table, folder: Path, key: str):
         if table.kind == "isotropic":
             return _core.Isotropic(gain=table.gain)
         if table.kind == "table":
-            return load_antenna(folder / table.file, normalize=table.normalize)
+            return load_antenna(folder / table.file, normalize=table.normalize, boresight=table.boresight)
         if table.kind == "gaussian_beam":
             return _core.GaussianBeam(azimuth=math.radians(table.azimuth_deg), elevation=math.radians(table.elevation_deg),
                                       peak_gain=table.peak_gain)

@@ -1,4 +1,4 @@
-"""Files of sensors: their configurations, the antennas of their boards, and raw data as they write it."""
+"""Files of sensors: their configurations, the antennas of their boards, patterns, and raw data as they write it."""
 from .load import SensorConfig, load_radar, load_sensor
 from .raw import load_raw, raw_bytes, save_raw
 

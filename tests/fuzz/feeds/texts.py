@@ -17,6 +17,12 @@ DATA = Path(__file__).parents[3] / "data"
 ANTENNA = ("# of a patch\nazimuth_deg,elevation_deg,gain_db,phase_deg\n" +
            "\n".join(f"{azimuth},{elevation},{3 - abs(azimuth) / 20:g},0"
                      for azimuth in (-60, 0, 60) for elevation in (-30, 0, 30)))
+SOLVER = ('Theta [deg.]  Phi   [deg.]  Abs(Dir.)[dBi   ]   Abs(Theta)[dBi   ]\n' + "-" * 60 + "\n" +
+          "\n".join(f"{theta:8.3f} {phi:8.3f} {3 - theta / 20:.3e} -3.0" for phi in (0, 90, 180, 270) for theta in (0, 60, 180)))
+FEKO = ('##File Type: Far Field\n#Result Type: Gain\n#  "Theta"  "Phi"  "Gain(Total)"\n' +
+        "\n".join(f"{theta} {phi} -1" for phi in (0, 120, 240) for theta in (0, 90, 180)))
+CUTS = ("NAME a\nGAIN 1 dBd\nHORIZONTAL 4\n" + "\n".join(f"{angle} {angle % 180 / 10}" for angle in range(0, 360, 90)) +
+        "\nVERTICAL 3\n0 0\n120 9.5\n240.0 9\n")
 RADAR = """title = "a street"
 guard = true
 [radar]
@@ -180,7 +186,7 @@ def feed_antenna():
     """Cases of antenna files: they load, or are refused by ep.FileError."""
     folder = memory_folder()
     texts = [ANTENNA, ANTENNA.replace(",phase_deg", "").replace(",0\n", "\n").removesuffix(",0"),
-             "\n".join((DATA / "antennas" / "patch_77ghz.csv").read_text().split("\n")[:60])]
+             "\n".join((DATA / "antennas" / "patch_77ghz.csv").read_text().split("\n")[:60]), SOLVER, FEKO, CUTS]
 
     def case(number: int) -> None:
         path = _text_case(Path(folder.name), "antenna.csv", texts, Random(f"antenna {number}"))

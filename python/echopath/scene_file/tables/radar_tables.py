@@ -45,8 +45,9 @@ class GaussianBeamTable(Table):
 
 class GainFileTable(Table):
     kind: Literal["table"] = Field(description="gain, and phase where given, sampled over direction")
-    file: str = Field(min_length=1, description="CSV file (echopath.load_antenna), relative to the scene file")
+    file: str = Field(min_length=1, description="file that echopath.load_antenna reads, relative to the scene file")
     normalize: bool = Field(False, description="scales the gain to a mean of 1 over the sphere, as without losses")
+    boresight: Literal["x", "y", "z"] | None = Field(None, description="axis of a file over theta and phi; none: z")
 
 
 PatternTable = Annotated[

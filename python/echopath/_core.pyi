@@ -1719,7 +1719,7 @@ class CfarResult:
     @property
     def factor(self) -> float:
         """
-        power over noise, linear, from which a cell away from the ends of the range axis is found
+        power over noise, linear, from which a cell away from the ends of the range axis is found, in a beam where these are
         """
     @property
     def false_alarm_rate(self) -> float:
@@ -1747,9 +1747,14 @@ class CfarResult:
         [D] W, mean power of the noise about each cell found, as its training cells tell it
         """
     @property
+    def num_beams(self) -> int:
+        """
+        in which each cell was tested, 0: its channels were summed
+        """
+    @property
     def power(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        [velocity, range] W, mean over channels
+        [velocity, range] W, mean over channels; with beams that of the strongest
         """
     @property
     def training(self) -> tuple[int, int]:
@@ -3346,11 +3351,11 @@ def cell_noise_power(radar: Radar, window: typing.Any) -> float:
     """
     Mean power of the receiver's noise in a cell of a range-Doppler map, W.
     """
-def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, noise_shape: collections.abc.Sequence[float] = [], progress: typing.Any = None) -> CfarResult:
+def cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, beams: bool = False, noise_shape: collections.abc.Sequence[float] = [], progress: typing.Any = None) -> CfarResult:
     """
     What ep.cfar calls.
     """
-def check_cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75) -> None:
+def check_cfar(spectrum: RangeDoppler, radar: Radar, *, method: str = 'ca', false_alarm_rate: float = 1e-06, guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None, training_range: int | None = None, rank: float = 0.75, beams: bool = False) -> None:
     """
     Raises what cfar would for these settings, at no cost.
     """
@@ -3400,7 +3405,7 @@ def find_peaks(spectrum: RangeDoppler, radar: Radar, found: CfarResult, progress
 
     found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
     Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
-    channels), velocity_offset, range_offset (cells). Raises ValueError.
+    channels, or of the beam that found the cell), velocity_offset, range_offset (cells). Raises ValueError.
     """
 def first(glob: str) -> Selection:
     """

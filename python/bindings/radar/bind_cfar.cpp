@@ -30,16 +30,16 @@ void def_cfar(py::module_& m, const char* name, const char* doc,
       name,
       [call](const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
              std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
-             std::optional<int> training_range, double rank, Extra... extra) {
+             std::optional<int> training_range, double rank, bool beams, Extra... extra) {
         return call(map, radar,
                     {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
-                     training_range, rank},
+                     training_range, rank, beams},
                     extra...);
       },
       py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
       py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
       py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(), py::arg("training_range") = py::none(),
-      py::arg("rank") = standard.rank, names..., doc);
+      py::arg("rank") = standard.rank, py::arg("beams") = standard.beams, names..., doc);
 }
 
 CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, CfarOptions options, std::vector<double> noise_shape,
@@ -83,6 +83,9 @@ Shape shape_of(const CfarResult& result) { return {result.num_velocities, result
 void check_result(const CfarResult& made) {
   require_shape(made.power, shape_of(made), "power");
   require_shape(made.noise, {std::ssize(made.cells)}, "noise");
+  require(made.num_beams >= 0, "num_beams", "must not be negative", made.num_beams);
+  require(std::ssize(made.beams) == (made.num_beams == 0 ? 0 : std::ssize(made.cells)), "beams",
+          "must be one for each cell, or none where channels were summed", made.beams.size());
   for (const auto& [velocity, range] : made.cells) {
     require(velocity >= 0 && velocity < made.num_velocities, "cells", "must lie in the map", velocity);
     require(range >= 0 && range < made.num_ranges, "cells", "must lie in the map", range);
@@ -116,6 +119,7 @@ void def_cfar_travel(py::class_<CfarResult>& bound) {
                      field("statistic", [](auto& self) -> auto& { return self.factors.statistic; }),
                      field("num_velocities", &CfarResult::num_velocities), field("num_ranges", &CfarResult::num_ranges),
                      field("power", &CfarResult::power), field("cells", &CfarResult::cells),
+                     field("beams", &CfarResult::beams), field("num_beams", &CfarResult::num_beams),
                      array_attribute("noise", &CfarResult::noise,
                                      "[D] W, mean power of the noise about each cell found, as its training cells tell it"));
 }
@@ -125,13 +129,17 @@ void def_cfar_travel(py::class_<CfarResult>& bound) {
 void bind_cfar(py::module_& m) {
   py::class_<CfarResult> bound(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.");
   define_no_init(bound, "ep.cfar");
-  bound.def_property_readonly("power", view_of(&CfarResult::power, &shape_of), "[velocity, range] W, mean over channels")
+  bound
+      .def_property_readonly("power", view_of(&CfarResult::power, &shape_of),
+                             "[velocity, range] W, mean over channels; with beams that of the strongest")
       .def_property_readonly("mask", &mask_of, "[velocity, range] bool, true in the cells found")
       .def_property_readonly("cells", array_of(&CfarResult::cells),
                              "[D, 2] (velocity, range) indices of the cells found, ascending")
       .def_property_readonly(
           "factor", [](const CfarResult& self) { return self.factors.factor.back() * self.factors.statistic; },
-          "power over noise, linear, from which a cell away from the ends of the range axis is found")
+          "power over noise, linear, from which a cell away from the ends of the range axis is found, in a beam where these "
+          "are")
+      .def_readonly("num_beams", &CfarResult::num_beams, "in which each cell was tested, 0: its channels were summed")
       .def_property_readonly(
           "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); }, "\"ca\" or \"os\"")
       .def_property_readonly(
@@ -160,7 +168,7 @@ void bind_cfar(py::module_& m) {
 
 found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
 Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
-channels), velocity_offset, range_offset (cells). Raises ValueError.)");
+channels, or of the beam that found the cell), velocity_offset, range_offset (cells). Raises ValueError.)");
 }
 
 }  // namespace echopath::bindings

@@ -124,7 +124,7 @@ def labels(options) -> None:
                              errors=options.errors)
     with progress_bars() as progress:
         lines = label_file(options.frame, options.out, settings=settings, parts=options.part, progress=progress,
-                           cfar={"method": options.cfar, "false_alarm_rate": options.false_alarm_rate})
+                           cfar={"method": options.cfar, "false_alarm_rate": options.false_alarm_rate, "beams": options.beams})
     print("\n".join(lines))
 
 

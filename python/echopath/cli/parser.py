@@ -144,6 +144,7 @@ def _add_labels(commands) -> None:
                         help="how echoes are detected (default: %(default)s)")
     labels.add_argument("--false-alarm-rate", type=float, default=default_of(cfar, "false_alarm_rate"), metavar="P",
                         help="of a cell of noise (default: %(default)s)")
+    labels.add_argument("--beams", action="store_true", help="tests cells in beams of the array: weaker echoes of large arrays")
     labels.set_defaults(command=work.labels)
 
 

@@ -68,7 +68,7 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
          noise_margin_db=optional(LabelSettings.RULES["noise_margin_db"]), start_time=optional(real(unit="s")))
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
-           training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
+           training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK, beams: bool = False,
            angles: Mapping[str, object] | None = None, paths: _core.Paths | None = None, parts: Mapping[Any, Any] | None = None,
            labels: Labels | None = None, beside: Mapping[Any, Any] | None = None, objects: Objects = None,
            noise_margin_db: float | None = None, start_time: float | None = None, progress: Progress = None) -> Detections:
@@ -82,7 +82,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     chains, filters and imbalance of `radar.receiver` count; images and skirts that it makes of echoes elsewhere are noise.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
-    method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
+    method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;
+        in beams power and noise are those of the beam in which a cell is strongest, and echoes compare with that power
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
     paths: of `trace` with that radar, whatever receiver and noise figure it had: objects, ghosts and the paths behind each
         detection
@@ -111,14 +112,15 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     beside = labelling.maps_of("beside", beside, spectrum, radar)
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
-                 progress=progress)
+                 beams=beams, progress=progress)
     gains = EchoGains(radar, spectrum.range, _start_of(paths) if start_time is None else start_time)
-    warn_of_missing_noise(radar, found.power, gains.of_filters)
+    warn_of_missing_noise(radar, _core.mean_power(spectrum) if beams else found.power, gains.of_filters)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
-    floor = _noise_floor(spectrum, radar, labels, noise_margin_db)
-    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains), echoes, progress)
+    floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
+    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains, beams), echoes,
+                         progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
@@ -134,6 +136,7 @@ class _Makers(NamedTuple):
     objects: object
     noise_floor: float  # W
     gains: EchoGains
+    beams: bool         # whether echoes compare with the power of a beam
 
 
 def _start_of(paths) -> float:
@@ -149,13 +152,14 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 
 def _labels_of(spectrum, cells, power, makers: _Makers, echoes, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; progress: as in `detect`."""
-    paths, parts, labels, beside, objects, noise_floor, gains = makers
+    paths, parts, labels, beside, objects, noise_floor, gains, beams = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
         families, whole = labelling.families_of_cells(of_paths, echoes, cells, gains, noise_floor=noise_floor,
                                                        progress=progress)
-        found.take_families(families, whole, echoes.measured(cells), labelling.resolved_families(paths, of_paths, progress))
+        measured = power if beams else echoes.measured(cells)
+        found.take_families(families, whole, measured, labelling.resolved_families(paths, of_paths, progress))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)
         found.resolved = labelling.resolved_labels(labels)

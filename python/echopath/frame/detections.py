@@ -16,12 +16,12 @@ from .frame import Frame
 @checked(**RULES, frame=an(Frame))
 def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: float = FALSE_ALARM_RATE,
                  guard_velocity: int | None = None, guard_range: int | None = None, training_velocity: int | None = None,
-                 training_range: int | None = None, rank: float = RANK, objects: Objects = None, max_peaks: int = 1,
-                 folds: int = 0, progress: Progress = None) -> Detections:
+                 training_range: int | None = None, rank: float = RANK, beams: bool = False,
+                 objects: Objects = None, max_peaks: int = 1, folds: int = 0, progress: Progress = None) -> Detections:
     """Detections in a frame's map with noise, labelled by its first partition, its objects and the paths behind them.
 
     frame: Frame of `simulate` or `load_frame`
-    method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
+    method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells
     objects: as in `families`
     max_peaks: directions of a cell at most, of radars whose antennas tell directions apart
     folds: velocities beyond those of the map that transmitters in turns ("tdm") tell apart, as in `estimate_angles`: with 3 or 4
@@ -39,7 +39,7 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     settings = {"max_peaks": max_peaks, "folds": folds} if len(_core.virtual_array(frame.radar).elements) > 1 else None
     found = detect(frame.spectrum, frame.radar, method=method, false_alarm_rate=false_alarm_rate,
                    guard_velocity=guard_velocity, guard_range=guard_range, training_velocity=training_velocity,
-                   training_range=training_range, rank=rank, paths=frame.paths, parts=parts,
+                   training_range=training_range, rank=rank, beams=beams, paths=frame.paths, parts=parts,
                    beside=frame.beside_spectra or None, objects=objects, angles=settings,
                    noise_margin_db=_noise_margin_db(frame), progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)

@@ -6,7 +6,19 @@ from typing import Literal
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real, refused
+from ..arguments.checks import (
+    LARGEST_COUNT,
+    ArrayLike,
+    MapWindow,
+    Progress,
+    checked,
+    count,
+    flag,
+    one_of,
+    optional,
+    real,
+    refused,
+)
 from ..arguments.settings import SignalSettings
 from ..transmit.code import is_coded, signal_shape
 from .noise_shape import noise_shape
@@ -17,7 +29,7 @@ _CELLS = optional(count(0, LARGEST_COUNT))
 # Of `cfar` and of what detects by it.
 CFAR_RULES = {"method": one_of(CfarMethod), "false_alarm_rate": real(1e-15, 0.5), "guard_velocity": _CELLS,
               "guard_range": _CELLS, "training_velocity": _CELLS, "training_range": _CELLS,
-              "rank": real(above=0.0, high=1.0)}
+              "rank": real(above=0.0, high=1.0), "beams": flag}
 FALSE_ALARM_RATE, RANK = 1e-6, 0.75
 
 
@@ -55,7 +67,7 @@ def _require_finite(cube: ArrayLike, values: np.ndarray) -> None:
 @checked(**CFAR_RULES)
 def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
          false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
-         training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
+         training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK, beams: bool = False,
          progress: Progress = None) -> _core.CfarResult:
     """Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
 
@@ -75,6 +87,12 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the
         map is small
     rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
+    beams: True tests each cell in beams toward all directions that the array tells apart, in steps of half a beam, instead of the
+        sum of its channels. Noise and clutter are then those of the beam: an echo is found 1 dB lower with 8 channels, 2 dB with
+        32 and 5 dB with 192, and clutter from other directions does not hide it. Between beams an echo loses at most 0.9 dB along
+        each axis of the array. The false-alarm rate of a cell is at most the one asked for, and up to a fifth less, since beams
+        overlap; it is 1e-15 or more for each beam. For transmitters in turns echoes have to be within the axis of velocity, or
+        beams spread. Takes two seconds for 192 channels, 600 beams and 128 x 256 cells
     progress: callable (stage, fraction), True for bars, or None
     Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each
     side, "os" several times that; Ctrl-C is heard.
@@ -82,6 +100,7 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     counted without padding.
     """
     settings = {"method": method, "false_alarm_rate": false_alarm_rate, "rank": rank, "guard_velocity": guard_velocity,
-                "guard_range": guard_range, "training_velocity": training_velocity, "training_range": training_range}
+                "guard_range": guard_range, "training_velocity": training_velocity, "training_range": training_range,
+                "beams": beams}
     _core.check_cfar(spectrum, radar, **settings)  # `noise_shape` takes for granted that map and radar fit
     return _core.cfar(spectrum, radar, **settings, noise_shape=noise_shape(spectrum, radar), progress=progress)

@@ -13,11 +13,9 @@ namespace {
 
 constexpr double kStepsPerBeam = 4.0;            // per wavelength / extent
 constexpr double kLargestElevation = kPi / 4.0;  // of the default grid
-constexpr double kTellingExtent = 0.1;           // wavelengths; directions of less differ by less than the noise of an echo
 constexpr double kEndfire = 0.1;                 // sine between an array's line and the boresights along it
 constexpr double kAligned = 0.01;                // rad, off the direction across its line: antennas that look that way
 constexpr double kMostSteps = 1e5;               // of a default axis, to either side
-constexpr double kMostTerms = 134217728.0;       // of steering vectors: 2 GiB
 
 void require_axis(const std::vector<double>& axis, const char* name, double limit, const char* rule) {
   require(!axis.empty(), name, "must have at least one angle", axis.size());

@@ -18,6 +18,9 @@ struct AngleGrid {
   std::vector<Vec3> directions() const;  // [E, A] unit vectors
 };
 
+inline constexpr double kTellingExtent = 0.1;  // wavelengths; directions of less differ by less than the noise of an echo
+inline constexpr double kMostTerms = 134217728.0;  // elements times directions of steering vectors: 2 GiB
+
 Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
 
 // Return the angles in rad that an array tells apart: azimuths up to +-90 degrees about the direction across the array, on

@@ -6,6 +6,8 @@
 #include "echopath/base/memory/recent_results.h"
 #include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/spectrum/angle/beam_source.h"
+#include "echopath/spectrum/array/covering_directions.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/cfar/training_power.h"
 
@@ -100,23 +102,119 @@ void require_noise_shape(const std::vector<double>& noise_shape, int64_t num_ran
     require(std::isfinite(level) && level > 0.0, "noise_shape", "must have finite values above 0", level);
 }
 
-void detect(CfarResult& result, const std::vector<double>& noise_shape, Job* job) {
+// Holds a cell above its threshold, by its place in a map [V, R].
+struct FoundCell {
+  int64_t place;
+  double noise;
+};
+
+// Returns the cells of a map of powers [V, R] above their thresholds, ascending.
+std::vector<FoundCell> find_in(const CfarResult& result, const std::vector<double>& given,
+                               const std::vector<double>& noise_shape, Job* job) {
   const bool is_shaped = !noise_shape.empty();
-  const std::vector<double> shaped = is_shaped ? over_noise(result.power, noise_shape) : std::vector<double>();
-  const std::vector<double>& power = is_shaped ? shaped : result.power;
+  const std::vector<double> shaped = is_shaped ? over_noise(given, noise_shape) : std::vector<double>();
+  const std::vector<double>& power = is_shaped ? shaped : given;
   TrainingPower training(power, result.num_velocities, result.num_ranges, result.design.cells);
   if (result.design.method == CfarMethod::kCellAveraging) {
     parallel_for(result.num_velocities, [&](int64_t v) { training.prepare_row(v); });
   }
   const Detector detector(result, power, training);
   std::vector<std::vector<Found>> rows(result.num_velocities);
-  if (job) job->start(result.num_velocities);
   parallel_for(result.num_velocities, [&](int64_t v) { rows[v] = detector.row(v); }, job);
+  std::vector<FoundCell> cells;
   for (int64_t v = 0; v < result.num_velocities; ++v) {
     for (const Found& found : rows[v]) {
-      result.cells.push_back({v, found.range});
-      result.noise.push_back(found.noise * (is_shaped ? noise_shape[found.range] : 1.0));
+      const double level = is_shaped ? noise_shape[found.range] : 1.0;
+      cells.push_back({v * result.num_ranges + found.range, found.noise * level});
     }
+  }
+  return cells;
+}
+
+void require_finite(const std::vector<double>& power) {
+  for (const double value : power) {
+    require(std::isfinite(value), "spectrum", "must have values whose power is finite", value);
+  }
+}
+
+void detect_in_sum(CfarResult& result, const RangeDoppler& map, const std::vector<double>& noise_shape, Job* job) {
+  result.power = mean_power(map, job);
+  require_finite(result.power);
+  if (job) job->start(result.num_velocities);
+  for (const FoundCell& cell : find_in(result, result.power, noise_shape, job)) {
+    result.cells.push_back({cell.place / result.num_ranges, cell.place % result.num_ranges});
+    result.noise.push_back(cell.noise);
+  }
+}
+
+// Forms the maps of power of beams from a map of channels, some beams at a time.
+class BeamMaps {
+ public:
+  BeamMaps(const RangeDoppler& map, const Radar& radar)
+      : source_(map, radar, {}), directions_(covering_directions(source_.array())),
+        num_velocities_(std::ssize(map.velocity)), num_ranges_(std::ssize(map.range)) {}
+
+  int64_t num_beams() const { return std::ssize(directions_); }
+  const Vec3& direction(int64_t beam) const { return directions_[beam]; }
+  // Returns how many maps are in memory together, in the place of one for each beam.
+  int64_t num_together() const {
+    return std::clamp(kValuesTogether / (num_velocities_ * num_ranges_), int64_t{1}, num_beams());
+  }
+
+  // Returns the power [V, R] in W of `count` beams from `first` on.
+  std::vector<std::vector<double>> powers(int64_t first, int64_t count, Job* job) const {
+    const BeamKernel beams(source_.array(), {directions_.begin() + first, directions_.begin() + first + count});
+    std::vector<std::vector<double>> maps(count, std::vector<double>(num_velocities_ * num_ranges_));
+    parallel_for(num_velocities_, [&](int64_t v) {
+      for (int64_t begin = 0; begin < num_ranges_; begin += BeamKernel::kColumns) {
+        const int64_t size = std::min(BeamKernel::kColumns, num_ranges_ - begin);
+        BeamKernel::Powers power(count * BeamKernel::kColumns);
+        beams.add_squares(source_.weighted(v, begin, size), Combine::kSum, power);
+        for (int64_t beam = 0; beam < count; ++beam)
+          std::copy_n(&power[beam * BeamKernel::kColumns], size, &maps[beam][v * num_ranges_ + begin]);
+      }
+    }, job);
+    return maps;
+  }
+
+ private:
+  static constexpr int64_t kValuesTogether = 1 << 23;  // 64 MiB
+
+  const BeamSource source_;
+  const std::vector<Vec3> directions_;
+  const int64_t num_velocities_, num_ranges_;
+};
+
+// Holds, for a cell that was found in some beam, the strongest of these.
+struct InBeam {
+  int64_t beam = -1;
+  double power = 0.0, noise = 0.0;
+};
+
+void detect_in_beams(CfarResult& result, const BeamMaps& maps, const std::vector<double>& noise_shape, Job* job) {
+  result.num_beams = maps.num_beams();
+  result.power.assign(result.num_velocities * result.num_ranges, 0.0);
+  std::vector<InBeam> best(result.power.size());
+  if (job) job->start(2 * result.num_beams * result.num_velocities);
+  for (int64_t first = 0; first < result.num_beams; first += maps.num_together()) {
+    const auto powers = maps.powers(first, std::min(maps.num_together(), result.num_beams - first), job);
+    for (size_t i = 0; i < powers.size(); ++i) {
+      require_finite(powers[i]);
+      std::ranges::transform(result.power, powers[i], result.power.begin(),
+                             [](double a, double b) { return std::max(a, b); });
+      for (const FoundCell& cell : find_in(result, powers[i], noise_shape, job)) {
+        const double power = powers[i][cell.place];
+        if (power > best[cell.place].power) best[cell.place] = {first + static_cast<int64_t>(i), power, cell.noise};
+      }
+    }
+  }
+  for (size_t place = 0; place < best.size(); ++place) {
+    if (best[place].beam < 0) continue;
+    const int64_t cell = static_cast<int64_t>(place);
+    result.cells.push_back({cell / result.num_ranges, cell % result.num_ranges});
+    result.noise.push_back(best[place].noise);
+    result.beams.push_back(maps.direction(best[place].beam));
+    result.power[place] = best[place].power;
   }
 }
 
@@ -152,14 +250,22 @@ CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOp
 CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& options, Job* job) {
   CfarResult result;
   result.design = cfar_design(map, radar, options);
-  result.factors = kept_factors(result.design, job);
   result.num_velocities = std::ssize(map.velocity);
   result.num_ranges = std::ssize(map.range);
-  result.power = mean_power(map, job);
-  for (const double power : result.power)
-    require(std::isfinite(power), "spectrum", "must have values whose power is finite", power);
   if (!options.noise_shape.empty()) require_noise_shape(options.noise_shape, result.num_ranges);
-  detect(result, options.noise_shape, job);
+  if (!options.beams) {
+    result.factors = kept_factors(result.design, job);
+    detect_in_sum(result, map, options.noise_shape, job);
+    return result;
+  }
+  const BeamMaps maps(map, radar);
+  require(options.false_alarm_rate >= kLeastRate * static_cast<double>(maps.num_beams()), "false_alarm_rate",
+          "must be at least 1e-15 for each beam", options.false_alarm_rate);
+  CfarDesign of_beam = result.design;
+  of_beam.noise.num_channels = 1;
+  of_beam.false_alarm_rate /= static_cast<double>(maps.num_beams());
+  result.factors = kept_factors(of_beam, job);
+  detect_in_beams(result, maps, options.noise_shape, job);
   return result;
 }
 

@@ -19,6 +19,8 @@ struct CfarOptions {
   double false_alarm_rate = 1e-6;  // of each cell
   std::optional<int> guard_velocity, guard_range, training_velocity, training_range;
   double rank = 0.75;  // kOrderedStatistic: share of the training cells up to the statistic
+  // Tests each cell in beams toward all directions (covering_directions.h), instead of the sum of its channels.
+  bool beams = false;
   // [R] mean power of the noise at each range, in any unit, as the filters of a receiver shape it; empty: alike at all.
   std::vector<double> noise_shape = {};
 };
@@ -27,9 +29,11 @@ struct CfarResult {
   CfarDesign design;  // resolved from the options
   CfarFactors factors;
   int64_t num_velocities = 0, num_ranges = 0;
-  std::vector<double> power;                  // [V, R] W, mean over channels
+  std::vector<double> power;                  // [V, R] W, mean over channels; with beams that of the strongest
   std::vector<std::array<int64_t, 2>> cells;  // [D] (velocity, range) of the cells above their thresholds, ascending
   std::vector<double> noise;                  // [D] W, mean noise power about each cell, from the training cells
+  int64_t num_beams = 0;                      // in which each cell was tested, 0: its channels were summed
+  std::vector<Vec3> beams;                    // [D] with beams: direction of the strongest that is above its threshold
 };
 
 // Finds the cells whose power, summed over all channels, exceeds the threshold that their training cells give for a
@@ -39,6 +43,10 @@ struct CfarResult {
 // Model: noise is independent between channels and alike in all cells, or has the noise shape, by which the power of each
 // cell is divided before it is compared with others. The threshold allows for the correlation that window and zero padding
 // make (cfar_factor.h). For real samples it does not hold within the main lobe of range 0, where the image leaks.
+// With beams, each is a map of one channel, tested at the false-alarm rate over the number of beams: an echo is held against
+// the noise of its own direction, 10 log10(channels) dB lower than that of a channel, and echoes of other directions do not
+// hide it. The rate of a cell is then at most the one asked for, and up to a fifth less, since beams overlap. Time: elements
+// x beams products for each cell, and a CFAR for each beam.
 // Cost per cell: CA takes as many additions as the window has rows, and log2 of its columns; OS counts about a quarter of
 // its training cells. Runs in parallel over velocities; the result does not depend on the number of threads.
 // The thresholds are computed once for each design (the last 8 are kept), at a cost that is cubic in the number of cells of

@@ -218,7 +218,7 @@ int64_t CfarDesign::order() const {
 }
 
 void CfarDesign::validate() const {
-  require(false_alarm_rate >= 1e-15 && false_alarm_rate <= 0.5, "false_alarm_rate", "must be in [1e-15, 0.5]",
+  require(false_alarm_rate >= kLeastRate && false_alarm_rate <= 0.5, "false_alarm_rate", "must be in [1e-15, 0.5]",
           false_alarm_rate);
   require(rank > 0.0 && rank <= 1.0, "rank", "must be above 0 and at most 1", rank);
   require(noise.num_channels >= 1 && noise.num_channels <= kMaxChannels, "spectrum", "must have 1 to 4096 channels",

@@ -8,6 +8,8 @@
 
 namespace echopath {
 
+inline constexpr double kLeastRate = 1e-15;  // of false alarms
+
 enum class CfarMethod { kCellAveraging, kOrderedStatistic };
 
 // Models the noise of a map: circular Gaussian cells, independent between channels, whose correlation is the product of

@@ -1,10 +1,13 @@
 #include "echopath/spectrum/cfar/peaks.h"
 
 #include <cmath>
+#include <complex>
 #include <optional>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/spectrum/array/element_reader.h"
+#include "echopath/spectrum/array/steering.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/tone_offset.h"
 
@@ -12,86 +15,156 @@ namespace echopath {
 namespace {
 
 using Cell = std::array<int64_t, 2>;
+using Fields = std::vector<std::complex<double>>;  // of all channels in one cell, or of one beam
 
+// Finds the places of cells in the maps of channels. The axis of velocity is a circle, that of ranges for complex samples.
+class CellPlaces {
+ public:
+  CellPlaces(const RangeDoppler& map, bool ranges_are_a_circle)
+      : num_velocities_(std::ssize(map.velocity)), num_ranges_(std::ssize(map.range)),
+        ranges_are_a_circle_(ranges_are_a_circle) {}
+
+  int64_t num_velocities() const { return num_velocities_; }
+  int64_t num_ranges() const { return num_ranges_; }
+  int64_t num_cells() const { return num_velocities_ * num_ranges_; }
+  // Returns the cell that these indices mean; none beyond the ends of an axis of ranges that is no circle.
+  std::optional<Cell> cell(int64_t velocity, int64_t range) const {
+    if (!ranges_are_a_circle_ && (range < 0 || range >= num_ranges_)) return {};
+    return Cell{(velocity + num_velocities_) % num_velocities_, (range + num_ranges_) % num_ranges_};
+  }
+  int64_t place(const Cell& cell) const { return cell[0] * num_ranges_ + cell[1]; }
+
+ private:
+  const int64_t num_velocities_, num_ranges_;
+  const bool ranges_are_a_circle_;
+};
+
+// Reads the channels of cells, and their power.
+class ChannelReader {
+ public:
+  ChannelReader(const RangeDoppler& map, const CellPlaces& places, const CfarResult& found)
+      : map_(map), places_(places), power_(found.power) {}
+
+  Fields fields(int64_t, const Cell&, const Cell& other) const {
+    Fields values(map_.num_transmitters * map_.num_receivers);
+    for (size_t c = 0; c < values.size(); ++c)
+      values[c] = map_.values[static_cast<int64_t>(c) * places_.num_cells() + places_.place(other)];
+    return values;
+  }
+  double power(int64_t, const Cell&, const Cell& other) const { return power_[places_.place(other)]; }
+
+ private:
+  const RangeDoppler& map_;
+  const CellPlaces& places_;
+  const std::vector<double>& power_;
+};
+
+// Reads the beam in which a cell was found, also in other cells.
+class BeamReader {
+ public:
+  BeamReader(const RangeDoppler& map, const Radar& radar, const CellPlaces& places, const CfarResult& found)
+      : array_(virtual_array(radar)), reader_(map, array_, radar, Overlaps::kAverage, true), places_(places),
+        directions_(found.beams) {}
+
+  Fields fields(int64_t index, const Cell& cell, const Cell& other) const {
+    Eigen::MatrixXcd values(reader_.num_elements(), 1);
+    // The echo of the cell lies in its neighbours, too, with the phase between slots of its own velocity.
+    const double turns = static_cast<double>(cell[0] - other[0]) / static_cast<double>(places_.num_velocities());
+    reader_.read(other[0], other[1], 1, values, turns);
+    const Eigen::VectorXcd steering = steering_vectors(array_, {directions_[index]}).col(0);
+    return {steering.dot(values.col(0)) / static_cast<double>(reader_.num_elements())};
+  }
+  double power(int64_t index, const Cell& cell, const Cell& other) const {
+    return std::norm(fields(index, cell, other).front());
+  }
+
+ private:
+  const VirtualArray array_;
+  const ElementReader reader_;
+  const CellPlaces& places_;
+  const std::vector<Vec3>& directions_;
+};
+
+// Finds the tops among the cells found, and where between the cells they lie.
+template <class Reader>
 class PeakFinder {
  public:
-  PeakFinder(const RangeDoppler& map, const ChirpSequence& waveform, const std::vector<double>& power)
-      : map_(map), power_(power), num_velocities_(std::ssize(map.velocity)), num_ranges_(std::ssize(map.range)),
-        ranges_are_a_circle_(!waveform.real),
+  PeakFinder(const RangeDoppler& map, const ChirpSequence& waveform, const CellPlaces& places, const Reader& reader,
+             const std::vector<Cell>& cells)
+      : places_(places), reader_(reader), cells_(cells),
         velocity_(window_samples(map.window.velocity, waveform.num_chirps), map.zero_pad),
         range_(window_samples(map.window.range, waveform.num_samples), map.zero_pad) {}
 
-  bool is_top(const Cell& cell) const {
+  bool is_top(int64_t index) const {
+    const Cell& cell = cells_[index];
     if (!tells_velocities() && cell[0] > 0) return false;  // all rows are the same, but for rounding
     const int64_t reach = tells_velocities() ? 1 : 0;
+    const double own = reader_.power(index, cell, cell);
     for (int64_t v = -reach; v <= reach; ++v) {
       for (int64_t r = -1; r <= 1; ++r) {
-        const auto other = index(cell[0] + v, cell[1] + r);
-        const int64_t own = *index(cell[0], cell[1]);
-        if (!other || *other == own) continue;
-        if (power_[*other] > power_[own] || (power_[*other] == power_[own] && *other < own)) return false;
+        const auto other = places_.cell(cell[0] + v, cell[1] + r);
+        if (!other || *other == cell) continue;
+        const double power = reader_.power(index, cell, *other);
+        if (power > own || (power == own && *other < cell)) return false;
       }
     }
     return true;
   }
 
-  double velocity_offset(const Cell& cell) const {
-    return offset(velocity_, cell, index(cell[0] + 1, cell[1]), index(cell[0] - 1, cell[1]), num_velocities_);
-  }
+  double velocity_offset(int64_t index) const { return offset(velocity_, index, {1, 0}, places_.num_velocities()); }
   bool tells_velocities() const { return !velocity_.is_flat(); }
-  double range_offset(const Cell& cell) const {
-    return offset(range_, cell, index(cell[0], cell[1] + 1), index(cell[0], cell[1] - 1), num_ranges_);
-  }
+  double range_offset(int64_t index) const { return offset(range_, index, {0, 1}, places_.num_ranges()); }
   double power_in_cell(double velocity_offset, double range_offset) const {
     return velocity_.power(velocity_offset) * range_.power(range_offset);
   }
 
  private:
-  // Returns the index in a channel's map; none beyond the ends of a range axis that does not wrap around.
-  std::optional<int64_t> index(int64_t velocity, int64_t range) const {
-    if (!ranges_are_a_circle_ && (range < 0 || range >= num_ranges_)) return {};
-    return (velocity + num_velocities_) % num_velocities_ * num_ranges_ + (range + num_ranges_) % num_ranges_;
-  }
-
-  double offset(const ToneOffset& axis, const Cell& cell, std::optional<int64_t> above, std::optional<int64_t> below,
-                int64_t num_cells) const {
+  double offset(const ToneOffset& axis, int64_t index, const Cell& step, int64_t num_cells) const {
+    const Cell& cell = cells_[index];
+    const auto above = places_.cell(cell[0] + step[0], cell[1] + step[1]);
+    const auto below = places_.cell(cell[0] - step[0], cell[1] - step[1]);
     if (num_cells < 3 || !above || !below) return 0.0;
-    const int64_t own = *index(cell[0], cell[1]), size = num_velocities_ * num_ranges_;
-    const int channels = map_.num_transmitters * map_.num_receivers;
-    double up = 0.0, down = 0.0;
-    for (int c = 0; c < channels; ++c) {
-      const std::complex<double>* field = map_.values.data() + c * size;
-      up += (axis.phasor() * field[*above] * std::conj(field[own])).real();
-      down += (std::conj(axis.phasor()) * field[*below] * std::conj(field[own])).real();
-    }
-    const double whole = power_[own] * channels;
+    const Fields own = reader_.fields(index, cell, cell);
+    double whole = 0.0;
+    for (const std::complex<double>& field : own) whole += std::norm(field);
+    const double up = in_phase(axis.phasor(), reader_.fields(index, cell, *above), own);
+    const double down = in_phase(std::conj(axis.phasor()), reader_.fields(index, cell, *below), own);
     return axis.offset(up / whole, down / whole);
   }
 
-  const RangeDoppler& map_;
-  const std::vector<double>& power_;
-  const int64_t num_velocities_, num_ranges_;
-  const bool ranges_are_a_circle_;
+  static double in_phase(std::complex<double> phasor, const Fields& other, const Fields& own) {
+    double sum = 0.0;
+    for (size_t c = 0; c < own.size(); ++c) sum += (phasor * other[c] * std::conj(own[c])).real();
+    return sum;
+  }
+
+  const CellPlaces& places_;
+  const Reader& reader_;
+  const std::vector<Cell>& cells_;
   const ToneOffset velocity_, range_;
 };
 
 // Returns the value moved by whole spans into [first, first + span).
 double folded(double value, double first, double span) { return value - span * std::floor((value - first) / span); }
 
-}  // namespace
-
-Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& found, Job* job) {
-  require_map_of(map, radar);
-  require(found.power.size() == map.velocity.size() * map.range.size(), "found", "must be of the spectrum's cells",
-          found.power.size());
-  const PeakFinder finder(map, radar.waveform, found.power);
+template <class Reader>
+Peaks peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult& found, const CellPlaces& places,
+               const Reader& reader, Job* job) {
+  const PeakFinder finder(map, radar.waveform, places, reader, found.cells);
+  std::vector<char> is_top(found.cells.size());
+  parallel_for(std::ssize(is_top), [&](int64_t i) {
+    if (job) job->throw_if_cancelled();
+    is_top[i] = finder.is_top(i);
+  });
   Peaks peaks;
-  for (size_t i = 0; i < found.cells.size(); ++i) {
-    if (!finder.is_top(found.cells[i])) continue;
+  std::vector<int64_t> tops;
+  for (int64_t i = 0; i < std::ssize(is_top); ++i) {
+    if (!is_top[i]) continue;
+    tops.push_back(i);
     peaks.cells.push_back(found.cells[i]);
     peaks.noise.push_back(found.noise[i]);
   }
-  const int64_t count = std::ssize(peaks.cells);
+  const int64_t count = std::ssize(tops);
   for (auto* values : {&peaks.velocity_offset, &peaks.range_offset, &peaks.velocity, &peaks.range, &peaks.power}) {
     values->resize(count);
   }
@@ -101,14 +174,25 @@ Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& 
   parallel_for(count, [&](int64_t i) {
     if (job) job->throw_if_cancelled();
     const auto [v, r] = peaks.cells[i];
-    const double up = peaks.velocity_offset[i] = finder.velocity_offset(peaks.cells[i]);
-    const double away = peaks.range_offset[i] = finder.range_offset(peaks.cells[i]);
+    const double up = peaks.velocity_offset[i] = finder.velocity_offset(tops[i]);
+    const double away = peaks.range_offset[i] = finder.range_offset(tops[i]);
     const double shown = finder.tells_velocities() ? map.velocity[v] + up * velocity_step : 0.0;
     peaks.velocity[i] = folded(shown, map.velocity.front() - 0.5 * velocity_step, span);
     peaks.range[i] = map.range[r] + away * range_step;
-    peaks.power[i] = found.power[v * std::ssize(map.range) + r] / finder.power_in_cell(up, away);
+    peaks.power[i] = found.power[places.place(peaks.cells[i])] / finder.power_in_cell(up, away);
   });
   return peaks;
+}
+
+}  // namespace
+
+Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& found, Job* job) {
+  require_map_of(map, radar);
+  require(found.power.size() == map.velocity.size() * map.range.size(), "found", "must be of the spectrum's cells",
+          found.power.size());
+  const CellPlaces places(map, !radar.waveform.real);
+  if (found.num_beams == 0) return peaks_of(map, radar, found, places, ChannelReader(map, places, found), job);
+  return peaks_of(map, radar, found, places, BeamReader(map, radar, places, found), job);
 }
 
 }  // namespace echopath

@@ -168,6 +168,7 @@ class DetectionsTable(Table):
     training_velocity: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 4 zero_pad")
     training_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: 8 zero_pad")
     rank: Annotated[float, Field(gt=0, le=1)] = Field(RANK, description="of \"os\", share of the training cells")
+    beams: bool = Field(False, description="tests cells in beams of the array instead of the sum of its channels")
     max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
     folds: int = Field(0, ge=0, description="velocities beyond the map to either side that slots of transmitters tell apart")
 

@@ -115,6 +115,7 @@ from .signals.interference import interference
 from .signals.interference_ways import interference_radar
 from .signals.measures import power_by_chirp
 from .signals.parts import Parts, decompose
+from .signals.point_targets import point_targets
 from .spectra.angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array
 from .spectra.backprojection import backproject, calibrate
 from .spectra.clutter_removal import remove_clutter
@@ -154,6 +155,7 @@ __all__ = [
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",
     "load_model", "load_radar", "load_raw", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",
     "mesh_from", "mie_rcs", "music", "noise_power", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots",
+    "point_targets",
     "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
     "receive_parts",
     "received_power", "received_powers", "remove_clutter", "renew", "save_frame", "save_label_images", "save_labels",

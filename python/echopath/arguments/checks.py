@@ -78,12 +78,12 @@ def progress(argument: str, value):
     """None, a callable (stage, fraction), or True for bars."""
     if value is None or isinstance(value, bool):
         return value
-    if isinstance(value, type) or not callable(value) or not _takes(value, "stage", 0.0):
+    if isinstance(value, type) or not callable(value) or not takes(value, "stage", 0.0):
         raise refused(TypeError, argument, "a callable (stage, fraction), True or None", value)
     return value
 
 
-def _takes(function: Callable[..., object], *values: object) -> bool:
+def takes(function: Callable[..., object], *values: object) -> bool:
     """Whether a function may be called with these values, as far as its signature is known."""
     try:
         inspect.signature(function).bind(*values)

@@ -11,8 +11,7 @@ from .. import _core
 from ..arguments.checks import Progress, checked, count, real
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
-from ..base.numerics.rotations import matrices
-from ..base.radar.antennas import polarization_of
+from ..base.radar.antennas import field_toward, polarization_of
 from ..base.radar.chirps import start_with_middle
 from ..base.text.mesh_names import object_of
 from ..paths.absent import NO_MESH
@@ -22,7 +21,6 @@ from ..scene.lifetimes import scene_in_frame
 from .traces import trace
 
 NUM_POINTS = 256  # of an object's surface that are looked at
-LEAST_LENGTH = 1e-12  # m: a way that is shorter has no direction
 
 
 @made_by("ep.around_corners")
@@ -117,7 +115,7 @@ def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
         return []
     places = np.concatenate([one.points.at(scene, time) for one in facing])  # together: each search finds the scene's edges anew
     ways = [ways_to(scene, radar, end, places, time, progress=progress) for end in _first_antennas(radar)]
-    straight = np.prod([np.abs(_pattern_toward(radar, end, places, time)) ** 2 for end in _first_antennas(radar)], axis=0)
+    straight = np.prod([np.abs(field_toward(radar, end, places, time)) ** 2 for end in _first_antennas(radar)], axis=0)
     stops = np.cumsum([len(one.points) for one in facing])
     spans = [slice(stop - len(one.points), stop) for one, stop in zip(facing, stops)]
     found = [_hidden(one, [{key: values[span] for key, values in way.items()} for way in ways], straight[span])
@@ -190,15 +188,7 @@ def ways_to(scene, radar, antenna, points, time, *, edges=True, progress=None) -
                                    polarization=rotation @ polarization_of(antenna), points=points, edges=edges,
                                    progress=progress)
     ahead = np.where((ways["mesh_id"] == NO_MESH)[:, None], points, ways["point"])
-    return ways | {"pattern": _pattern_toward(radar, antenna, ahead, time)}
-
-
-def _pattern_toward(radar, antenna, points, time) -> np.ndarray:
-    """[N], complex: the root of an antenna's gain, with its phase, toward points [N, 3] in m at a time in s."""
-    world_from_radar = radar.world_from_radar(time)
-    away = (points - world_from_radar[:3, 3]) @ world_from_radar[:3, :3] - antenna.position
-    away /= np.maximum(np.linalg.norm(away, axis=1), LEAST_LENGTH)[:, None]
-    return antenna.pattern.field(away @ matrices(antenna.orientation))
+    return ways | {"pattern": field_toward(radar, antenna, ahead, time)}
 
 
 def level_of(alone, radar, time, num_rays, progress=None) -> Interval:

@@ -37,7 +37,7 @@ def synthesize_slots(paths: _core.Paths, radar: _core.Radar, **settings) -> np.n
     require_frame("radar", radar, paths.frame.start_time)
     if not has_steps(radar):
         return _core.synthesize(paths, radar, **settings)
-    return _by_kind_of_chirp(radar, lambda one: [{0: _core.synthesize(paths, one, **_without_probe(settings))}])[0][0]
+    return by_kind_of_chirp(radar, lambda one: [{0: _core.synthesize(paths, one, **_without_probe(settings))}])[0][0]
 
 
 def decompose_slots(paths: _core.Paths, radar: _core.Radar, groupings: list[_core.Grouping], **settings) -> list[dict]:
@@ -45,14 +45,14 @@ def decompose_slots(paths: _core.Paths, radar: _core.Radar, groupings: list[_cor
     require_frame("radar", radar, paths.frame.start_time)
     if not has_steps(radar):
         return _core.decompose(paths, radar, groupings, **settings)
-    return _by_kind_of_chirp(radar, lambda one: _core.decompose(paths, one, groupings, **_without_probe(settings)))
+    return by_kind_of_chirp(radar, lambda one: _core.decompose(paths, one, groupings, **_without_probe(settings)))
 
 
 def _without_probe(settings: dict) -> dict:
     return {name: value for name, value in settings.items() if name != "probe"}
 
 
-def _by_kind_of_chirp(radar: _core.Radar, cubes_of: Callable[[_core.Radar], list[dict]]) -> list[dict]:
+def by_kind_of_chirp(radar: _core.Radar, cubes_of: Callable[[_core.Radar], list[dict]]) -> list[dict]:
     """Tables of cubes, of which each chirp is that of a radar all of whose chirps are of its kind."""
     made = []
     for plain, tx, chirp in _kinds_of_chirp(radar):

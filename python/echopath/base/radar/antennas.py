@@ -11,6 +11,7 @@ from ..numerics.rotations import matrices
 NO_PART = 1e-9       # of a polarisation: what rounding leaves of its part across a way along it
 CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
 ALL_AROUND = 1e-6    # length of a mean of unit vectors that has no direction
+LEAST_LENGTH = 1e-12  # m: a way that is shorter has no direction
 
 
 def centre_of(radar):
@@ -36,6 +37,14 @@ def velocity_of_antennas(radar, time: float):
     """[3] m/s, in the world at a time in s, of `centre_of`: with what the turning of the radar's frame adds."""
     rate = radar_rate(radar, time)
     return rate[:3, :3] @ centre_of(radar) + rate[:3, 3]
+
+
+def field_toward(radar, antenna, points, time: float):
+    """[N], complex: the root of an antenna's gain, with its phase, toward points [N, 3] in m in the world at a time in s."""
+    world_from_radar = radar.world_from_radar(time)
+    away = (points - world_from_radar[:3, 3]) @ world_from_radar[:3, :3] - antenna.position
+    away /= np.maximum(np.linalg.norm(away, axis=1), LEAST_LENGTH)[:, None]
+    return antenna.pattern.field(away @ matrices(antenna.orientation))
 
 
 def look_of(antenna) -> tuple:

@@ -147,3 +147,15 @@ def test_detections_of_a_frame_in_beams_know_who_made_them():
     assert found.object.tolist() == ["ball"] and not found.is_noise[0]
     assert found.azimuth[0] == pytest.approx(np.arctan2(4.0, distance), abs=0.02)
     assert len(ep.detect_frame(frame)) == 0
+
+
+def test_keywords_of_a_frame_ask_for_beams():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(20.0, 2.0, 0.0), smooth=True)
+    radar = ep.Radar(WAVEFORM, transmitters=antennas(1), receivers=antennas(4), transmit_power=1.0)
+    frame = ep.simulate(scene, radar, num_rays=2000, detections={"beams": True, "false_alarm_rate": 1e-4}, noise_seed=1)
+    spectrum = frame.spectrum
+    alone = ep.detect(spectrum, radar, beams=True, false_alarm_rate=1e-4)
+    np.testing.assert_array_equal(frame.detections.cells, alone.cells)
+    np.testing.assert_array_equal(frame.detections.noise, alone.noise)
+    assert not np.array_equal(ep.detect(spectrum, radar, false_alarm_rate=1e-4).noise[:1], alone.noise[:1])

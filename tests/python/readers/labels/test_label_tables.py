@@ -141,7 +141,7 @@ def test_commands_write_labels(scene_path, tmp_path, capsys):
     assert (tmp_path / "run" / "label_maps" / "parts_power.json").exists()
     arguments = ["labels", str(tmp_path / "run" / "frame.h5"), "--out", str(tmp_path / "more"), "--part", "near=T . R",
                  "--object", "person = pers*", "--dynamic-range", "30"]
-    assert main([*arguments, "--cfar", "os", "--false-alarm-rate", "1e-3"]) == 0
+    assert main([*arguments, "--cfar", "os", "--false-alarm-rate", "1e-3", "--beams"]) == 0
     told = capsys.readouterr().out
     assert "detections, detections.csv" in told and len((tmp_path / "more" / "detections.csv").read_text().splitlines()) > 1
     assert "cells labelled, choice 2" in told and "hidden by" in told and "van 100%" in told

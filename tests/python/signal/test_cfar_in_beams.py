@@ -159,3 +159,13 @@ def test_keywords_of_a_frame_ask_for_beams():
     np.testing.assert_array_equal(frame.detections.cells, alone.cells)
     np.testing.assert_array_equal(frame.detections.noise, alone.noise)
     assert not np.array_equal(ep.detect(spectrum, radar, false_alarm_rate=1e-4).noise[:1], alone.noise[:1])
+
+
+def test_arrays_of_too_many_beams_and_rates_too_small_are_refused():
+    scattered = np.random.default_rng(1).uniform(-1.0, 1.0, (5, 2))  # m: hundreds of wavelengths
+    wide = ep.Radar(WAVEFORM, transmitters=antennas(1), receivers=[ep.Antenna((0.0, *place)) for place in scattered])
+    with pytest.raises(ValueError, match="^radar: must have an array of at most 131,072 beams to test cells in all of them, got"):
+        ep.cfar(ep.range_doppler(noise(wide, 1), wide), wide, beams=True)
+    line = ep.Radar(WAVEFORM, transmitters=antennas(1), receivers=antennas(8))
+    with pytest.raises(ValueError, match="^false_alarm_rate: must be at least 1e-15 for each beam, got 1e-15"):
+        ep.cfar(ep.range_doppler(noise(line, 1), line), line, beams=True, false_alarm_rate=1e-15)

@@ -10,6 +10,7 @@ namespace echopath {
 namespace {
 
 constexpr int kStepsPerWidth = 2;
+constexpr double kMostBeams = 131072.0;
 constexpr double kRounding = 1e-6;  // of a step: antennas half a wavelength apart have one along their line
 
 // Holds direction cosines along one axis, in equal steps.
@@ -39,8 +40,7 @@ Cosines free_cosines(const VirtualArray& array, const Vec3& axis) {
   }
   const double extent = (high - low) / array.wavelength;
   if (extent < kTellingExtent) return {axis};
-  const double half = std::ceil(kStepsPerWidth * (extent + 0.5));
-  require(half <= kMostTerms, "radar", "must have a smaller array for beams over all directions, wavelengths", extent);
+  const double half = std::min(std::ceil(kStepsPerWidth * (extent + 0.5)), kMostBeams);
   return {axis, 1.0 / half, -static_cast<int>(half), static_cast<int>(half)};
 }
 
@@ -62,9 +62,8 @@ std::vector<Vec3> covering_directions(const VirtualArray& array) {
                                : free_cosines(array, Vec3::UnitZ().cross(ahead));
   const Cosines rows = grid ? grid_cosines(grid->row_axis, grid->num_rows, grid->row_spacing / array.wavelength)
                             : free_cosines(array, Vec3::UnitZ());
-  const double terms = static_cast<double>(columns.count()) * static_cast<double>(rows.count() * std::ssize(array.elements));
-  require(terms <= kMostTerms, "radar",
-          "must have a smaller array for beams over all directions: at most 134,217,728 directions times elements", terms);
+  const double count = static_cast<double>(columns.count()) * static_cast<double>(rows.count());
+  require(count <= kMostBeams, "radar", "must have an array of at most 131,072 beams to test cells in all of them", count);
   std::vector<Vec3> directions;
   for (int r = rows.first; r <= rows.last; ++r) {
     for (int c = columns.first; c <= columns.last; ++c) {

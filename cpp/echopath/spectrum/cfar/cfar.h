@@ -45,8 +45,8 @@ struct CfarResult {
 // make (cfar_factor.h). For real samples it does not hold within the main lobe of range 0, where the image leaks.
 // With beams, each is a map of one channel, tested at the false-alarm rate over the number of beams: an echo is held against
 // the noise of its own direction, 10 log10(channels) dB lower than that of a channel, and echoes of other directions do not
-// hide it. The rate of a cell is then at most the one asked for, and up to a fifth less, since beams overlap. Time: elements
-// x beams products for each cell, and a CFAR for each beam.
+// hide it. The rate of a cell is then at most the one asked for, and less since beams overlap: up to a fifth for filled
+// arrays, by half for sparse rectangles. Time: elements x beams products for each cell, and a CFAR for each beam.
 // Cost per cell: CA takes as many additions as the window has rows, and log2 of its columns; OS counts about a quarter of
 // its training cells. Runs in parallel over velocities; the result does not depend on the number of threads.
 // The thresholds are computed once for each design (the last 8 are kept), at a cost that is cubic in the number of cells of

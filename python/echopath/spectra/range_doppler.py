@@ -92,7 +92,8 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
         32 and 5 dB with 192, and clutter from other directions does not hide it. Between beams an echo loses at most 0.9 dB along
         each axis of the array. The false-alarm rate of a cell is at most the one asked for, and less since beams overlap: up to a
         fifth for filled arrays, by half for sparse rectangles; it is 1e-15 or more for each beam, of at most 131,072. For
-        transmitters in turns echoes have to be within the axis of velocity, or beams spread. Takes two seconds for 192 channels, 600 beams and 128 x 256 cells
+        transmitters in turns echoes have to be within the axis of velocity, or beams spread. Takes two seconds for 192 channels,
+        600 beams and 128 x 256 cells
     progress: callable (stage, fraction), True for bars, or None
     Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each
     side, "os" several times that; Ctrl-C is heard.

@@ -6,9 +6,8 @@
 #include "echopath/base/memory/recent_results.h"
 #include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
-#include "echopath/spectrum/angle/beam_source.h"
-#include "echopath/spectrum/array/covering_directions.h"
 #include "echopath/spectrum/array/tdm.h"
+#include "echopath/spectrum/cfar/beam_maps.h"
 #include "echopath/spectrum/cfar/training_power.h"
 
 namespace echopath {
@@ -147,44 +146,6 @@ void detect_in_sum(CfarResult& result, const RangeDoppler& map, const std::vecto
   }
 }
 
-// Forms the maps of power of beams from a map of channels, some beams at a time.
-class BeamMaps {
- public:
-  BeamMaps(const RangeDoppler& map, const Radar& radar)
-      : source_(map, radar, {}), directions_(covering_directions(source_.array())),
-        num_velocities_(std::ssize(map.velocity)), num_ranges_(std::ssize(map.range)) {}
-
-  int64_t num_beams() const { return std::ssize(directions_); }
-  const Vec3& direction(int64_t beam) const { return directions_[beam]; }
-  // Returns how many maps are in memory together, in the place of one for each beam.
-  int64_t num_together() const {
-    return std::clamp(kValuesTogether / (num_velocities_ * num_ranges_), int64_t{1}, num_beams());
-  }
-
-  // Returns the power [V, R] in W of `count` beams from `first` on.
-  std::vector<std::vector<double>> powers(int64_t first, int64_t count, Job* job) const {
-    const BeamKernel beams(source_.array(), {directions_.begin() + first, directions_.begin() + first + count});
-    std::vector<std::vector<double>> maps(count, std::vector<double>(num_velocities_ * num_ranges_));
-    parallel_for(num_velocities_, [&](int64_t v) {
-      for (int64_t begin = 0; begin < num_ranges_; begin += BeamKernel::kColumns) {
-        const int64_t size = std::min(BeamKernel::kColumns, num_ranges_ - begin);
-        BeamKernel::Powers power(count * BeamKernel::kColumns);
-        beams.add_squares(source_.weighted(v, begin, size), Combine::kSum, power);
-        for (int64_t beam = 0; beam < count; ++beam)
-          std::copy_n(&power[beam * BeamKernel::kColumns], size, &maps[beam][v * num_ranges_ + begin]);
-      }
-    }, job);
-    return maps;
-  }
-
- private:
-  static constexpr int64_t kValuesTogether = 1 << 23;  // 64 MiB
-
-  const BeamSource source_;
-  const std::vector<Vec3> directions_;
-  const int64_t num_velocities_, num_ranges_;
-};
-
 // Holds, for a cell that was found in some beam, the strongest of these.
 struct InBeam {
   int64_t beam = -1;
@@ -195,7 +156,8 @@ void detect_in_beams(CfarResult& result, const BeamMaps& maps, const std::vector
   result.num_beams = maps.num_beams();
   result.power.assign(result.num_velocities * result.num_ranges, 0.0);
   std::vector<InBeam> best(result.power.size());
-  if (job) job->start(2 * result.num_beams * result.num_velocities);
+  const int64_t num_turns = (result.num_beams + maps.num_together() - 1) / maps.num_together();
+  if (job) job->start((num_turns + result.num_beams) * result.num_velocities);
   for (int64_t first = 0; first < result.num_beams; first += maps.num_together()) {
     const auto powers = maps.powers(first, std::min(maps.num_together(), result.num_beams - first), job);
     for (size_t i = 0; i < powers.size(); ++i) {

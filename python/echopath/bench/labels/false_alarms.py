@@ -11,6 +11,7 @@ import echopath as ep
 NUM_CHIRPS, NUM_SAMPLES = 128, 512
 RATES = (1e-3, 1e-4)
 TARGET = 0.1      # of the rate, and what the count scatters by
+OF_BEAMS = 0.2    # of the rate, by which tests in beams may have less: they overlap
 SIGMAS = 3.0
 MAIN_LOBE = 5     # cells of an unpadded map that the windows here do not exceed, rectangle to Chebyshev of 80 dB
 
@@ -25,16 +26,18 @@ class NoiseMap:
     transmitters: int = 1
     real: bool = False
     low_pass: float | None = None  # Hz, of the filter of the receiver
+    beams: bool = False            # tested in beams
 
     def __str__(self) -> str:
         kind = (", real" if self.real else "") + (", TDM" if self.transmitters > 1 else "")
         kind += "" if self.low_pass is None else f", {1e-6 * self.low_pass:g} MHz"
+        kind += ", beams" if self.beams else ""
         return f"{self.window}, padded {self.zero_pad}, {self.receivers * self.transmitters} channels{kind}"
 
 
 MAPS = (NoiseMap("rect"), NoiseMap("hann"), NoiseMap("hann", zero_pad=2), NoiseMap("hann", receivers=4),
         NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True),
-        NoiseMap("hann", receivers=4, low_pass=8e6))
+        NoiseMap("hann", receivers=4, low_pass=8e6), NoiseMap("hann", receivers=8, beams=True))
 
 
 def measure_false_alarms(num_cells: int = 10_000_000, *, maps=MAPS, rates=RATES) -> list[dict]:
@@ -43,7 +46,8 @@ def measure_false_alarms(num_cells: int = 10_000_000, *, maps=MAPS, rates=RATES)
     num_cells: at least, for each row; maps: NoiseMap of each row; rates: of false alarms
     Of real samples the cells within the main lobe of range 0 are left out, where the image leaks.
     Returns rows {map, method, rate, cells, false_alarms, ratio, standard_error, holds}: ratio is that of the false alarms
-    per cell to the rate, with its standard error from the scatter between maps; holds: within 10 % and three of these.
+    per cell to the rate, with its standard error from the scatter between maps; holds: within 10 % and three of these, of
+    beams also up to 20 % below.
     """
     return [row for of_map in maps for row in _measure(num_cells, of_map, rates)]
 
@@ -66,12 +70,14 @@ def _measure(num_cells: int, of_map: NoiseMap, rates) -> list[dict]:
         spectrum = _noise(radar, of_map, seed)
         first = MAIN_LOBE * of_map.zero_pad if of_map.real else 0
         for (method, rate), counts in found.items():
-            cfar = ep.cfar(spectrum, radar, method=method, false_alarm_rate=rate)
+            cfar = ep.cfar(spectrum, radar, method=method, false_alarm_rate=rate, beams=of_map.beams)
             counts.append(np.count_nonzero(cfar.cells[:, 1] >= first))
         cells += len(spectrum.velocity) * (len(spectrum.range) - first)
         if cells >= num_cells and seed > 0:
             break
-    return [{"map": str(of_map)} | _row(method, rate, np.array(counts), cells) for (method, rate), counts in found.items()]
+    least = 1.0 - TARGET - (OF_BEAMS if of_map.beams else 0.0)
+    return [{"map": str(of_map)} | _row(method, rate, np.array(counts), cells, least)
+            for (method, rate), counts in found.items()]
 
 
 def _noise(radar, of_map: NoiseMap, seed: int):
@@ -80,11 +86,12 @@ def _noise(radar, of_map: NoiseMap, seed: int):
     return ep.range_doppler(cube, radar, window=of_map.window, zero_pad=of_map.zero_pad)
 
 
-def _row(method: str, rate: float, counts, cells: int) -> dict:
+def _row(method: str, rate: float, counts, cells: int, least: float) -> dict:
     ratio = float(counts.sum() / (rate * cells))
     error = float(np.sqrt(len(counts)) * counts.std(ddof=1) / (rate * cells))
     return {"method": method, "rate": rate, "cells": cells, "false_alarms": int(counts.sum()), "ratio": ratio,
-            "standard_error": error, "holds": bool(abs(ratio - 1.0) <= TARGET + SIGMAS * error)}
+            "standard_error": error,
+            "holds": bool(least - SIGMAS * error <= ratio <= 1.0 + TARGET + SIGMAS * error)}
 
 
 def _radar(of_map: NoiseMap) -> ep.Radar:

@@ -161,6 +161,38 @@ def test_what_quaternions_turn_about_a_pivot_goes_round_it(tmp_path):
         assert np.allclose(scene.world_vertices(0, code / 10), wanted, atol=6e-3), code  # 6 m (1 - cos 2.5 degrees)
 
 
+def transform_of_usd(tmp_path, path: str, code: float) -> np.ndarray:
+    """[4, 4] world from prim, by the library of USD."""
+    stage = Usd.Stage.Open(str(tmp_path / "stage.usda"))
+    return np.array(UsdGeom.XformCache(code).GetLocalToWorldTransform(stage.GetPrimAtPath(path))).T
+
+
+def test_what_has_very_many_samples_moves_through_all_of_them(tmp_path):
+    """A vehicle of 10 minutes at 10 codes a second, which stood still behind the 5000th sample, and two that stand on it."""
+    samples = ", ".join(f"{code}: ({code}, 0, 0)" for code in range(6001))
+    places = ", ".join(f"{code}: [({code}, 1, 0), ({code}, 2, 0)]" for code in range(6001))
+    _, scene = loaded(tmp_path, f'def Mesh "cart"\n{{\n{TRIANGLE}    double3 xformOp:translate.timeSamples = {{ {samples} }}\n'
+                      '    uniform token[] xformOpOrder = ["xformOp:translate"]\n}\ndef PointInstancer "riders"\n{\n'
+                      f"    point3f[] positions.timeSamples = {{ {places} }}\n    int[] protoIndices = [0, 0]\n"
+                      f'    rel prototypes = </riders/body>\n    def Mesh "body"\n    {{\n{TRIANGLE}    }}\n}}\n')
+    for code in (4900, 5100, 5999):
+        cart, *riders = (scene.world_vertices(mesh.id, code / 10)[0] for mesh in scene.meshes)
+        assert np.allclose(cart, transform_of_usd(tmp_path, "/cart", code)[:3, 3])
+        assert np.allclose(riders, [[code, 1, 0], [code, 2, 0]])
+
+
+@pytest.mark.parametrize("num_codes, turns", [(2, 3000.0), (4000, 2.5)])
+def test_rotors_turn_as_fast_as_the_stage_says(tmp_path, num_codes, turns):
+    """Turns between two samples, many in one step or some in each of many: of all but 5000 steps they were taken for fewer."""
+    step = 50
+    samples = ", ".join(f"{step * index}: {360.0 * turns * index}" for index in range(num_codes))
+    _, scene = loaded(tmp_path, f'def Mesh "rotor"\n{{\n{TRIANGLE}    double xformOp:rotateZ.timeSamples = {{ {samples} }}\n'
+                      '    uniform token[] xformOpOrder = ["xformOp:rotateZ"]\n}\n')
+    for code in (0.0, 0.003, 13.37, 49.9):
+        wanted = transform_of_usd(tmp_path, "/rotor", code)[:3, 0]
+        assert np.allclose(scene.world_vertices(0, code / 10)[1], wanted, atol=SINGLE), code
+
+
 @pytest.mark.parametrize("deforms", [False, True])
 def test_the_time_of_the_scene_is_that_of_the_stage_after_its_start(tmp_path, deforms):
     """The stage starts with code 5, 10 of which are 1 s; what moves does so from 0.5 s before that to 1.5 s behind it."""

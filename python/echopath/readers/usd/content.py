@@ -12,7 +12,7 @@ from ..tree import MAX_NODES, Tree
 from .skeletons import Skeletons
 from .stage import Timeline, changes_visibility, is_left_out
 from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, numbers, surface_of
-from .transforms import sampled_transforms
+from .transforms import MOST_SAMPLES, sampled_transforms
 
 NO_NODES = ("Material", "Shader", "NodeGraph")  # types of prims without surfaces below them: others name what is there
 MAX_DEPTH = 200         # of instances within instances
@@ -38,9 +38,9 @@ class Content:
         codes = set(self._skeletons.time_codes())
         for prim in self._pxr.Usd.PrimRange(self._stage.GetPseudoRoot(), self._pxr.Usd.TraverseInstanceProxies()):
             if prim.IsA(self._pxr.UsdGeom.Xformable):
-                codes |= set(self._pxr.UsdGeom.Xformable(prim).GetTimeSamples()[:100_000])
+                codes |= set(self._pxr.UsdGeom.Xformable(prim).GetTimeSamples()[:MOST_SAMPLES])
             if prim.IsA(self._pxr.UsdGeom.Mesh):
-                codes |= set(self._pxr.UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples()[:100_000])
+                codes |= set(self._pxr.UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples()[:MOST_SAMPLES])
         return self._timeline.usable(codes)
 
     def add_all(self, clock: Clock | None) -> None:
@@ -85,6 +85,8 @@ class Content:
         """(placement, motion or None) of a prim; None, counted, where it flattens space."""
         xformable, animated = self._pxr.UsdGeom.Xformable(prim), self._clock is not None
         codes, matrices = sampled_transforms(xformable, self._time, self._timeline, animated)
+        if len(codes) >= MOST_SAMPLES:
+            self._tree.count(f"a prim that needs more than {MOST_SAMPLES} samples stays where the last of these has it")
         matrices = self._axes.matrices(matrices)
         if not np.isfinite(matrices).all() or np.abs(matrices).max() > 1e60 or (np.linalg.det(matrices[:, :3, :3]) == 0.0).any():
             self._tree.count("a prim whose transform flattens it, or is not finite, is left out")
@@ -207,7 +209,9 @@ class Content:
         """(time codes [T], transforms [T, N, 4, 4] without those of the prototypes, None where something is wrong)."""
         attributes = (instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr())
         codes = self._timeline.usable(code for attribute in attributes for code in attribute.GetTimeSamples())
-        codes = codes[:5000] if len(codes) > 1 and self._clock is not None else [self._time]
+        codes = codes if len(codes) > 1 and self._clock is not None else [self._time]
+        if 16 * len(codes) * count > MAX_VALUES:
+            raise _core.FileError(f"{self._path}: {instancer.GetPath()} has more than {MAX_VALUES} values over time")
         found = []
         for code in codes:
             values = instancer.ComputeInstanceTransformsAtTime(code, code, self._pxr.UsdGeom.PointInstancer.ExcludeProtoXform,

@@ -5,18 +5,18 @@ import numpy as np
 
 from .stage import Timeline, matrix
 
-STEP_DEG = 5.0       # that a prim may turn between two samples
-MOST_SAMPLES = 5000  # of one prim
+STEP_DEG, COARSEST_DEG = 5.0, 60.0  # that a prim may turn between two samples, and where these would be more than MANY_SAMPLES
+MANY_SAMPLES, MOST_SAMPLES = 5000, 100_000  # of one prim
 
 
 def sampled_transforms(xformable, time, timeline: Timeline, animated: bool) -> tuple[list[float], np.ndarray]:
     """(time codes [T], transforms [T, 4, 4] relative to the parent) of a prim; one at `time` for a prim at rest, and for any
-    where nothing is animated."""
+    where nothing is animated. Of samples the first MOST_SAMPLES count."""
     codes = timeline.usable(xformable.GetTimeSamples())
     if len(codes) < 2 or not animated:
         at = codes[0] if len(codes) == 1 else time
         return [0.0], matrix(xformable.GetLocalTransformation(at))[None]
-    codes = _refined(xformable, codes[:MOST_SAMPLES])
+    codes = _refined(xformable, codes[:MOST_SAMPLES])[:MOST_SAMPLES]
     return codes, np.stack([matrix(xformable.GetLocalTransformation(code)) for code in codes])
 
 
@@ -26,9 +26,10 @@ def _refined(xformable, codes: list[float]) -> list[float]:
     change = sum((_turns(op, codes) for op in turning), np.zeros(len(codes) - 1))
     if not change.any():
         return codes
+    fine = np.clip(np.ceil(change / STEP_DEG), 1, max(1, MANY_SAMPLES // len(codes)))
     refined = [codes[0]]
-    for before, after, turned in zip(codes, codes[1:], change):
-        steps = int(np.clip(np.ceil(turned / STEP_DEG), 1, max(1, MOST_SAMPLES // len(codes))))
+    for before, after, steps in zip(codes, codes[1:], np.maximum(fine, np.ceil(change / COARSEST_DEG))):
+        steps = int(min(steps, MOST_SAMPLES))
         refined += [before + (after - before) * step / steps for step in range(1, steps + 1)]
     return refined
 

@@ -193,6 +193,23 @@ def test_rotors_turn_as_fast_as_the_stage_says(tmp_path, num_codes, turns):
         assert np.allclose(scene.world_vertices(0, code / 10)[1], wanted, atol=SINGLE), code
 
 
+def test_instances_have_the_materials_that_are_bound_above_them(tmp_path):
+    """All had that of the first one."""
+    names = ("wood", "metal", "glass")
+    looks = "".join(f'    def Material "{name}"\n    {{\n    }}\n' for name in names)
+    subset = ('        def GeomSubset "door"\n        {\n            uniform token elementType = "face"\n'
+              '            uniform token familyName = "materialBind"\n            int[] indices = [0]\n        }\n')
+    corners = TRIANGLE.replace("[3]", "[3, 3]").replace("[0, 1, 2]", "[0, 1, 2, 0, 2, 1]")
+    text = f'def Scope "Looks"\n{{\n{looks}}}\nclass "house"\n{{\n    def Mesh "wall"\n    {{\n{corners}{subset}    }}\n}}\n'
+    for name in names:
+        text += (f'def Xform "{name}_house" (\n    prepend apiSchemas = ["MaterialBindingAPI"]\n    instanceable = true\n'
+                 f"    references = </house>\n)\n{{\n    rel material:binding = </Looks/{name}>\n}}\n")
+    surfaces = [node for node in loaded(tmp_path, text)[0].nodes if node.mesh]
+    wanted = [(name, part) for name in names for part in ("door", "rest")]
+    assert [(node.foreign_material, node.name) for node in surfaces] == wanted
+    assert len({id(node.mesh) for node in surfaces}) == 2
+
+
 @pytest.mark.parametrize("deforms", [False, True])
 def test_the_time_of_the_scene_is_that_of_the_stage_after_its_start(tmp_path, deforms):
     """The stage starts with code 5, 10 of which are 1 s; what moves does so from 0.5 s before that to 1.5 s behind it."""

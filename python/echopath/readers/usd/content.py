@@ -124,7 +124,7 @@ class Content:
                            foreign_material=material, smooth=smooth)
 
     def _surface(self, prim) -> Surface | None:
-        """The surface of a prim, None for one without; instances of one prototype share theirs."""
+        """The surface of a prim, None for one without; instances share meshes, each has its own materials."""
         if not (prim.IsA(self._pxr.UsdGeom.Mesh) or prim.GetTypeName() in SOLIDS):
             if prim.IsA(self._pxr.UsdGeom.Gprim):
                 self._tree.count(f"a prim of the type {prim.GetTypeName()} is left out")
@@ -138,7 +138,8 @@ class Content:
             except BadMesh as error:
                 self._tree.note(f"the mesh {prim.GetPath()} is left out: it {error}")
                 self._surfaces[own.GetPath()] = None
-        return self._surfaces[own.GetPath()]
+        surface = self._surfaces[own.GetPath()]
+        return surface if surface is None or own == prim else surface.of(prim, self._pxr)
 
     def _deformation(self, prim, surface: Surface):
         """A VertexSequence of points that change over time, or MorphTargets; None for others."""

@@ -1,7 +1,7 @@
 """Meshes and simple solids of a USD stage, split by the materials of their faces."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +27,11 @@ class Surface:
     kept: np.ndarray
     parts: list = field(default_factory=list)
     smooth: bool = False
+
+    def of(self, instance, pxr) -> Surface:
+        """That of an instance of the prim, whose materials may be bound above it, outside of what the instances share."""
+        parts = [(name, material_name(instance.GetChild(name) if name else instance, pxr), mesh) for name, _, mesh in self.parts]
+        return replace(self, parts=parts)
 
 
 class BadMesh(ValueError):

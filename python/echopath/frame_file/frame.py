@@ -17,6 +17,7 @@ from ..base.process.interrupts import interrupts_are_kept
 from ..detections.uneven_fields import echo_fields
 from ..frame.frame import Frame, with_spectra
 from ..scene.scene import Scene
+from ..signals.parts import Parts
 from ..spectra.angles import range_azimuth
 from ..spectra.azimuth_map import checked_settings
 from ..transmit import is_coded, signal_shape
@@ -296,9 +297,9 @@ def _read_partitions(file, frame: Frame) -> None:
         group = read_group(folder, str(index))
         partition, names = read_attribute(group, "name", str), read_texts(group, "part")
         cubes = read_array(group, "cubes", np.complex128, (len(names), *_cube_shape(frame.radar)))
-        frame.parts[partition] = dict(zip(names, cubes))
         expressions = read_texts(group, "expression", len(names))
         frame.selections[partition] = {name: text for name, text in zip(names, expressions) if name != REST}
+        frame.parts[partition] = Parts(dict(zip(names, cubes)), frame.selections[partition], frame.radar)
         frame.part_of_path[partition] = _read_part_of_path(group, frame.paths.num_paths, len(names))
 
 

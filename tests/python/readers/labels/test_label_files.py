@@ -128,6 +128,12 @@ def test_labels_of_a_saved_frame_are_those_of_the_simulation(frame, labels, save
     assert np.abs(difference).max() < SAME_SHARES * labels.whole.max()
 
 
+def test_parts_of_a_saved_frame_have_their_selections(frame, saved):
+    """Errors of labels, which need these, were refused: the parts were cubes alone."""
+    made, wanted = (ep.annotate(one.paths, one.parts["by"], errors=True) for one in (ep.load_frame(saved), frame))
+    assert_same(made, wanted)
+
+
 def test_a_file_of_paths_alone_can_be_labelled(frame, labels, tmp_path):
     frame.paths.save(tmp_path / "paths.h5")
     made = ep.annotate_frame(ep.load_frame(tmp_path / "paths.h5"), objects=["van", "person"])

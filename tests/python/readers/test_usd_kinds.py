@@ -181,6 +181,17 @@ def test_what_has_very_many_samples_moves_through_all_of_them(tmp_path):
         assert np.allclose(riders, [[code, 1, 0], [code, 2, 0]])
 
 
+def test_instances_that_move_alone_are_an_animation(tmp_path):
+    """They stood still where nothing else of the stage moved; linear between their samples."""
+    model, scene = loaded(tmp_path, 'def PointInstancer "birds"\n{\n'
+                          "    point3f[] positions.timeSamples = { 2: [(0, 0, 0), (0, 5, 0)], 12: [(10, 0, 0), (0, 5, 20)] }\n"
+                          f'    int[] protoIndices = [0, 0]\n    rel prototypes = </birds/bird>\n    def Mesh "bird"\n    {{\n'
+                          f"{TRIANGLE}    }}\n}}\n")
+    assert (model.animation, model.duration) == ("timeline", 1.2)
+    for code, wanted in ((0, [[0, 0, 0], [0, 5, 0]]), (7, [[5, 0, 0], [0, 5, 10]]), (15, [[10, 0, 0], [0, 5, 20]])):
+        assert np.allclose([scene.world_vertices(mesh.id, code / 10)[0] for mesh in scene.meshes], wanted), code
+
+
 @pytest.mark.parametrize("num_codes, turns", [(2, 3000.0), (4000, 2.5)])
 def test_rotors_turn_as_fast_as_the_stage_says(tmp_path, num_codes, turns):
     """Turns between two samples, many in one step or some in each of many: of all but 5000 steps they were taken for fewer."""

@@ -34,13 +34,15 @@ class Content:
         self._waiting: list = []     # (prim, node of its parent, instances around it)
 
     def time_codes(self) -> list[float]:
-        """Of all samples of transforms, points and joints, ascending."""
+        """Of all samples of transforms, points, instances and joints, ascending."""
         codes = set(self._skeletons.time_codes())
         for prim in self._pxr.Usd.PrimRange(self._stage.GetPseudoRoot(), self._pxr.Usd.TraverseInstanceProxies()):
             if prim.IsA(self._pxr.UsdGeom.Xformable):
                 codes |= set(self._pxr.UsdGeom.Xformable(prim).GetTimeSamples()[:MOST_SAMPLES])
             if prim.IsA(self._pxr.UsdGeom.Mesh):
                 codes |= set(self._pxr.UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples()[:MOST_SAMPLES])
+            if prim.IsA(self._pxr.UsdGeom.PointInstancer):
+                codes |= set(_codes_of_instances(self._pxr.UsdGeom.PointInstancer(prim))[:MOST_SAMPLES])
         return self._timeline.usable(codes)
 
     def add_all(self, clock: Clock | None) -> None:
@@ -208,8 +210,7 @@ class Content:
 
     def _instance_transforms(self, instancer, count: int):
         """(time codes [T], transforms [T, N, 4, 4] without those of the prototypes, None where something is wrong)."""
-        attributes = (instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr())
-        codes = self._timeline.usable(code for attribute in attributes for code in attribute.GetTimeSamples())
+        codes = self._timeline.usable(_codes_of_instances(instancer))
         codes = codes if len(codes) > 1 and self._clock is not None else [self._time]
         if 16 * len(codes) * count > MAX_VALUES:
             raise _core.FileError(f"{self._path}: {instancer.GetPath()} has more than {MAX_VALUES} values over time")
@@ -222,3 +223,9 @@ class Content:
                 return codes, None
             found.append(self._axes.matrices(array.transpose(0, 2, 1)))
         return codes, np.stack(found)
+
+
+def _codes_of_instances(instancer) -> list[float]:
+    """Time codes of the samples of a point instancer."""
+    attributes = (instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr())
+    return [code for attribute in attributes for code in attribute.GetTimeSamples()]

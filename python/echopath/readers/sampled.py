@@ -13,6 +13,9 @@ SHORTEST_LOOP = 1e-6  # s, as of ep.CurveMotion
 RIGID = 1e-6          # by which a turn may differ from one
 CLOSED = 1e-6         # by which the ends of a closed loop may differ, as a share of its size
 ROUNDING = 1e-13
+# shares of five even samples in the slope at each of them, exact up to the fourth power
+_FIVE = np.array([[-25, 48, -36, 16, -3], [-3, -10, 18, -6, 1], [1, -8, 0, 8, -1], [-1, 6, -18, 10, 3],
+                  [3, -16, 36, -48, 25]]) / 12.0
 SEAM_FRAMES = 16      # of its other end that a closed loop has beyond each end: splines forget them by 0.27 a frame
 
 
@@ -60,11 +63,13 @@ def period_of(options: ReadOptions, duration: float) -> float | None:
     return duration if options.loop and duration >= SHORTEST_LOOP else None
 
 
-def moved_rigidly(times, matrices, clock: Clock):
+def moved_rigidly(times, matrices, clock: Clock, knots=None):
     """(placement [4, 4], CurveMotion or None, whether it was rigid) of transforms [T, 4, 4] at `times` [T] s.
 
     The placement holds the scale and the turn at first, the motion everything after it, as the clock says between the samples.
     A scale that changes stays as it is at first.
+
+    knots: places [K] in T between which the transforms are smooth, and evenly sampled; None: it is as the clock says
     """
     matrices = np.asarray(matrices, float)
     if len(matrices) < 2 or np.array_equal(matrices, np.broadcast_to(matrices[0], matrices.shape)):
@@ -76,9 +81,28 @@ def moved_rigidly(times, matrices, clock: Clock):
     keys = clock.times(times)
     turning = None
     if np.abs(turns - np.eye(3)).max() > ROUNDING:
-        turning = _core.Curve(keys, quaternions(rotations), clock.interpolation)
-    motion = _core.CurveMotion(_core.Curve(keys, matrices[:, :3, 3], clock.interpolation), turning, **clock.playback)
+        turning = _curve(keys, quaternions(rotations), clock, knots)
+    motion = _core.CurveMotion(_curve(keys, matrices[:, :3, 3], clock, knots), turning, **clock.playback)
     return placement, motion, bool(np.abs(turns - rotations).max() < RIGID)
+
+
+def _curve(keys, values, clock: Clock, knots) -> _core.Curve:
+    if knots is None or clock.steps:
+        return _core.Curve(keys, values, clock.interpolation)
+    leaving, arriving = np.zeros_like(values), np.zeros_like(values)
+    for begin, end in zip(knots, knots[1:]):
+        slopes = _slopes(values[begin:end + 1]) * (end - begin) / (keys[end] - keys[begin])
+        leaving[begin:end], arriving[begin + 1:end + 1] = slopes[:-1], slopes[1:]
+    return _core.Curve(keys, values, "hermite", in_tangents=arriving, out_tangents=leaving)
+
+
+def _slopes(values: np.ndarray) -> np.ndarray:
+    """[T, C] of even samples by their spacing: those of polynomials through five, of the line through two."""
+    if len(values) == 2:
+        return np.repeat(np.diff(values, axis=0), 2, axis=0)
+    first = np.clip(np.arange(len(values)) - 2, 0, len(values) - 5)  # of the five
+    rows = _FIVE[np.arange(len(values)) - first]
+    return np.einsum("tk,tkc->tc", rows, values[first[:, None] + np.arange(5)])
 
 
 def moved_with_scale(times, matrices, clock: Clock) -> tuple[_core.CurveMotion, bool]:

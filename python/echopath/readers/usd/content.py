@@ -86,19 +86,19 @@ class Content:
     def _placed(self, prim):
         """(placement, motion or None) of a prim; None, counted, where it flattens space."""
         xformable, animated = self._pxr.UsdGeom.Xformable(prim), self._clock is not None
-        codes, matrices = sampled_transforms(xformable, self._time, self._timeline, animated)
-        if len(codes) >= MOST_SAMPLES:
-            self._tree.count(f"a prim that needs more than {MOST_SAMPLES} samples stays where the last of these has it")
+        codes, matrices, knots = sampled_transforms(xformable, self._time, self._timeline, animated)
+        if animated and len(xformable.GetTimeSamples()) > MOST_SAMPLES:
+            self._tree.count(f"a prim of more than {MOST_SAMPLES} samples stays where the last of so many has it")
         matrices = self._axes.matrices(matrices)
         if not np.isfinite(matrices).all() or np.abs(matrices).max() > 1e60 or (np.linalg.det(matrices[:, :3, :3]) == 0.0).any():
             self._tree.count("a prim whose transform flattens it, or is not finite, is left out")
             return None
-        return self._moved(codes, matrices)
+        return self._moved(codes, matrices, knots)
 
-    def _moved(self, codes, matrices):
+    def _moved(self, codes, matrices, knots=None):
         if self._clock is None:
             return matrices[0], None
-        placement, motion, is_rigid = moved_rigidly(self._timeline.seconds(codes), matrices, self._clock)
+        placement, motion, is_rigid = moved_rigidly(self._timeline.seconds(codes), matrices, self._clock, knots)
         if not is_rigid:
             self._tree.count("the changing scale of a prim is left out")
         return placement, motion

@@ -204,6 +204,21 @@ def test_what_has_very_many_samples_moves_through_all_of_them(tmp_path):
         assert np.allclose(riders, [[code, 1, 0], [code, 2, 0]])
 
 
+def test_jumps_between_samples_as_near_as_the_library_of_usd_advises_are_jumps(tmp_path):
+    """Of two such samples the second was left out: transforms and points drifted from the first to the next one instead."""
+    near = 5.0 - Usd.TimeCode.SafeStep()
+    corners = TRIANGLE.split("    point3f")[0]
+    places = ((0, 0), (near, 1), (5, 5), (10, 6))
+    points = ", ".join(f"{code!r}: [({x}, 0, 0), ({x + 1}, 0, 0), ({x}, 1, 0)]" for code, x in places)
+    moved = ", ".join(f"{code!r}: ({x}, 0, 0)" for code, x in places)
+    _, scene = loaded(tmp_path, f'def Mesh "cart"\n{{\n{TRIANGLE}    double3 xformOp:translate.timeSamples = {{ {moved} }}\n'
+                      '    uniform token[] xformOpOrder = ["xformOp:translate"]\n}\ndef Mesh "slug"\n{\n'
+                      f"{corners}    point3f[] points.timeSamples = {{ {points} }}\n}}\n")
+    for code in (0.0, 4.9, 5.1, 7.5, 10.0):
+        wanted = transform_of_usd(tmp_path, "/cart", code)[:3, 3]
+        assert np.allclose([scene.world_vertices(mesh, code / 10)[0] for mesh in (0, 1)], wanted, atol=SINGLE), code
+
+
 def test_instances_that_move_alone_are_an_animation(tmp_path):
     """They stood still where nothing else of the stage moved; linear between their samples."""
     model, scene = loaded(tmp_path, 'def PointInstancer "birds"\n{\n'

@@ -71,12 +71,13 @@ class Timeline:
         self.steps = stage.GetInterpolationType() == pxr_module("Usd").InterpolationTypeHeld
 
     def usable(self, codes) -> list[float]:
-        """Time codes in their order, without those that are no times or no later than the one before."""
+        """Time codes in their order, without those that are no times; of two that are nearer than SHORTEST, between which the
+        stage jumps, the earlier is by as much before the later."""
         usable: list[float] = []
-        for code in sorted(code for code in codes if abs(code) < LONGEST * self._rate):
-            if not usable or code - usable[-1] > SHORTEST * self._rate:
-                usable.append(code)
-        return usable
+        for code in sorted((code for code in codes if abs(code) < LONGEST * self._rate), reverse=True):
+            if not usable or code < usable[-1]:
+                usable.append(min(code, usable[-1] - SHORTEST * self._rate) if usable else code)
+        return usable[::-1]
 
     def seconds(self, codes) -> np.ndarray:
         return (np.asarray(codes, float) - self.start) / self._rate

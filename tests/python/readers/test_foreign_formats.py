@@ -212,6 +212,14 @@ def test_a_usd_skin_moves_as_the_library_of_usd_says(tmp_path):
         assert np.allclose(sorted(set(map(tuple, np.round(ours, 7)))), sorted(map(tuple, wanted.astype(float))), atol=SINGLE)
 
 
+@pytest.mark.parametrize("method, is_told", [("classicLinear", False), ("dualQuaternion", True)])
+def test_a_usd_skin_of_dual_quaternions_is_told_to_be_taken_as_a_linear_one(tmp_path, method, is_told):
+    said = f'uniform token primvars:skel:skinningMethod = "{method}"\n        int[] primvars:skel:jointIndices'
+    assert USD[1].count("int[] primvars:skel:jointIndices") == 1
+    model, _ = usd_scene(tmp_path, USD[1].replace("int[] primvars:skel:jointIndices", said))
+    assert any("dual quaternions" in note for note in model.notes) is is_told
+
+
 @pytest.mark.parametrize("text, message", [
     ("#usda 1.0\n(\n    timeCodesPerSecond = 0\n)\n", "must have timeCodesPerSecond other than 0"),
     ("#usda 1.0\ndef Mesh", "is no USD stage that can be read .*(?:stage.usda:2:|on line 2 )"),

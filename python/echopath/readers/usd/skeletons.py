@@ -55,6 +55,8 @@ class Skeletons:
         Raises ValueError where what the file says of it does not fit together.
         """
         query, skinning = self._bound[prim.GetPath()]
+        if skinning.GetSkinningMethod() == self._pxr.UsdSkel.Tokens.dualQuaternion:
+            tree.count("a skin of dual quaternions is taken as a linear one, which is narrower at joints that twist or bend")
         indices, weights = _influences(skinning, len(surface.points), list(query.GetJointOrder()))
         bind = np.array(query.GetJointWorldBindTransforms(), float).transpose(0, 2, 1)
         if not np.isfinite(bind).all() or (np.abs(np.linalg.det(bind)) < 1e-60).any():

@@ -113,6 +113,15 @@ def test_what_changes_its_visibility_stays_as_at_first_and_that_is_told(tmp_path
         loaded(tmp_path, mesh.replace('0: "inherited", 5: "invisible"', '0: "invisible", 5: "inherited"'))
 
 
+@pytest.mark.parametrize("kind, size", [("Sphere", "radius"), ("Cube", "size"), ("Cylinder", "height")])
+def test_a_solid_that_changes_its_size_stays_as_at_first_and_that_is_told(tmp_path, kind, size):
+    text = solid(kind, **{size: 2.0})
+    changing = text.replace(f"{size} = 2.0", f"{size}.timeSamples = {{ 0: 2, 10: 4 }}")
+    plain, told = (loaded(tmp_path, one)[0] for one in (text, changing))
+    assert np.allclose(told.nodes[0].mesh.vertices, plain.nodes[0].mesh.vertices)
+    assert [any("size of a solid changes" in note for note in model.notes) for model in (plain, told)] == [False, True]
+
+
 @pytest.mark.parametrize("scheme, cage", [("catmullClark", True), ("loop", True), ("none", False), ("", False)])
 def test_of_a_subdivision_surface_the_cage_is_taken_and_that_is_told(tmp_path, scheme, cage):
     """A mesh that does not say is taken as it stands."""

@@ -11,7 +11,7 @@ from ..sampled import Clock, deformed, moved_rigidly
 from ..tree import MAX_NODES, Tree
 from .skeletons import Skeletons
 from .stage import Timeline, changes_visibility, is_left_out
-from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, numbers, surface_of
+from .surfaces import SOLIDS, BadMesh, Surface, changes_size, integers, is_subdivided, numbers, surface_of
 from .transforms import MOST_SAMPLES, sampled_transforms
 
 NO_NODES = ("Material", "Shader", "NodeGraph")  # types of prims without surfaces below them: others name what is there
@@ -111,6 +111,8 @@ class Content:
             if surface is not None:
                 self._skinned.append((prim, surface, parent))
             return self._tree.add(name, parent, placement=placement, motion=motion)
+        if prim.GetTypeName() in SOLIDS and changes_size(prim):
+            self._tree.count("the size of a solid changes over time: it stays as it is at first")
         deformation = self._deformation(prim, surface)
         if len(surface.parts) == 1 and deformation is None:
             _, material, mesh = surface.parts[0]

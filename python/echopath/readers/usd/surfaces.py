@@ -12,6 +12,7 @@ from ..axes import Axes
 from ..normals import welded_corners
 
 SOLIDS = ("Cube", "Sphere", "Cylinder", "Cylinder_1", "Cone", "Capsule", "Capsule_1", "Plane")
+SIZES = ("size", "radius", "radiusBottom", "radiusTop", "height", "width", "length")
 CURVED = ("Sphere", "Cylinder", "Cylinder_1", "Cone", "Capsule", "Capsule_1")
 NON_VISUAL = "omni:simready:nonvisual:base"  # what Isaac Sim says of a material for its radars and lidars
 
@@ -161,6 +162,12 @@ def material_name(prim, pxr) -> str:
     base = material.GetPrim().GetAttribute(NON_VISUAL)
     word = base.Get() if base and base.HasAuthoredValue() else None
     return str(word) if word else material.GetPrim().GetName()
+
+
+def changes_size(prim) -> bool:
+    """Whether a solid has another size at other times."""
+    sizes = (prim.GetAttribute(name) for name in SIZES)
+    return any(size and size.GetNumTimeSamples() > 1 for size in sizes)
 
 
 _TURNS = {"X": [2, 0, 1], "Y": [1, 2, 0], "Z": [0, 1, 2]}  # of axes, so that z points along the axis of a solid

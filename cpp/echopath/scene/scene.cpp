@@ -182,6 +182,12 @@ std::optional<int> Scene::find(std::string_view full_name) const {
   return found == index_.end() ? std::nullopt : std::optional<int>(found->second);
 }
 
+bool Scene::is_mirrored(int index) const {
+  bool mirrored = false;
+  for (int i = index; i >= 0; i = nodes_[i].parent) mirrored ^= nodes_[i].placement.linear().determinant() < 0;
+  return mirrored;
+}
+
 bool Scene::is_moving(uint32_t mesh_id) const {
   if (moves(node_of(mesh_id).deformation)) return true;
   for (int i = meshes_[mesh_id].node; i >= 0; i = at(i).parent) {

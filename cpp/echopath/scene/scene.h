@@ -75,6 +75,9 @@ class Scene {
   // Returns the names by mesh ID, and behind them those of meshes that do not take part: a selection may name them too.
   std::vector<std::string> all_mesh_names() const;
   std::optional<int> find(std::string_view full_name) const;  // node index
+  // Returns whether its placement and those above it turn the corners of triangles the other way round: what is the front of
+  // the body, the side from which they go anticlockwise, is then the back of its surface in the world.
+  bool is_mirrored(int index) const;
 
   // Returns parent_from_node at `time` (s). The motion of what does not take part is not asked for anything.
   Transform local_transform(int index, double time) const;

@@ -8,6 +8,27 @@ import pytest
 import echopath as ep
 from support.behind_sheets import FREQUENCY, GLASS, echo_of_ball, make_radar, make_scene, over_free
 
+# --- sides ---
+
+@pytest.mark.parametrize("flips, above, shows_front", [
+    ((1, 1, 1), (1, 1, 1), True), ((-1, -1, 1), (1, 1, 1), False),      # as it is, and turned about
+    ((1, -1, 1), (1, 1, 1), True), ((-1, 1, 1), (1, 1, 1), False),      # mirrored aside, and along the line of sight
+    ((1, -1, 1), (1, 1, -1), True), ((1, 1, 1), (-1, 1, 1), False)])    # by what carries it, too
+def test_what_is_mirrored_keeps_the_layers_of_its_front_in_front(flips, above, shows_front):
+    """Where triangles go the other way round, the last layer had come first: 9.4 dB too much of this sheet. Closed form."""
+    sheet = ep.Material(layers=[ep.Layer(0.0007, 2.0), ep.Layer(0.002, 8 - 2j)])
+    corners = 0.03 * np.array([[0, -1, -1], [0, 1, -1], [0, 1, 1], [0, -1, 1]])
+    found = []
+    for material in (sheet, ep.Material.metal()):
+        scene = ep.Scene()
+        scene.add(None, name="body", transform=np.diag([*above, 1.0]))
+        scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name="sheet", material=material, parent="body",
+                  transform=np.diag([*flips, 1.0]))
+        found.append(ep.rcs(scene, frequency=77e9, incidence=(1, 0, 0), observation=(1, 0, 0), num_rays=4000))
+    wanted = ep.sheet_coefficients(sheet, frequency=77e9, incidence=0.0, from_behind=not shows_front).te_reflection[0]
+    assert found[0] / found[1] == pytest.approx(abs(wanted) ** 2, rel=1e-6)
+
+
 # --- expressions, tables, files ---
 
 def test_expressions_see_passes_only_where_they_name_them():

@@ -147,7 +147,7 @@ std::vector<int> PlaneImages::planes_of(Facets chain) {
     const auto [a, b, c] = geometry_.corners(mesh_id, triangle_id);
     Mirror plane;
     plane.point = a;
-    plane.normal = cross_of_sides(a, b, c).normalized();
+    plane.normal = cross_of_sides(a, b, c).normalized() * (scene_.is_mirrored(scene_.meshes()[mesh_id].node) ? -1.0 : 1.0);
     plane.mesh_id = mesh_id;
     plane.material = node.material.get();
     plane.outline = {a, b, c};

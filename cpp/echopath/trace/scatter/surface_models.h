@@ -19,10 +19,10 @@ class SurfaceModels {
     const auto back = backs_.empty() ? backs_.end() : backs_.find(model_of_[mesh_id]);
     return back == backs_.end() || !is_behind() ? front(mesh_id) : back->second;
   }
-  const std::vector<SurfaceModel>& of_materials() const { return models_; }  // each once
+  const std::vector<SurfaceModel>& of_materials() const { return models_; }
 
  private:
-  std::vector<SurfaceModel> models_;        // one for all meshes of a material
+  std::vector<SurfaceModel> models_;        // one for all meshes of a material that are mirrored, and one for all others
   std::vector<uint32_t> model_of_;          // [mesh ID]
   std::map<uint32_t, SurfaceModel> backs_;  // of sheets of several layers, by their model
 };

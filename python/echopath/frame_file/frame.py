@@ -13,7 +13,7 @@ from ..arguments.checks import an, anything, checked, real, refused
 from ..arguments.keywords import parameters_of
 from ..arguments.part_names import REST
 from ..arguments.settings import Evaluate, Replay, Retrace
-from ..base.process.interrupts import interrupts_are_kept
+from ..base.process.interrupts import keeps_interrupts
 from ..detections.uneven_fields import echo_fields
 from ..frame.frame import Frame, with_spectra
 from ..scene.scene import Scene
@@ -63,7 +63,7 @@ class LeftOut:
     power: float
 
 
-@interrupts_are_kept()
+@keeps_interrupts
 @checked(paths=anything, min_power=real(0.0, unit="W"))
 def save_paths(paths, path, min_power: float) -> LeftOut:
     """Writes paths with their scene and radar to an HDF5 file.
@@ -76,7 +76,7 @@ def save_paths(paths, path, min_power: float) -> LeftOut:
 
 
 @checked()
-@interrupts_are_kept()
+@keeps_interrupts
 def load_paths(path):
     """Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError."""
     with file_with_paths(path) as file:
@@ -84,7 +84,7 @@ def load_paths(path):
 
 
 @checked(frame=an(Frame), min_power=real(0.0, unit="W"))
-@interrupts_are_kept()
+@keeps_interrupts
 def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
     """Writes a frame to an HDF5 file; path, min_power (W) and what is returned are as in `Paths.save`.
 
@@ -120,7 +120,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
     return read_frame(path)
 
 
-@interrupts_are_kept()
+@keeps_interrupts
 def read_frame(path, meshes: KeptMeshes | None = None) -> Frame:
     """What `load_frame` reads; meshes: of the file that was read before, which are shared where this one has the same."""
     with file_with_paths(path) as file:
@@ -148,7 +148,7 @@ def read_frame(path, meshes: KeptMeshes | None = None) -> Frame:
     return frame
 
 
-@interrupts_are_kept()
+@keeps_interrupts
 def left_out(path) -> LeftOut:
     """What a frame file does not hold. Raises ep.FileError."""
     with file_with_paths(path) as file:

@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping
 
 from ..arguments.checks import checked, refused, text
-from ..base.process.interrupts import interrupts_are_kept
+from ..base.process.interrupts import keeps_interrupts
 from ..labels.labels import Labels
 from .container import new_file, our_file
 from .h5 import read_group
@@ -20,7 +20,7 @@ def _labels(argument: str, value) -> dict:
 
 
 @checked(labels=_labels)
-@interrupts_are_kept()
+@keeps_interrupts
 def save_labels(labels: Mapping[str, Labels], path: str | os.PathLike[str]) -> None:
     """Writes labels to an HDF5 file of their own, as a frame file has them.
 
@@ -31,7 +31,7 @@ def save_labels(labels: Mapping[str, Labels], path: str | os.PathLike[str]) -> N
 
 
 @checked()
-@interrupts_are_kept()
+@keeps_interrupts
 def load_labels(path: str | os.PathLike[str]) -> dict[str, Labels]:
     """{partition: Labels} of a file of `save_labels` or of a frame file at `path`: the same bits. Raises ep.FileError."""
     with our_file(path) as file:

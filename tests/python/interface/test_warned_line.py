@@ -157,6 +157,17 @@ def test_a_ball_that_is_too_coarse(radar):
     assert _lines(record, "too coarse") + _lines(record, "edges of") == 2 * [__file__]
 
 
+def test_a_frame_that_is_written_and_read(scene, radar, tmp_path):
+    coarse = radar.replace(receiver=ep.Receiver(adc=ep.Adc(bits=4, gain_db=0.0)))
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        frame = ep.simulate(scene, coarse, num_rays=100, guard=False)
+        ep.save_frame(frame, tmp_path / "frame.h5")
+        ep.load_frame(tmp_path / "frame.h5")
+    files = _lines(record, "receiver.adc")
+    assert len(files) > 1 and set(files) == {__file__}
+
+
 def test_an_object_with_a_single_position(tmp_path):
     table = tmp_path / "tracks.csv"
     table.write_text("id,t,x,y\na,0,0,0\na,1,1,0\na,2,2,0\nb,0,5,5\n")

@@ -6,10 +6,15 @@ which h5py has many, it is printed and lost; in a model that pydantic builds it 
 """
 from __future__ import annotations
 
+import functools
 import signal
 import sys
 import threading
+from collections.abc import Callable
 from contextlib import contextmanager
+from typing import ParamSpec, TypeVar
+
+_Arguments, _Result = ParamSpec("_Arguments"), TypeVar("_Result")
 
 _depth = 0      # blocks within each other
 _heard = False  # a plain value: an Event's lock may be held by the very line that the signal interrupts
@@ -52,6 +57,19 @@ def interrupts_are_kept():
         except KeyboardInterrupt:  # it came just now
             restore()
             raise
+
+
+def keeps_interrupts(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
+    """The function, each call of it within `interrupts_are_kept`.
+
+    That as a decorator would call it from a file of Python, whose line warnings then name in the place of the user's.
+    """
+    @functools.wraps(function)
+    def call(*args: _Arguments.args, **named: _Arguments.kwargs) -> _Result:
+        with interrupts_are_kept():
+            return function(*args, **named)
+
+    return call
 
 
 @contextmanager

@@ -17,7 +17,8 @@ from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
-from ..sequence.folder import NAME as CONTENTS
+from ..sequence.contents import settings_of
+from ..sequence.folder import NAME as CONTENTS, frame_path
 from ..sequence.keep import Keep
 from .address import is_address
 from .arrays import lazy_arrays
@@ -127,9 +128,15 @@ class Dataset:
         """The numbers of the scenes that have a frame here."""
         return sorted({number // self.template.settings.frames for number in self.numbers})
 
+    @cached_property
+    def paths_of_files(self) -> list[Path]:
+        """The files of the frames, in their order here, for loops that read some arrays alone; also of `remade`."""
+        places = [divmod(number, self.template.settings.frames) for number in self.numbers]
+        return [frame_path(scene_folder(self.folder, scene), at) for scene, at in places]
+
     def sequence(self, scene: int) -> StoredSequence:
-        """The frames of a scene in time. Raises IndexError for a scene that the template has not, ep.FileError where its frames
-        are not there."""
+        """The frames of a scene in time, with all of its meshes. Raises IndexError for a scene that the template has not,
+        ep.FileError where its frames are not there."""
         self._check_scene(scene)
         return load_sequence(scene_folder(self.folder, scene))
 
@@ -155,8 +162,8 @@ class Dataset:
         `objects` of the template's [labels], once a frame is made. Raises IndexError for a scene that the template has not.
         """
         self._check_scene(scene)
-        is_made = (scene_folder(self.folder, scene) / CONTENTS).is_file()
-        settings = self.sequence(scene).settings if is_made else {}
+        contents = scene_folder(self.folder, scene) / CONTENTS
+        settings = settings_of(contents) if contents.is_file() else {}
         asked = [settings.get(table) or {} for table in ("labels", "detections", "truth")]
         return self.template.classes(scene, tuple(pair for one in asked for pair in one.get("objects") or ()))
 

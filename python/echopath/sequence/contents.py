@@ -52,6 +52,12 @@ def read_contents(path) -> Contents:
         return Contents(scene, read_radar(read_group(file, "radar")), read_settings(file))
 
 
+def settings_of(path) -> dict[str, Any]:
+    """The settings alone that `write_contents` wrote to a file, without its scene. Raises ep.FileError."""
+    with our_file(path, SEQUENCE) as file:
+        return read_settings(file)
+
+
 def read_settings(file) -> dict[str, Any]:
     """{keyword: value} of a file of contents."""
     return _read_settings(read_group(file, "settings"))

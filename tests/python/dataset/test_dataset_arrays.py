@@ -3,6 +3,7 @@ import pickle
 import threading
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
 
@@ -32,6 +33,20 @@ def test_classes_of_cells_are_those_of_their_scene_in_every_thread():
             return Plain.objects
 
     assert KINDS[kinds.of(frame(0, Meanwhile())).item()] == "car" and KINDS[kinds.of(frame(1, Plain())).item()] == "pedestrian"
+
+
+def test_classes_and_paths_of_files_need_no_meshes(tmp_path):
+    """A loop over frames asks for both, and the meshes of a street take ten times as long to read as a frame."""
+    folder = tmp_path / "out"
+    make(written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + SCENE), folder)
+    opened = dataset.open(folder)
+    classes = [opened.classes(scene) for scene in opened.scenes]
+    shuffled = opened[[3, 0]]
+    assert shuffled.paths_of_files == [opened.sequence(one.scene).paths_of_files[one.place] for one in shuffled]
+    for scene in opened.scenes:
+        with h5py.File(folder / "scenes" / f"{scene:06d}" / "sequence.h5", "a") as file:
+            del file["scene"]
+    assert [opened.classes(scene) for scene in opened.scenes] == classes
 
 
 def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monkeypatch):

@@ -6,11 +6,12 @@ import textwrap
 import numpy as np
 
 from ..arguments.names import first_names
+from ..arguments.part_names import BESIDE
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..base.radar.velocities import folded
 from ..base.text.counts import counted, named
 from ..labels.report import peak_words
-from ..paths.resolution import FAINT, RESOLVED_DB
+from ..paths.resolution import FAINT, RESOLVED_DB, SURROUNDINGS
 from ..paths.visibility import occluder_words
 from ..scene.closing_speeds import bodies_faster_than
 from ..signals.measures import power_dbm, with_error
@@ -204,15 +205,18 @@ def labels(of_partitions: dict) -> list[str]:
 
 
 def detections(found, of_partitions: dict, advice: str = "", *, file: str = "") -> list[str]:
-    """How many detections each part and object has, and which objects have cells in {partition: Labels} but none; nothing
-    where none were asked for. advice: what to ask for in place of the mean over cells (method="ca"), "" where it was not taken
+    """How many detections each object, what no path makes and the rest have, and which objects have cells in {partition: Labels}
+    but none; nothing where none were asked for. advice: what to ask for in place of the mean over cells (method="ca"), "" where
+    it was not taken
     file: the name of the table that has them, "": none"""
     if found is None:
         return []
-    owners = {"": "the surroundings", **{name: name for name in found.object if name}}
-    counts = {words: int(np.sum((found.object == name) & ~found.is_noise)) for name, words in sorted(owners.items())}
+    made_by_none = (found.object == "") & np.isin(found.part, BESIDE)  # rain, leakage and what else is no echo of the scene
+    owners = {"": SURROUNDINGS, **{name: name for name in found.object if name}}
+    groups = [(words, (found.object == name) & ~made_by_none) for name, words in sorted(owners.items())]
+    groups += [(name, made_by_none & (found.part == name)) for name in sorted(set(found.part[made_by_none]))]
     return [f"{counted(len(found), 'detection')}{file and ', '}{file}",
-            *(line(name, f"{count:8,}") for name, count in counts.items()),
+            *(line(words, f"{np.sum(of_group & ~found.is_noise):8,}") for words, of_group in groups),
             line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions, advice)]
 
 

@@ -32,5 +32,17 @@ def test_of_many_objects_the_strongest_are_listed(frame, table):
     assert f"  and {NUM_PLATES - report.MAX_LISTED} more" in lines
 
 
+def test_leakage_is_not_the_surroundings():
+    """A ball 5 m away and leakage at 0 m are all that the map holds."""
+    radar = ep.Radar(ep.ChirpSequence(num_samples=128, num_chirps=16), transmitters=[ep.Antenna()], receivers=[ep.Antenna()],
+                     receiver=ep.Receiver(leakage_db=[[-60.0]]))
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3, edge=0.02), name="ball", position=(5.0, 0.0, 0.0), material="metal", smooth=True)
+    found = ep.simulate(scene, radar, num_rays=2000, guard=False, detections={"method": "os"}).detections
+    counts = {words: int(count) for words, count in (one.rsplit(maxsplit=1) for one in report.detections(found, {})[1:])}
+    assert {words.strip(): count > 0 for words, count in counts.items()} == {
+        "the surroundings": False, "ball": True, "leakage": True, "noise alone": False}
+
+
 def test_names_that_are_longer_than_their_column_stand_apart():
     assert report.line("n" * 50, "value") == f"  {'n' * 50}  value"

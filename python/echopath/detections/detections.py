@@ -31,7 +31,7 @@ class Detections:
     """Echoes that stand out of the noise of a range-Doppler map, D of them by cell; made by `detect`.
 
     cells: [D, 2] (velocity, range) indices; several detections of one cell have several directions
-    range: [D] m, without the shift that velocity makes in the map
+    range: [D] m, without the shift that this velocity makes in the map
     velocity: [D] m/s, receding positive, folded as in the map unless `folds` were tried
     azimuth, elevation: [D] rad, left and up positive, in the radar's frame; NaN where the antennas cannot tell
     power: [D] W, received, what windows lose between cells put back; noise: [D] W, mean about the cell

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...arguments.shown import shown
+from ... import _core
+from ...arguments.shown import shown, writable
 from ...base.numerics.placements import ORIGIN, placement
 from ...scene_file.errors import validated
 from ...scene_file.objects import motion_of
@@ -18,6 +19,7 @@ from ...scene_file.trajectories import Trajectories
 from .distributions import REFERENCE, drawn, is_distribution, is_number, refuse_misspelt
 from .references import Source, changed, is_reference, refuse_wrong_reference
 
+_OWN_KEYS = ("count", "chance", "apart")  # of an entry, which no scene knows
 _MOST_COPIES = 10_000                   # of an entry
 _MOST_FOLLOWED = 20                     # values of which each follows the next
 _MOST_PLACES = 1000                     # that are tried for an object that is to stand apart from others
@@ -125,6 +127,7 @@ class DrawnObjects:
     def _copies(self, entry: dict[str, Any]) -> list[dict[str, Any]]:
         name = entry.pop("name")
         place = f"objects.{name}"
+        _refuse_misspelt_own(entry, place)
         chance = self._number(entry.pop("chance", 1.0), f"{place}.chance", "a number from 0 to 1", lambda x: 0.0 <= x <= 1.0)
         is_row, is_fixed = "count" in entry, is_number(entry.get("count", 1))
         count = self._number(entry.pop("count", 1), f"{place}.count", f"a whole number from 0 to {_MOST_COPIES}",
@@ -207,6 +210,14 @@ class DrawnObjects:
                 self._places.append((above, radius))
                 return found
         raise ValueError(f"{place}.apart: must leave a free place within {_MOST_PLACES} tries, got {shown(radius)}")
+
+
+def _refuse_misspelt_own(entry: dict[str, Any], place: str) -> None:
+    """Raises ValueError for a key that is nearest to one of `_OWN_KEYS`, of which the schema of the scene cannot tell."""
+    for key in entry.keys() - ObjectTable.model_fields.keys() - set(_OWN_KEYS):
+        meant = _core.meant_name(writable(key), [*ObjectTable.model_fields, *_OWN_KEYS])
+        if meant in _OWN_KEYS:
+            raise ValueError(f"{place}.{key}: unknown key; did you mean '{meant}'?")
 
 
 def _full_name(parent: Any, name: str) -> str:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import copy
+from itertools import pairwise
 
 import numpy as np
 
@@ -58,15 +59,20 @@ class Stft:
         self._end_train()
         if not self._times:
             longest = max(round((end - begin) / self._period) for begin, end in self._trains)
-            may_join = len(self._trains) > 1 and self._span_frames is not True
-            hint = "; span_frames=True joins frames without gaps" if may_join else ""
-            raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{hint}, got "
-                             f"{self._length}")
+            raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{self._longer_trains()}, "
+                             f"got {self._length}")
         ranges = self._axes.range[self._inside]
         return Spectrogram(times=np.concatenate(self._times), velocity=self._axes.velocity, power=np.concatenate(self._powers),
                            noise_power=self.noise_power, train=np.concatenate(self._train), trains=np.array(self._trains),
                            window_length=self._length, hop=self._hop, window=self._window, zero_pad=self._zero_pad,
                            range_gate=(float(ranges[0]), float(ranges[-1])), part=text_of_part(part), channel=self._channel)
+
+    def _longer_trains(self) -> str:
+        """What would make longer trains, or what there is between them; "" of one train."""
+        gaps = [begin - end for (_, end), (begin, _) in pairwise(self._trains)]
+        if gaps and min(gaps) > EVEN * self._period:
+            return f", between which are gaps of {min(gaps):.3g} s and more"
+        return "; span_frames=True joins frames without gaps" if gaps and self._span_frames is not True else ""
 
     def _prepare(self, burst) -> None:
         self._radar, self._period = burst.radar, chirp_period(burst.radar)

@@ -275,6 +275,8 @@ def test_what_cannot_follow_is_refused():
         ep.spectrogram(cubes, radar, window_length=65, span_frames=True)
     with pytest.raises(ValueError, match="at most 32, the chirps of the longest train; span_frames=True joins frames"):
         ep.spectrogram(cubes, radar, window_length=64)
+    with pytest.raises(ValueError, match="longest train, between which are gaps of 0.01 s and more, got"):
+        ep.spectrogram(cubes, radar, window_length=64, start_times=[0.0, 0.01 + 32 * radar.waveform.chirp_interval])
     with pytest.raises(ValueError, match="radar: must be that of the cubes"):
         ep.spectrogram(cubes)
     with pytest.raises(ValueError, match="frames: must have one frame"):

@@ -90,7 +90,7 @@ std::string fast_warning(const ObjectValidity& object, const Validity& report) {
            "keys.";
   }
   return "'" + object.name + "' turns up to " + with_digits(3, object.turn / kTwoPi) +
-         " times within the frame: " + std::to_string(report.times.size()) +
+         " times within the frame, or goes to and fro as often: " + std::to_string(report.times.size()) +
          " times of the check may miss what becomes of it. Trace shorter frames.";
 }
 

@@ -91,6 +91,17 @@ def test_what_turns_too_fast_for_the_check_is_a_warning():
     assert len(report.times) == 256 and any("turns up to 59" in text for text in report.warnings)
 
 
+def test_what_swings_too_fast_for_the_check_is_not_said_to_turn_alone():
+    radar = radar_of()
+    times = np.linspace(-0.01, 1.01, 1001) * frame_of(radar)
+    ways = 1e-3 * np.sin(2.0 * np.pi * 60.0 * times / frame_of(radar))[:, None] * (1, 0, 0)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.3, 0.3), name="chest", material=ROUGH, position=(4, 0, 1), yaw=np.pi,
+              motion=ep.KeyframeMotion(times, ways))
+    told, = (text for text in ep.validity(ep.trace(scene, radar, num_rays=500, max_bounces=1)).warnings if "'chest'" in text)
+    assert "goes to and fro" in told
+
+
 def test_many_keys_within_a_frame_are_a_warning_about_keys():
     """A chest that goes 1 mm to and fro four times by 200 linear keys turns by no more than those four cycles."""
     radar = radar_of()

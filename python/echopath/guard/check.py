@@ -34,8 +34,10 @@ class Check:
         return self.error <= self.promise
 
     def __str__(self) -> str:
-        verdict = "" if self.agrees else ": TOO MUCH"
-        return f"{self.error:.2g} {self.unit}, promised {self.promise:.2g}{verdict} ({self.count:,} compared)"
+        verdict, digits = "" if self.agrees else ": TOO MUCH", 2
+        while not self.agrees and f"{self.error:.{digits}g}" == f"{self.promise:.{digits}g}":
+            digits += 1
+        return f"{self.error:.{digits}g} {self.unit}, promised {self.promise:.{digits}g}{verdict} ({self.count:,} compared)"
 
 
 def warn_of(checks, advised: set[str] | None = None) -> None:

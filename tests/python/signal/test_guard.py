@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.guard import check_rays
+from echopath.guard.check import Check
 from support.radars import FREQUENCY, build_radar
 
 pytestmark = pytest.mark.hard
@@ -199,6 +200,11 @@ def test_run_warns_and_can_do_without(monkeypatch):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert ep.simulate(scene, radar, num_rays=400, guard=False).checks == []
+
+
+def test_an_error_just_beyond_its_promise_is_not_written_like_it():
+    check = Check("halves of the rays", 3.004, 3.0, "dB", 2)
+    assert str(check) == "3.004 dB, promised 3: TOO MUCH (2 compared)"
 
 
 def test_checks_come_back_from_the_file(tmp_path):

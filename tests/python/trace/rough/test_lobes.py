@@ -1,5 +1,6 @@
 """Directive lobes and backscatter of rough surfaces: levels against quadrature, and in replay at other times and antennas."""
 import math
+import re
 
 import numpy as np
 import pytest
@@ -173,6 +174,18 @@ def test_grounds_have_the_backscatter_that_they_were_fitted_to(name):
     found_db = 10 * np.log10(ep.materials[name].backscatter(np.radians(grazing_deg), frequency=77e9))
     assert np.sqrt(np.mean((found_db - measured_db)**2)) < 0.9
     assert np.abs(found_db - measured_db).max() < 1.7
+
+
+@pytest.mark.parametrize(("name", "keywords", "largest_rms_db"), [
+    ("asphalt_road", {}, 0.5), ("concrete_road", {}, 0.5),
+    ("grass", {"roughness_height": 0.0628, "backscatter_share": 0.0018}, 1.3)])
+def test_grounds_at_10_ghz_follow_their_regression_as_the_page_on_clutter_says(name, keywords, largest_rms_db):
+    head = (data_folder("materials") / "backscatter" / f"{name}.csv").read_text(encoding="utf-8").splitlines()[0]
+    level, slope = (float(re.search(f"{key} = (-?[0-9.]+)", head.split("at 77 GHz")[-1])[1]) for key in ("A1", "A2"))
+    grazing_deg = np.arange(3.0, 31.0)
+    ground = ep.materials[name].replace(**keywords)
+    found_db = 10 * np.log10(ground.backscatter(np.radians(grazing_deg), frequency=10e9))
+    assert np.sqrt(np.mean((found_db - level - slope * np.log10(grazing_deg / 20.0))**2)) < largest_rms_db
 
 
 def test_the_backscatter_of_lamberts_lobe_is_its_closed_form():

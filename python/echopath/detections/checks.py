@@ -9,6 +9,7 @@ from ..arguments.keywords import refuse_unknown
 from ..arguments.objects import objects_rule
 from ..labels.planes import with_receivers
 from ..paths.families import check_objects
+from ..spectra.angles import require_told_folds
 from ..spectra.range_doppler import CFAR_RULES
 
 # Of the keywords of `detect_frame`.
@@ -34,3 +35,4 @@ def require_folds(radar, folds: int) -> None:
     turns = len(radar.transmitters) if radar.multiplexing == "tdm" else 1
     if 2 * folds >= max(2, turns):
         raise refused(ValueError, "folds", f"0, or less than half of the {turns} slots in which transmitters take turns", folds)
+    require_told_folds(radar, folds)

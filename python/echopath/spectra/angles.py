@@ -16,9 +16,11 @@ from ..arguments.checks import (
     one_of,
     optional,
     real,
+    refused,
     window as window_rule,
 )
 from ..arguments.gates import gate
+from ..base.radar.velocities import turns_look_like_directions
 from .one_polarisation import warn_of_mixed_polarisations
 
 BeamMethod = Literal["bartlett", "capon"]
@@ -180,7 +182,9 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     max_peaks: of a cell, the strongest, one of each beam
     peak_range_db: dB below the strongest of the cell, within which others count
     folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
-        tell apart ("tdm"); less than half the number of transmitters
+        tell apart ("tdm"); less than half the number of transmitters. Those that stand in even steps, in the order of their
+        turns, where receivers have no extent, as a column beside a row of receivers, tell none: a fold looks like another
+        elevation, unless one is given here; another order of the transmitters tells them
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
         beams, as in `beamform`
     progress: callable (stage, fraction), True for bars, or None
@@ -188,8 +192,19 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     IndexError naming the argument.
     """
     warn_of_mixed_polarisations(radar, "estimate_angles")
+    if azimuth is None and elevation is None:
+        require_told_folds(radar, folds)
     return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, max_peaks=max_peaks,
                                  peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
                                  compensate=compensate, diagonal_loading=diagonal_loading,
                                  velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
                                  forward_backward=forward_backward, progress=progress)
+
+
+def require_told_folds(radar: _core.Radar, folds: int) -> None:
+    """Raises ValueError for folds where they look like other directions."""
+    in_turns = radar.multiplexing == "tdm" and 0 < 2 * folds < len(radar.transmitters)
+    if in_turns and turns_look_like_directions(radar):
+        raise refused(ValueError, "folds", "0 where transmitters stand in even steps in the order of their turns, across the "
+                      "line of the receivers: a fold looks like another direction, and another order of the transmitters tells "
+                      "them apart", folds)

@@ -268,6 +268,30 @@ def test_fast_targets_unfold_by_their_slots():
     assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] - 0.4) > 2 * DEGREE
 
 
+def test_a_column_of_transmitters_tells_folds_in_an_order_that_is_not_that_of_their_heights():
+    """In order a fold has the phases of another elevation; 4 m/s is beyond the +-2.7 m/s of the map."""
+    chirps = waveform(num_chirps=32).replace(chirp_interval=30e-6)
+    step, heights = 0.5 * chirps.wavelength, (0, 7, 3, 10, 5, 1, 8, 4, 11, 2, 9, 6)
+    row = [ep.Antenna((0, step * n, 0)) for n in range(4)]
+    shuffled, column = (ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, step * m)) for m in order], receivers=row)
+                        for order in (heights, sorted(heights)))
+    for radar, is_told in ((shuffled, True), (column, False)):
+        spectrum = ep.range_doppler(cube_of_points(radar, [(at(10.0, 0.2, 0.05), at(4.0, 0.2, 0.05), 1e-5)]), radar)
+        cell = strongest_cell(spectrum)
+        if is_told:
+            found = ep.estimate_angles(spectrum, radar, cells=[cell], folds=1)
+            assert found.velocity[0] == pytest.approx(4.0, abs=SPEED_CELL)
+            assert found.elevation[0] == pytest.approx(0.05, abs=DIRECTION_TOLERANCE)
+            continue
+        assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).elevation[0] - 0.05) > 5 * DEGREE
+        told = ep.estimate_angles(spectrum, radar, elevation=0.05, cells=[cell], folds=1)
+        assert told.velocity[0] == pytest.approx(4.0, abs=SPEED_CELL)
+        for call in (lambda: ep.estimate_angles(spectrum, radar, cells=[cell], folds=1),
+                     lambda: ep.simulate(ep.Scene(), radar, detections={"folds": 1})):
+            with pytest.raises(ValueError, match="^folds: must be 0 where transmitters stand in even steps in the order of"):
+                call()
+
+
 def test_codes_of_signs_tell_no_velocities_apart():
     """All transmitters of "bpm" send in every slot: there is no phase between turns that could tell."""
     radar = three_by_four().replace(multiplexing="bpm")

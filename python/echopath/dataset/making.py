@@ -119,7 +119,8 @@ def make(template: str | os.PathLike[str], folder: str | os.PathLike[str], *, wo
     Files that are not as they were written are made again; scenes that failed are left alone without `only_failed`.
     template: path of a TOML file (keys: data/README.md); folder: new, or of this template, with as many scenes or fewer; with a
         scheduler also an address of fsspec, such as s3://bucket/folder
-    workers: number of processes, which share the processors; 1 with a scheduler
+    workers: number of processes, which share the processors; 1 with a scheduler. Each reads the script, whose call belongs
+        below if __name__ == "__main__":
     shard: (k, n), the k-th of n shards, k from 1 to n: every n-th scene from the k-th on, while other processes or machines make
         the other shards in the same folder; None: all
     frames: (first, end), numbers of frames from 0: the scenes that one of first ... end - 1 belongs to; None: all

@@ -57,7 +57,7 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
     """The same by `count` processes with an equal share of the processors each. One that dies is replaced.
 
     path: of the template. Warns as they do, of each text once. Raises ep.FileError where one of them cannot write a file,
-    ChildProcessError where they go on dying.
+    ChildProcessError where they go on dying, or end before they begin, as in a script without a guard of its main module.
     """
     context = multiprocessing.get_context("spawn")
     threads = max(1, (os.cpu_count() or 1) // count)
@@ -94,16 +94,20 @@ def _libraries_take(threads: int) -> Iterator[None]:
 
 
 class _Listener:
-    """Repeats what workers say: warnings once for each text, and errors."""
+    """Repeats what workers say: warnings once for each text, and errors. have_begun: whether any has said (None) that it works"""
 
     def __init__(self, sayings: Any):
         self._sayings = sayings
         self._heard: set[str] = set()
+        self.have_begun = False
 
     def repeat(self) -> None:
         """Repeats all that has been said since."""
         while not self._sayings.empty():
             said = self._sayings.get()
+            self.have_begun = True
+            if said is None:
+                continue
             if not isinstance(said, Warning):
                 raise said
             if str(said) not in self._heard:
@@ -118,8 +122,8 @@ def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: C
     most_deaths = 3 * len(processes) + len(scenes)
     while missing:
         time.sleep(PAUSE)
-        listener.repeat()
         ended = [process.exitcode is not None for process in processes]
+        listener.repeat()
         for scene in list(missing):
             record = read_record(folder, scene)
             if record.state != "to do":
@@ -128,6 +132,9 @@ def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: C
         for index, process in enumerate(processes):
             if missing and ended[index]:
                 deaths += process.exitcode != 0
+                if process.exitcode > 0 and not listener.have_begun:  # it was not killed
+                    raise ChildProcessError("workers: end before they begin, as each reads the script that asks for them: what "
+                                            "calls make there belongs below if __name__ == '__main__':")
                 if deaths > most_deaths:
                     raise ChildProcessError(f"workers: {deaths} of them died, the last with exit code {process.exitcode}")
                 processes[index] = start(index)
@@ -139,6 +146,7 @@ def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, say
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     set_num_threads(threads)
+    sayings.put(None)
     warnings.showwarning = lambda message, *place: sayings.put(message)
     try:
         for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):

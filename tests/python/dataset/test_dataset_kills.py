@@ -112,3 +112,12 @@ def test_a_disk_that_fills_ends_the_run_and_another_goes_on(small_dataset, tmp_p
     make(path, tmp_path)
     (tmp_path / "small").rmdir()
     assert bytes_of(tmp_path) == bytes_of(folder)
+
+
+def test_a_script_that_each_worker_would_run_anew_is_told_so_at_once(small_dataset, tmp_path):
+    """Without a guard of its main module; as many workers as scenes and more were started, one after the other."""
+    script = tmp_path / "unguarded.py"
+    script.write_text("import sys\nfrom echopath import dataset\nlist(dataset.make(sys.argv[1], sys.argv[2], workers=2))\n")
+    done = subprocess.run([sys.executable, script, small_dataset[0], tmp_path / "out"], capture_output=True, text=True)
+    assert done.stderr.splitlines()[-1].startswith("ChildProcessError: workers: end before they begin, as each reads the script")
+    assert done.stderr.count("Traceback") <= 3

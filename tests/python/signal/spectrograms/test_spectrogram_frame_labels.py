@@ -95,6 +95,19 @@ def test_labels_of_a_channel_are_those_of_its_antennas(retrace):
             assert labels.power[labels.part_names.index(name)] == pytest.approx(alone, rel=1e-6, abs=1e-9 * alone.max())
 
 
+@pytest.mark.parametrize("place", [-0.4, 0.1])  # m, in mid-frame: before one ball then, or before the other first
+def test_objects_that_come_out_of_hiding_in_a_renewed_frame_keep_their_own_echoes(place):
+    """Each has what its selection takes, though its records have other families, or have them in another order."""
+    scene, radar = make_scene(), make_radar()
+    scene.add(ep.actors.plate(0.3, 0.3), name="screen", material="metal", position=(3, place + 0.25, 0), yaw=np.pi,
+              motion=ep.LinearMotion((0, -0.5 / radar.frame_duration, 0)))
+    frame = ep.simulate(scene, radar, num_rays=1500, guard=False, retrace="always", keyframes=4)
+    labels = ep.spectrogram(frame, window_length=32, labels=True).labels["objects"]
+    for name in (*SPEEDS, "screen"):
+        alone = ep.spectrogram(frame, part=name, window_length=32).power
+        assert labels.power[labels.part_names.index(name)] == pytest.approx(alone, rel=1e-6, abs=1e-9 * alone.max()), name
+
+
 def test_ghosts_are_told_apart_as_in_maps():
     frames = frames_of(make_scene(["fast"], wall=True), 2, labels=True)
     labels = ep.spectrogram(frames, window_length=32, labels={"noise": False}, channel=(0, 1)).labels

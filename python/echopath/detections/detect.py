@@ -25,6 +25,8 @@ from ..spectra.range_doppler import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMeth
 from . import labelling
 from .detections import Detections
 from .directions import directions_of
+from .echo_fields import EchoFields
+from .family_fields import FamilyFields
 from .noise import warn_of_missing_noise
 from .uneven_fields import echo_fields
 
@@ -101,6 +103,19 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     Returns Detections: range in m, from 0 on, velocity in m/s and the rest. Raises ValueError naming the argument,
     KeyboardInterrupt on Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
     """
+    rules = {"method": method, "false_alarm_rate": false_alarm_rate, "guard_velocity": guard_velocity, "guard_range": guard_range,
+             "training_velocity": training_velocity, "training_range": training_range, "rank": rank, "beams": beams}
+    return detected(spectrum, radar, rules, angles=angles, paths=paths, parts=parts, labels=labels, beside=beside,
+                    objects=objects, noise_margin_db=noise_margin_db, start_time=start_time, progress=progress)
+
+
+def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=None, labels=None, beside=None, objects=None,
+             noise_margin_db=None, start_time=None, signals: dict | None = None, progress=None) -> Detections:
+    """As `detect`, of arguments that are right.
+
+    rules: keywords of `cfar`; signals: with paths, of a frame whose records are renewed: {Family: cube} of all its families,
+        which tell objects and ghosts in place of the paths
+    """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
     _require_other_names(parts, beside)
@@ -110,16 +125,16 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
         labelling.require_cells_of(spectrum, labels)
     parts = None if parts is None else labelling.maps_of("parts", _signals_of(parts, paths, radar, progress), spectrum, radar)
     beside = labelling.maps_of("beside", beside, spectrum, radar)
-    found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
-                 guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
-                 beams=beams, progress=progress)
+    found = cfar(spectrum, radar, **rules, progress=progress)
     gains = EchoGains(radar, spectrum.range, _start_of(paths) if start_time is None else start_time)
-    warn_of_missing_noise(radar, _core.mean_power(spectrum) if beams else found.power, gains.of_filters)
+    warn_of_missing_noise(radar, _core.mean_power(spectrum) if rules["beams"] else found.power, gains.of_filters)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
+    beams = rules["beams"]
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
-    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains, beams), echoes,
+    fields = echoes if signals is None else FamilyFields(signals, radar, spectrum)
+    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains, beams), fields,
                          progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
@@ -150,15 +165,16 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
     return floor_over(_core.cell_noise_power(radar, spectrum.window), margin_db)
 
 
-def _labels_of(spectrum, cells, power, makers: _Makers, echoes, progress) -> dict:
-    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; progress: as in `detect`."""
+def _labels_of(spectrum, cells, power, makers: _Makers, fields: EchoFields | FamilyFields | None, progress) -> dict:
+    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; fields: with paths; progress: as in `detect`."""
     paths, parts, labels, beside, objects, noise_floor, gains, beams = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
-        families, whole = labelling.families_of_cells(of_paths, echoes, cells, gains, noise_floor=noise_floor,
+        sorted_by = fields if isinstance(fields, FamilyFields) else of_paths
+        families, whole = labelling.families_of_cells(sorted_by, fields, cells, gains, noise_floor=noise_floor,
                                                        progress=progress)
-        measured = power if beams else echoes.measured(cells)
+        measured = power if beams else fields.measured(cells)
         found.take_families(families, whole, measured, labelling.resolved_families(paths, of_paths, progress))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)

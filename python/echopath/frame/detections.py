@@ -6,9 +6,11 @@ import dataclasses
 from .. import _core
 from ..arguments.checks import Progress, an, checked
 from ..arguments.objects import Objects
-from ..arguments.settings import LEAST_MARGIN_DB
-from ..detections import Detections, detect
+from ..arguments.settings import FRAME_KEYWORDS, LEAST_MARGIN_DB
+from ..detections import Detections, detected
 from ..detections.checks import RULES, require_folds
+from ..paths.families import families
+from ..signals.parts import decompose
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from .frame import Frame
 
@@ -28,7 +30,9 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
         transmitters 1 tries those a turn of the map faster and slower, too. Without it, what is too fast for the map has a
         wrong azimuth as well
     progress: callable (stage, fraction), True for bars, or None
-    Objects and ghosts are told apart above the noise margin of the frame's labels, 10 dB where it has none.
+    Objects and ghosts are told apart above the noise margin of the frame's labels, 10 dB where it has none. Of frames whose
+    records are renewed (`retrace`) they are those of all records, which takes a synthesis of its own, and the paths behind them
+    those of mid-frame.
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
     signals, KeyboardInterrupt on Ctrl-C.
     """
@@ -37,12 +41,20 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     parts = next(iter(frame.part_spectra.values()), None)
     require_folds(frame.radar, folds)
     settings = {"max_peaks": max_peaks, "folds": folds} if len(_core.virtual_array(frame.radar).elements) > 1 else None
-    found = detect(frame.spectrum, frame.radar, method=method, false_alarm_rate=false_alarm_rate,
-                   guard_velocity=guard_velocity, guard_range=guard_range, training_velocity=training_velocity,
-                   training_range=training_range, rank=rank, beams=beams, paths=frame.paths, parts=parts,
-                   beside=frame.beside_spectra or None, objects=objects, angles=settings,
-                   noise_margin_db=_noise_margin_db(frame), progress=progress)
+    rules = {"method": method, "false_alarm_rate": false_alarm_rate, "guard_velocity": guard_velocity, "guard_range": guard_range,
+             "training_velocity": training_velocity, "training_range": training_range, "rank": rank, "beams": beams}
+    found = detected(frame.spectrum, frame.radar, rules, paths=frame.paths, parts=parts, beside=frame.beside_spectra or None,
+                     objects=objects, angles=settings, noise_margin_db=_noise_margin_db(frame),
+                     signals=_signals_of_families(frame, objects, progress), progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)
+
+
+def _signals_of_families(frame: Frame, objects: Objects, progress) -> dict | None:
+    """{Family: cube} of a frame whose records are renewed, None of others: their paths tell."""
+    if frame.retrace == "never":
+        return None
+    settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
+    return decompose(frame.paths, frame.radar, families(frame.paths, objects), **settings, progress=progress)
 
 
 def _noise_margin_db(frame: Frame) -> float | None:

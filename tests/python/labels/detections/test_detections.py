@@ -160,6 +160,23 @@ def test_objects_and_ghosts_are_those_of_the_paths():
     assert found.ghost_type[np.argmin(np.abs(found.range - 0.5 * (10.0 + image)))] in (1, 2)
 
 
+@pytest.mark.parametrize("parts", [None, {"late": "T 'late' R"}])
+def test_what_a_renewed_frame_sees_before_and_after_its_middle_is_detected_as_itself(parts):
+    """A screen goes past before a ball, and hides it when the frame is traced."""
+    radar, scene = radar_with(), scene_of({"seen": (11.0, 0.3, 0.0), "late": (6.3, -0.3, 0.0)})
+    speed = 1.0 / radar.frame_duration
+    scene.add(ep.actors.plate(0.3, 0.3), name="screen", material="wood", position=at(3.0, -0.3) - (0.0, 0.5, 0.0), yaw=np.pi,
+              motion=ep.LinearMotion((0.0, speed, 0.0)))
+    frame = ep.simulate(scene, radar, num_rays=3000, max_bounces=1, parts=parts, retrace="always", keyframes=8, detections=True,
+                        guard=False)
+    found = frame.detections
+    assert frame.paths.select("T 'late' R").num_paths == 0
+    for name, distance in (("seen", 11.0), ("late", 6.3)):
+        near = np.abs(found.range - distance) < 0.3  # m, two cells
+        assert near.any() and np.all(found.object[near] == name) and not found.is_noise[near].any()
+        assert parts is None or np.all(found.part[near] == ("late" if name == "late" else "other"))
+
+
 def test_several_targets_of_a_cell_have_directions_of_their_own():
     radar = radar_with(receivers=16)
     targets = {"left": (10.0, 0.4, 0.0), "right": (10.0, -0.4, 0.0)}

@@ -6,6 +6,8 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import OWN_GROUP, CellBox, Filters, Session, from_frame, from_paths
+from echopath_viewer.model.frames.live_session import input_of_view, live_of
+from support.radars import build_radar
 
 SYNTHESIS = 1e-6    # relative to the largest: the synthesis promises 1e-7 of all amplitudes, which other paths share
 SLOW_CHIRPS = 4e-3  # s: the walker goes most of a metre in the frame
@@ -33,7 +35,7 @@ def test_a_part_named_in_the_viewer_is_made_as_the_frame_was(frame, settings):
     wanted = made.part_spectra["route"]["ghost"].values
     largest = np.abs(wanted).max()
     assert np.abs(part.spectrum.values - wanted).max() <= SYNTHESIS * largest
-    assert session.signals.settings == {"evaluate": "interpolated", "keyframes": 0} | settings
+    assert session.signals.settings == {"evaluate": "interpolated", "keyframes": 0, "replay": "material"} | settings
     if settings["retrace"] == "always":  # this scene has no path that "invalid" renews
         plain = ep.range_doppler(ep.synthesize(made.paths.select(session.visible)), made.radar).values
         assert np.abs(plain - wanted).max() > CLEARLY * largest
@@ -46,6 +48,36 @@ def test_moving_echoes_are_evaluated_as_in_the_frame(frame):
     cube = ep.synthesize(made.paths.select(session.lit), evaluate="samples")
     assert session.lit.any() and np.array_equal(session.signals.cube(session.lit), cube)
     assert not np.array_equal(ep.synthesize(made.paths.select(session.lit)), cube)
+
+
+def frame_of_a_ball_along_a_wall(**settings) -> ep.Frame:
+    """The wall is not flagged: the way over it has another point of reflection in each chirp."""
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(30.0, 4.0), name="wall", material="metal", position=(10, 3, 0), yaw=-np.pi / 2)
+    scene.add(ep.actors.sphere(0.4, edge=0.06), name="ball", material="metal", smooth=True, position=(8, 0, 0.8),
+              motion=ep.LinearMotion((20.0, 0.0, 0.0)))
+    radar = build_radar([(0, 0, 0.7)], [(0, 0.01, 0.7)], num_chirps=32, bandwidth=5e8, chirp_interval=2e-4)
+    return ep.simulate(scene, radar, num_rays=4000, max_bounces=2, replay="fermat", guard=False, **settings)
+
+
+def test_points_of_reflection_slide_as_in_the_frame():
+    ghosts = "T 'ball' 'wall' R | T 'wall' 'ball' R"
+    made = frame_of_a_ball_along_a_wall(parts={"ghost": ghosts})
+    session = Session(from_frame(made))
+    session.set_filters(Filters(expression=ghosts))
+    found, wanted = session.add_part("mine").spectrum.values, made.part_spectra["parts"]["ghost"].values
+    assert np.abs(found - wanted).max() <= SYNTHESIS * np.abs(wanted).max()
+
+
+def test_signals_of_a_scene_that_becomes_live_are_made_as_before():
+    live = live_of(Session(from_frame(frame_of_a_ball_along_a_wall(evaluate="samples"))), num_rays=4000)
+    view = live.update()
+    made = ep.synthesize(live.paths(), replay="fermat", evaluate="samples")
+    largest = np.abs(made).max()
+    assert np.abs(view.cube - made).max() <= SYNTHESIS * largest
+    assert np.abs(input_of_view(live, view).signals.whole() - made).max() <= SYNTHESIS * largest
+    for other in ({"replay": "fermat"}, {"evaluate": "samples"}):
+        assert np.abs(ep.synthesize(live.paths(), **other) - made).max() > 10 * SYNTHESIS * largest
 
 
 def test_a_map_within_a_part_is_of_that_part_where_the_scene_is_traced_anew(frame):

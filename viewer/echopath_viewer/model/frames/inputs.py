@@ -72,7 +72,7 @@ def from_frame(frame, title: str = "") -> ViewInput:
              for partition, cubes in frame.parts.items()
              for index, (name, selection) in enumerate(zip(cubes, selections_of(frame.selections[partition])))]
     signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
-                      getattr(frame, "keyframes", 0))
+                      getattr(frame, "keyframes", 0), frame.replay)
     return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title, _known(frame),
                      angles=dict(frame.angle_settings), weather=_weather_of(frame.scene, frame.paths))
 

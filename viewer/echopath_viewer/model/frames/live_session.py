@@ -16,11 +16,14 @@ AS_TRACED = ("max_bounces", "start_time", "seed", "faint_power", "polarization",
 
 
 def live_of(session, num_rays: int = DEFAULT_RAYS):
-    """ep.Live of scene, weather, radar and start of the frame of a session; maps have its window and zero_pad."""
+    """ep.Live of scene, weather, radar and start of the frame of a session; signals are made as its own, and maps have its
+    window and zero_pad."""
     frame = session.paths.frame
     as_traced = {name: getattr(frame, name) for name in AS_TRACED}
     scene = ep.Scene(session.scene, weather=session.weather)
-    return ep.Live(scene, session.radar, num_rays=num_rays, **as_traced, **session.signals.spectrum_settings)
+    signals = session.signals
+    return ep.Live(scene, session.radar, num_rays=num_rays, evaluate=signals.evaluate, replay=signals.replay, **as_traced,
+                   **signals.spectrum_settings)
 
 
 def session_of_view(live, view, state, spectrum_settings: dict):
@@ -46,7 +49,8 @@ def input_of_view(live, view, spectrum_settings: dict | None = None) -> ViewInpu
     """What the latest view of a live scene shows; spectrum_settings: window and zero_pad of its map, None: as the map tells."""
     settings = {"window": view.map.window, "zero_pad": view.map.zero_pad} if spectrum_settings is None else spectrum_settings
     paths = live.paths(preview=view.is_preview)
-    return ViewInput(paths, PartSet(whole_part(view.map)), Signals(paths, settings), view.cube, TITLE, weather=live.scene.weather)
+    signals = Signals(paths, settings, **{name: live._signal[name] for name in ("evaluate", "replay")})
+    return ViewInput(paths, PartSet(whole_part(view.map)), signals, view.cube, TITLE, weather=live.scene.weather)
 
 
 def _without_parts(state: dict) -> dict:

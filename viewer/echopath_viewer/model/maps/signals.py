@@ -12,18 +12,19 @@ NO_WORDS = ("signal: this frame is traced anew within (retrace='{}'), so that it
 
 @dataclasses.dataclass(frozen=True)
 class Signals:
-    """paths: of `trace`; spectrum_settings: of `range_doppler`; evaluate, retrace, keyframes: of `synthesize`."""
+    """paths: of `trace`; spectrum_settings: of `range_doppler`; evaluate, retrace, keyframes, replay: of `synthesize`."""
 
     paths: object
     spectrum_settings: dict
     evaluate: str = "interpolated"
     retrace: str = "never"
     keyframes: int = 0
+    replay: str = "material"
 
     @property
     def settings(self) -> dict:
         """Keywords of `synthesize` and `decompose`."""
-        return {"evaluate": self.evaluate, "retrace": self.retrace, "keyframes": self.keyframes}
+        return {"evaluate": self.evaluate, "retrace": self.retrace, "keyframes": self.keyframes, "replay": self.replay}
 
     @property
     def is_sum_over_paths(self) -> bool:

@@ -63,8 +63,8 @@ class Live:
     no ray that sees the scene as before. Where a change concerns all rays (the radar's place, its start frequency, the half of
     space into which its patterns look, the first transmitter's polarisation, a flagged mirror, a scene that grows beyond the next
     power of two of metres), all are shot again. Either way the view is that of a new Live of the changed scene, to 1e-12 of the
-    largest sample. What no path makes is not in it: noise, echoes of rain, other radars and faults of the receiver, which
-    `simulate` has.
+    largest sample. What no path makes is not in it: noise, echoes of rain, other radars, faults of the receiver and what
+    `demultiplex` leaves of the codes of transmitters, which `simulate` has.
     scene: is copied; radar: that looks at it, which may be set to another one at any time
     num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view; the shares do not go by errors or by
         what moves as those of `trace` do, because these change with every change of the scene, and are rounded, so that

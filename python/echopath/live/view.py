@@ -18,7 +18,8 @@ class LiveView:
     """The signal and map of a live scene after a change; made by `Live`.
 
     number: of the changes that it shows: 0 for the scene as it was given, one more for each change since
-    cube: complex128 [tx, rx, chirp, sample], the noise-free IF signal in sqrt(W), read-only
+    cube: complex128 [tx, rx, chirp, sample], the noise-free IF signal in sqrt(W), read-only; of transmitters that send at once
+        that of each alone, as of `decompose`
     map: RangeDoppler of it, with values [tx, rx, velocity, range]
     num_rays: of its record, about as many as were asked for; num_rays_shot: how many of these were shot for this view, the
         others kept

@@ -11,6 +11,8 @@ from ..base.numerics.rates import rate_of, step_within
 from ..base.numerics.rotations import angular_velocity
 from ..base.numerics.triangles import areas_of
 
+_SCALE = 1e-12  # of the squares of scales, by which rounding changes these
+
 
 class Boxes(NamedTuple):
     """The boxes of N objects, in world axes.
@@ -82,10 +84,11 @@ class _Body:
         centre = 0.5 * (low + high)
         rate = rate_of(self._frame, time, step)
         velocity, gone = rate[:3, 3] + rate[:3, :3] @ centre, np.zeros(3)
-        if not self._is_rigid():
+        is_rigid = self._is_rigid()
+        if not is_rigid or self._is_stretched_anew(time, step):
             velocity = velocity + rotation @ rate_of(self._own_centroid, time, step)
-            if self._node < 0 or self._nodes[self._node].motion is None:  # what carries itself along
-                gone = rotation @ (self._own_centroid(time) - self._own_centroid(self._reference_time()))
+        if not is_rigid and (self._node < 0 or self._nodes[self._node].motion is None):  # what carries itself along
+            gone = rotation @ (self._own_centroid(time) - self._own_centroid(self._reference_time()))
         spin = angular_velocity(rotation, rate[:3, :3])
         return origin + rotation @ centre, high - low, rotation, velocity, spin, origin + gone
 
@@ -93,16 +96,26 @@ class _Body:
         """World from the object's node [4, 4] without its scale, and from where the motion of all its meshes has brought that;
         the world itself for objects that share no node. What is mirrored looks ahead and up as it does, and left is the other
         side."""
+        transform = self._scaled_frame(time)
+        left, _, right = np.linalg.svd(transform[:3, :3])
+        nearest = left @ right
+        transform[:3, :3] = nearest if np.linalg.det(nearest) > 0.0 else nearest * [1.0, -1.0, 1.0]
+        return transform
+
+    def _scaled_frame(self, time: float):
+        """Likewise with its scale, [4, 4]."""
         transform = np.eye(4) if self._shared is None else _moved(self._shared, time)
         index = self._node
         while index >= 0:
             node = self._nodes[index]
             transform = _placed(node, time) @ transform
             index = node.parent
-        left, _, right = np.linalg.svd(transform[:3, :3])
-        nearest = left @ right
-        transform[:3, :3] = nearest if np.linalg.det(nearest) > 0.0 else nearest * [1.0, -1.0, 1.0]
         return transform
+
+    def _is_stretched_anew(self, time: float, step: float) -> bool:
+        """Whether the scale changes, as that of a limb does which turns below a body that is scaled along one axis alone."""
+        before, after = (self._scaled_frame(time + late)[:3, :3] for late in (-step, step))
+        return not np.allclose(before.T @ before, after.T @ after, rtol=0.0, atol=_SCALE * np.sum(before**2))
 
     def _own_centroid(self, time: float):
         """Centroid of the surface, [3] in m, in the axes of the box."""

@@ -33,8 +33,8 @@ class Truth:
         far on in these axes as the centroid of the surface has come since time 0, or since the nearest time for which all
         their motions are made
     velocity: [N, 3] m/s, world: of the box's centre as part of the object's own axes, which node and motion carry; of
-        bodies that deform, or whose parts move by themselves, plus the velocity of the centroid of the surface in these axes:
-        a box whose faces go from limb to limb has no steady velocity of its own
+        bodies that deform, whose scale changes or whose parts move by themselves, plus the velocity of the centroid of the
+        surface in these axes: a box whose faces go from limb to limb has no steady velocity of its own
     heading: [N] rad, horizontal direction of the velocity, left positive from the world's x; NaN below 0.1 mm/s
     size: [N, 3] m, of the smallest box about all vertices along the object's own axes; rotation: [N, 3, 3], world_from_box:
         those axes, of the node that bears its name, or of the lowest node above all its meshes; where all of these have one

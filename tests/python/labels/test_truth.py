@@ -199,6 +199,21 @@ def test_velocity_of_what_goes_round(name):
     assert found.size[0] == pytest.approx([1, 1, 1])
 
 
+def test_velocity_of_what_turns_below_a_body_that_is_scaled_along_one_axis():
+    """A box that goes round, whose way is an ellipse and which grows and shrinks along the scaled axis."""
+    scene, spin, scale = ep.Scene(), 5.0, np.diag([2.0, 1.0, 1.0])
+    stretched = np.eye(4)
+    stretched[:3, :3], stretched[:3, 3] = scale, (12, 0, 0)
+    scene.add(name="wide", transform=stretched)
+    scene.add(name="arm", parent="wide", motion=ep.LinearMotion(angular_velocity=(0, 0, spin)))
+    scene.add(ep.actors.box(1.0), name="hand", parent="wide/arm", position=(2.0, 1.0, 0.0), material="metal")
+    found = ep.truth(trace(scene, start_time=0.2), ["wide/arm"])
+    c, s = np.cos(spin * found.time[0]), np.sin(spin * found.time[0])
+    middle, rate = np.array([2 * c - s, 2 * s + c, 0.0]), spin * np.array([-2 * s - c, 2 * c - s, 0.0])
+    assert found.position[0] == pytest.approx([12, 0, 0] + scale @ middle)
+    assert found.velocity[0] == pytest.approx(scale @ rate, abs=RATE_ERROR)
+
+
 def test_velocity_of_a_body_that_deforms():
     """A tetrahedron that goes along y while it grows about its centroid: the centroid has the speed, whatever the box does."""
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])

@@ -13,7 +13,7 @@ from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
-from .histories import UNSTEADY, Histories, length_and_field, off_parabola, phase_of
+from .histories import FLASHING, UNSTEADY, Histories, length_and_field, off_parabola, phase_of, swing_of
 from .response import MAX_SWEEP, Response
 
 SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
@@ -25,6 +25,7 @@ MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
 LEFT_OUT = 1e-6        # of the power of single paths in a cell: those that together hold less
 STRONGEST = 0.99       # of the bounds of the powers in a cell: those that tell how much power there is at least
 FADED = 1e-20          # of the power of the strongest path: how the phases of weaker ones turn is rounding
+FAINT = 1e-2           # of the largest field of a cell of range: what is less is taken as it is in mid-frame though it flashes
 SAME_BIN = 0.25        # bins of range, up to which all channels have a path in the same place
 SAME_LINE = 0.1        # bins of range, over which a response is a straight line: 0.4 % of the peak
 
@@ -34,7 +35,7 @@ class EchoFields:
 
     Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
     the velocity of `path_cells` and its change over the frame for the first antennas; of echoes whose phase is no parabola over
-    the frame, as of blades and wheels, the field of the first antennas in each chirp. Cells are asked for together
+    the frame, as of blades and wheels, or that flash, the field of the first antennas in each chirp. Cells are asked for together
     (`evaluate`). Those paths of a cell are left out that together hold less than a millionth of its power, as far as the
     windows bound what each may give.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
@@ -148,7 +149,7 @@ class EchoFields:
         """Follows the echoes that may hold cells [(velocity, range)] and whose phase is no parabola, the strongest first."""
         ranges = {distance for _, distance in cells}
         near = _all_of([self._unsteady_near(distance) for distance in ranges], len(self._power))
-        strength = np.abs(self._echoes["first"][near])
+        strength = self._echoes["strongest"][near]
         self._histories.follow(self._echoes["index"][near[np.argsort(-strength, kind="stable")]])
         rows = self._histories.rows(self._echoes["index"][near])
         followed, rows = near[rows >= 0], rows[rows >= 0]
@@ -160,7 +161,7 @@ class EchoFields:
 
     @cached_property
     def _unsteady(self) -> np.ndarray:
-        """Places in the echoes of those whose phase is no parabola, ascending."""
+        """Places in the echoes of those that may be followed, ascending."""
         return np.flatnonzero(self._echoes["unsteady"])
 
     @cached_property
@@ -189,10 +190,12 @@ class EchoFields:
         sweep = np.where(told, _speed_change(paths, cells.length)[index] / bin_width, 0.0)
         range_step = waveform.range_resolution / pad
         travel = np.where(told, cells.velocity[index] * chirps_duration(paths.radar) / (range_step * pad), 0.0)
-        unsteady = (off > UNSTEADY) | (np.abs(sweep) > MAX_SWEEP)
+        swing, strongest = (values[index] for values in swing_of(paths))
+        flashes = (swing > FLASHING) & (strongest > FAINT * _largest_beside(cells.range_index[index], strongest))
+        unsteady = (off > UNSTEADY) | (np.abs(sweep) > MAX_SWEEP) | flashes
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
-                "sweep": sweep, "first": first, "length": cells.length[index], "unsteady": unsteady,
+                "sweep": sweep, "first": first, "strongest": strongest, "length": cells.length[index], "unsteady": unsteady,
                 "travel": np.where(unsteady, np.copysign(away / waveform.range_resolution, travel), travel)}
 
     @cached_property
@@ -324,6 +327,13 @@ def _without_weakest(power, least: float) -> np.ndarray:
     ascending = np.sort(power)
     held = np.cumsum(ascending)
     return power >= ascending[np.searchsorted(held, min(least, held[-1]))] if len(held) else np.zeros(0, bool)
+
+
+def _largest_beside(cells, field) -> np.ndarray:
+    """The largest [N] of the fields in the same of some cells [N]."""
+    largest = np.zeros(int(cells.max(initial=0)) + 1)
+    np.maximum.at(largest, cells, field)
+    return largest[cells]
 
 
 def _speed_change(paths, length):

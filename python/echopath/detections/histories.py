@@ -1,4 +1,4 @@
-"""Echoes whose phase is no parabola over the frame, as those of blades and wheels: followed from chirp to chirp."""
+"""Echoes that flash, or whose phase is no parabola over the frame, as of blades and wheels: followed from chirp to chirp."""
 from __future__ import annotations
 
 import numpy as np
@@ -9,6 +9,7 @@ from ..paths.subset import subset
 
 CHECKED = (0.137, 0.311, 0.618, 0.843)  # of the frame: at no simple fraction, as what turns comes back after whole turns
 UNSTEADY = 0.05       # turns of the phase, by which a parabola may be wrong
+FLASHING = 0.25       # of the largest field, by which one changes that is followed
 BYTES = 28            # of an echo in a chirp, while it is evaluated
 MAX_MEMORY = 2 ** 28  # bytes, of all echoes that are followed
 
@@ -27,6 +28,15 @@ def off_parabola(paths, middle) -> tuple:
         parabola = middle + 0.5 * place * (after - before) + place ** 2 * (0.5 * (after + before) - middle)
         off, away = np.maximum(off, np.abs(length - parabola)), np.maximum(away, np.abs(length - middle))
     return off / paths.radar.waveform.wavelength, away
+
+
+def swing_of(paths) -> tuple:
+    """(share, sqrt(W)), [P] each: by how much of its largest the field of each path changes among the first, the middle and the
+    last chirp and the checked times, and that largest."""
+    first, centre, last = chirp_times(paths)
+    fields = np.abs(paths.amplitudes([first, centre, last, *(first + np.array(CHECKED) * (last - first))], 0, 0))
+    largest = fields.max(axis=0)
+    return (largest - fields.min(axis=0)) / np.maximum(largest, np.finfo(float).tiny), largest
 
 
 class Histories:

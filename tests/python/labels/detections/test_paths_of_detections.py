@@ -270,6 +270,24 @@ def test_blades_that_turn_during_the_frame_make_the_cells_of_their_signal(rotor)
     assert len(cells) > 50 and np.mean(np.abs(ratio_db) < 3.0) > 0.95 and abs(np.median(ratio_db)) < 0.2
 
 
+def test_faces_that_flash_beside_the_middle_of_the_frame_make_the_cells_of_their_signal():
+    """A metal box that looks at the radar 0.4 frames after the middle, when the fields of its rays were far weaker."""
+    radar, spin, scene = radar_with().replace(transmit_power=10.0), 80.0, ep.Scene()
+    flash = radar.middle_of_frame(0.0) + 0.4 * radar.frame_duration
+    scene.add(ep.actors.box((0.5, 0.3, 0.4)), name="box", material="metal", position=(8, 0, 0), yaw=np.pi - spin * flash,
+              motion=ep.LinearMotion(angular_velocity=(0, 0, spin)))
+    paths = ep.trace(scene, radar, num_rays=1000, max_bounces=1)
+    cube = ep.synthesize(paths, radar)
+    spectrum = ep.range_doppler(cube, radar)
+    power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
+    cells, fields = np.argwhere(power > 1e-2 * power.max()), fields_of(paths, spectrum)
+    fields.evaluate(cells)
+    made = np.array([np.mean(np.abs(fields.fields(cell)[1].sum(axis=1)) ** 2) for cell in cells])
+    assert len(cells) > 50 and np.abs(10.0 * np.log10(made / power[tuple(cells.T)])).max() < 1.0
+    found = ep.detect(ep.range_doppler(ep.add_noise(cube, radar, seed=1), radar), radar, paths=paths)
+    assert len(found) > 5 and set(found.object) == {"box"} and not found.is_noise.any()
+
+
 def test_detections_of_blades_are_no_noise(rotor):
     radar, paths, cube = rotor
     noisy = ep.range_doppler(ep.add_noise(cube, radar, seed=4), radar)

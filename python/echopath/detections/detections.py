@@ -37,7 +37,7 @@ class Detections:
     power: [D] W, received, what windows lose between cells put back; noise: [D] W, mean about the cell
     part: [D] text, of the largest power in the cell; "noise" where is_noise; "" where nobody asked. In frames also what no path
         makes: "interference", "rain", "leakage"; and "residue", of other transmitters' echoes behind a code of "cdm", or of
-        "ddm" whose chirps differ
+        "ddm" or "bpm" whose chirps differ
     is_noise: bool [D], neither an echo nor another signal that stands in its cell made it
     is_resolved: bool [D], the rays know the mean received power of the object or ghost that made it to 0.3 dB (`ep.unresolved`);
         False where nobody knows

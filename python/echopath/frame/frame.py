@@ -229,7 +229,7 @@ class Frame:
     @cached_property
     def beside_spectra(self) -> dict[str, _core.RangeDoppler]:
         """Range-Doppler maps of what no path makes, without noise: {"interference", "rain", "leakage" (of the transmitters
-        into the receivers) or "residue" (what codes of "cdm", and of "ddm" whose chirps differ, leave of other
+        into the receivers) or "residue" (what codes of "cdm", and of "ddm" and "bpm" whose chirps differ, leave of other
         transmitters' echoes): RangeDoppler}, values in sqrt(W); {} where there is nothing of it."""
         return {name: _core.range_doppler(cube, self.radar, **self.spectrum_settings)
                 for name, cube in cubes_beside(self).items()}

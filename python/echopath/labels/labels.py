@@ -159,8 +159,8 @@ class Labels(PartCells):
     plane: "range_doppler" or "range_azimuth"
     velocity: [V] m/s, None in a range-azimuth map; azimuth: [A] rad, None in a range-Doppler map; range: [R] m
     part_names: [K], "other" after those that were asked for, then what no path makes, where the frame has it: "interference",
-        "rain", "leakage", "residue" (of other transmitters' echoes behind a code of "cdm", or of "ddm" whose chirps
-        differ)
+        "rain", "leakage", "residue" (of other transmitters' echoes behind a code of "cdm", or of "ddm" or "bpm" whose
+        chirps differ)
     power: [K, V, R] W of each part, mean over channels, noise-free; whole: [V, R] W of their sum as fields, which differs
         from the sum of their powers where they interfere
     share: [K, V, R], powers of the parts over their sum: they add up to 1, or are 0 where there is no power

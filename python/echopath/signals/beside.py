@@ -39,10 +39,10 @@ def leakage_map(radar, window, zero_pad: int):
 
 
 def _leaves_residue(frame) -> bool:
-    """Whether echoes of other transmitters are left in the signal of each. The signs of "bpm" leave next to nothing, and so does
-    "ddm" where all its chirps are alike."""
+    """Whether echoes of other transmitters are left in the signal of each. "bpm" and "ddm" leave next to nothing where all chirps
+    are alike."""
     radar = frame.radar
-    leaves = radar.multiplexing == "cdm" or (radar.multiplexing == "ddm" and has_steps(radar))
+    leaves = radar.multiplexing == "cdm" or has_steps(radar)
     return leaves and len(radar.transmitters) > 1 and frame.coded_cube is not None
 
 

@@ -257,12 +257,14 @@ def test_what_random_codes_leave_of_other_transmitters_has_a_name(receiver):
     assert ep.detect(frame.spectrum, radar, paths=frame.paths).is_noise.sum() > 8  # without the name they are noise
 
 
-@pytest.mark.parametrize("steps", [dict(bandwidth_steps=(0.0, 1e8, 0.0, 2e8)), dict(frequency_steps=(0.0, 2e8))], ids=str)
-def test_what_doppler_division_leaves_of_chirps_that_differ_has_a_name(steps):
+@pytest.mark.parametrize(("code", "steps"), [("ddm", dict(bandwidth_steps=(0.0, 1e8, 0.0, 2e8))),
+                                             ("ddm", dict(frequency_steps=(0.0, 2e8))),
+                                             ("bpm", dict(frequency_steps=(0.0, 1e8, 3e8)))], ids=str)
+def test_what_codes_leave_of_chirps_that_differ_has_a_name(code, steps):
     """Echoes and residue are all of the map but its noise."""
     scene = ep.Scene()
     scene.add(ep.actors.sphere(0.2), name="ball", material="metal", smooth=True, position=(4, 0.5, 0))
-    radar = array_radar(num_chirps=64, transmit_power=10.0, multiplexing="ddm", **steps)
+    radar = array_radar(num_chirps=64, transmit_power=10.0, multiplexing=code, **steps)
     frame = ep.simulate(scene, radar, num_rays=2000, max_bounces=1, labels=True, detections=True, guard=False)
     own, residue = ep.range_doppler(frame.cube, radar).values, frame.beside_spectra["residue"].values
     rest = np.mean(np.abs(frame.spectrum.values - own - residue) ** 2)

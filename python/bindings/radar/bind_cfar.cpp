@@ -163,6 +163,8 @@ void bind_cfar(py::module_& m) {
   def_cfar(m, "cfar", "What ep.cfar calls.", &cfar_of, py::arg("noise_shape") = std::vector<double>(),
            py::arg("progress") = py::none());
   def_cfar(m, "check_cfar", "Raises what cfar would for these settings, at no cost.", &check_cfar);
+  m.def("check_beams", &check_beams, py::arg("radar"), py::arg("false_alarm_rate"),
+        "Raises what cfar would in the beams of this radar, at no cost.");
   m.def("find_peaks", &peaks_of, py::arg("spectrum"), py::arg("radar"), py::arg("found"), py::arg("progress") = py::none(),
         R"(Local maxima among the cells found, and where between the cells they lie.
 

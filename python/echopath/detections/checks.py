@@ -10,7 +10,7 @@ from ..arguments.objects import objects_rule
 from ..labels.planes import with_receivers
 from ..paths.families import check_objects
 from ..spectra.angles import require_told_folds
-from ..spectra.range_doppler import CFAR_RULES
+from ..spectra.range_doppler import CFAR_RULES, FALSE_ALARM_RATE
 
 # Of the keywords of `detect_frame`.
 RULES: dict[str, Rule] = {**CFAR_RULES, "objects": objects_rule, "max_peaks": COMMON["max_peaks"],
@@ -27,6 +27,8 @@ def checked_keywords(scene, radar, spectrum_settings: dict, keywords: dict) -> d
     nothing = np.zeros((len(one.transmitters), 1, waveform.num_chirps, waveform.num_samples))
     _core.check_cfar(_core.range_doppler(nothing, one, **spectrum_settings), one,
                      **{word: value for word, value in keywords.items() if word in CFAR_RULES})
+    if keywords.get("beams"):
+        _core.check_beams(radar, keywords.get("false_alarm_rate", FALSE_ALARM_RATE))
     return keywords
 
 

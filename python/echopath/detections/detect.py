@@ -85,7 +85,9 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;
-        in beams power and noise are those of the beam in which a cell is strongest, and echoes compare with that power
+        in beams power and noise are those of the beam in which a cell is strongest, and noise is told from echoes by that power.
+        What made a detection is then still told by the powers of all channels: of two echoes in one cell from different
+        directions that is the stronger one, whichever the beam found. `labels` know no objects below the noise of a channel
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
     paths: of `trace` with that radar, whatever receiver and noise figure it had: objects, ghosts and the paths behind each
         detection

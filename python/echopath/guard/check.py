@@ -35,7 +35,7 @@ class Check:
 
     def __str__(self) -> str:
         verdict, digits = "" if self.agrees else ": TOO MUCH", 2
-        while not self.agrees and f"{self.error:.{digits}g}" == f"{self.promise:.{digits}g}":
+        while self.error > self.promise and f"{self.error:.{digits}g}" == f"{self.promise:.{digits}g}":
             digits += 1
         return f"{self.error:.{digits}g} {self.unit}, promised {self.promise:.{digits}g}{verdict} ({self.count:,} compared)"
 

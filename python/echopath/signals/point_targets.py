@@ -36,7 +36,7 @@ def point_targets(radar: _core.Radar, positions: ArrayLike | Callable[[float], A
     """The noise-free IF signal of ideal point targets in free space: no rays, no scene.
 
     Each channel has the delay, the level and the patterns of its own two ways, in every chirp anew, so that near targets and
-    radars that move are right; within a chirp ways change as from one chirp to the next. Nothing hides a target, no ground
+    radars that move are right; within a chirp ways change evenly. Nothing hides a target, no ground
     reflects it, air takes nothing, and what is beyond the axis of range is not heard. Signals add: `cube + ep.point_targets(...)`
     puts targets into that of a scene.
     radar: whose antennas have one polarisation
@@ -46,13 +46,14 @@ def point_targets(radar: _core.Radar, positions: ArrayLike | Callable[[float], A
     phases: [N] or one for all, in rad, of the echoes beside those of their ways; None: 0
     start_time: s, within 1e9 s of zero: the first sample of the frame
     Returns the cube of `synthesize` for that radar, complex128 in sqrt(W): before `demultiplex` where transmitters send at once.
-    Takes some 0.2 us of a processor for each target, chirp and channel, besides the samples. Raises TypeError or ValueError
+    Takes some 0.5 us of a processor for each target, chirp and channel, besides the samples. Raises TypeError or ValueError
     naming the argument, also for antennas of several polarisations and for targets at an antenna.
     """
     if are_crossed(antennas_of(radar)):
         raise refused(ValueError, "radar", "one whose antennas have one polarisation: point targets have no other", radar)
     places = _places(positions, velocities)
-    targets = _Targets(places, *_levels(len(places(start_time)), rcs, phases), start_time)
+    count = len(places(start_time))
+    targets = _Targets(_as_many(places, count), *_levels(count, rcs, phases), start_time)
     if not is_coded(radar):
         return targets.separate(radar)
     return code_signal(targets.separate(slots_radar(radar)), transmitted_code(radar), radar.waveform.real)
@@ -67,6 +68,17 @@ def _places(positions, velocities) -> Places:
     if velocities is not None:
         raise refused(ValueError, "velocities", "left out where positions are a function of the time", velocities)
     return lambda time: _PLACES(f"positions({time:g})", positions(time)).astype(float)
+
+
+def _as_many(places: Places, count: int) -> Places:
+    """The same, of so many targets at all times. It raises ValueError for others."""
+    def checked_places(time: float) -> NDArray[np.float64]:
+        found = places(time)
+        if len(found) != count:
+            raise refused(ValueError, f"positions({time:g})", f"{count} positions, as at the start", found)
+        return found
+
+    return checked_places
 
 
 def _levels(count: int, rcs, phases) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -96,30 +108,43 @@ class _Targets:
 
     def _alike(self, radar: _core.Radar) -> NDArray[np.complex128]:
         """Of chirps that are all alike."""
-        # Rows as far apart as they are on the average, by which delays change within a chirp.
-        waveform = radar.waveform.replace(chirp_interval=radar.waveform.mean_interval, extra_idle=())
-        num_slots = 1 if is_coded(radar) else radar.num_slots
-        wavelength = _core.speed_of_light / radar.waveform.centre_frequency
+        # Each chirp is the middle one of three a duration apart, whose delays tell how they change within it.
+        waveform, duration = radar.waveform, radar.waveform.chirp_duration
+        of_three = waveform.replace(num_chirps=3 * waveform.num_chirps, chirp_interval=duration, extra_idle=())
+        wavelength = _core.speed_of_light / waveform.centre_frequency
         level = np.sqrt(radar.transmit_power / (4.0 * np.pi) ** 3) * wavelength
         cube = np.empty((len(radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples), complex)
         for i, transmitter in enumerate(radar.transmitters):
-            times = [self._start_time + radar.chirp_time(i, chirp) for chirp in range(waveform.num_chirps)]
-            points = [self._places(time) for time in times]
-            out, sent = self._legs(radar, transmitter, points, times)
+            middles = [self._start_time + radar.chirp_time(i, chirp) for chirp in range(waveform.num_chirps)]
+            out, sent = self._legs(radar, transmitter, middles)
             for j, receiver in enumerate(radar.receivers):
-                back, heard = self._legs(radar, receiver, points, times)
-                fields = level * self._echoes * sent * heard / (out * back)
-                cube[i, j] = _core.synthesize_echoes(waveform, (out + back) / _core.speed_of_light, fields, num_slots=num_slots)
+                back, heard = self._legs(radar, receiver, middles)
+                fields = level * self._echoes * sent * heard / (out[1] * back[1])
+                before, middle, after = out + back
+                onward = (after - before) * (duration / (2.0 * self._half(waveform)))
+                three = np.stack([middle - onward, middle, middle + onward], axis=1)
+                delays = np.concatenate(three) / _core.speed_of_light
+                cube[i, j] = _core.synthesize_echoes(of_three, delays, np.repeat(fields, 3, axis=0))[1::3]
         return cube
 
+    def _legs(self, radar, antenna, middles) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """Lengths in m of the ways from an antenna at the begin, the middle and the end of chirps, [3, chirps, N], and its
+        pattern toward their ends in the middle, [chirps, N]."""
+        half = self._half(radar.waveform)
+        lengths = [[self._lengths(radar, antenna, max(middle + later, self._start_time)) for middle in middles]
+                   for later in (-half, 0.0, half)]
+        return np.array(lengths), np.array([field_toward(radar, antenna, self._places(middle), middle) for middle in middles])
+
     @staticmethod
-    def _legs(radar, antenna, points, times) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-        """Lengths in m of the ways from an antenna, and its pattern toward their ends, [chirps, N] each."""
-        lengths = []
-        for places, time in zip(points, times):
-            world_from_radar = radar.world_from_radar(time)
-            antenna_place = world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3]
-            lengths.append(np.linalg.norm(places - antenna_place, axis=1))
-        if not np.all(np.array(lengths) > 0.0):
+    def _half(waveform) -> float:
+        """s, from the first sample of a chirp to its middle; of a single sample, any time serves."""
+        return waveform.window_centre or 0.5 * waveform.chirp_duration
+
+    def _lengths(self, radar, antenna, time: float) -> NDArray[np.float64]:
+        """m, [N], at a time in s."""
+        world_from_radar = radar.world_from_radar(time)
+        place = world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3]
+        found = np.linalg.norm(self._places(time) - place, axis=1)
+        if not np.all(found > 0.0):
             raise refused(ValueError, "positions", "away from the antennas", antenna)
-        return np.array(lengths), np.array([field_toward(radar, antenna, places, time) for places, time in zip(points, times)])
+        return found

@@ -52,7 +52,7 @@ def cst(rows, quantity="Abs(Gain)[dBi   ]", value=lambda g: f"{db(g):.3e}"):
 
 
 def cst_linear(rows):
-    return cst(rows, "Abs(Realized Gain)[      ]", lambda g: f"{g:.3e}")
+    return cst(rows, "Abs(Grlz)[      ]", lambda g: f"{g:.3e}")
 
 
 def feko(rows):
@@ -103,6 +103,38 @@ def test_any_axis_of_a_file_may_look_ahead(tmp_path, boresight):
 ])
 def test_directions_may_be_told_in_other_ways(tmp_path, rows):
     assert_is_the_beam(loaded(tmp_path, hfss(rows)))
+
+
+@pytest.mark.parametrize("digits", [4, 5, 7])
+def test_quarter_turns_in_radians_may_be_rounded(tmp_path, digits):
+    rows = ["Theta [rad],Phi [rad],Gain [dBi]"]
+    rows += [f"{np.radians(t):.{digits}f},{np.radians(p):.{digits}f},{db(g):.6f}"
+             for t, p, g in samples("z", phis=range(0, 361, 5))]
+    assert_is_the_beam(loaded(tmp_path, "\n".join(rows)))
+
+
+def test_comments_above_a_table_may_name_its_angles(tmp_path):
+    table = "azimuth_deg,elevation_deg,gain_db\n-9,-9,1\n-9,9,1\n9,-9,1\n9,9,1"
+    for comment in ("# azimuth, elevation, gain", "# azimuth and elevation in degrees", "# elevation_deg,azimuth_deg,gain_db"):
+        np.testing.assert_array_equal(loaded(tmp_path, f"{comment}\n{table}").table_gain, loaded(tmp_path, table).table_gain)
+
+
+def test_directions_that_stand_twice_agree_as_fields(tmp_path):
+    """Phases half a turn apart by their sign, and nulls that differ by what nobody receives."""
+    rows = ["theta_deg,phi_deg,gain_db,phase_deg"]
+    rows += [f"{t},{p},{db(g) - (0.1 if p == 360 and g < 1e-8 else 0):.2f},{-180 if p == 360 else 180}"
+             for t, p, g in samples("z", phis=range(0, 361, 5))]
+    assert loaded(tmp_path, "\n".join(rows)).peak_gain == pytest.approx(6.2, abs=0.1)
+
+
+def test_old_encodings_of_comments_do_not_matter(tmp_path):
+    (tmp_path / "antenna.msi").write_bytes(planet("3.5 dBi").replace("NAME beam", "NAME beam \xb145\xb0").encode("latin-1"))
+    assert ep.load_antenna(tmp_path / "antenna.msi").peak_gain == pytest.approx(10.0 ** 0.35, rel=0.01)
+
+
+def test_a_first_word_does_not_make_a_table_a_cut(tmp_path):
+    assert_is_the_beam(loaded(tmp_path, "# Horizontal\n" + own(samples("z"))))
+    assert "line 1: column" in fault_of(tmp_path, "Vertical polarisation of a patch\n1 2")
 
 
 def test_phases_turn_with_the_axes(tmp_path):
@@ -175,7 +207,8 @@ def loss_across(azimuth_deg):
 def loss_along(angle_deg):
     """dB, at the azimuth of the beam: 0 at 4 degrees below the horizon, narrower, and 30 at as many behind."""
     angle, tilt = np.radians(angle_deg), np.radians(4.0)
-    return 15.0 * (1.0 - np.cos(angle) / np.cos(tilt)) + 12.0 * (np.sin(angle) - np.sin(tilt)) ** 2
+    return (30.0 * np.sin(0.5 * (angle - tilt)) ** 2 / np.sin(0.5 * np.pi - tilt) ** 2
+            + 12.0 * (np.sin(angle) - np.sin(tilt)) ** 2)
 
 
 def planet(gain_text):
@@ -196,6 +229,24 @@ def test_cuts_are_exact_in_both_planes(tmp_path, gain_text, dbi):
     expected = 10.0 ** (0.1 * (dbi - loss_along(-np.degrees(angle))))
     np.testing.assert_allclose(np.abs(pattern.field(along)) ** 2, expected, rtol=PLANE)
     assert loaded(tmp_path, planet(gain_text), normalize=True).efficiency == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("behind_db", [20.0, 30.0, 60.0])
+def test_cuts_with_little_behind_stay_below_their_gain(tmp_path, behind_db):
+    """A cardioid, all of whose cuts are alike: what the cut lacks behind does not come up above or below."""
+    lines = ["GAIN 4.77 dBi"]
+    for name in ("HORIZONTAL", "VERTICAL"):
+        lines.append(f"{name} 360")
+        lines += [f"{angle} {min(-20 * np.log10(max(0.5 + 0.5 * np.cos(np.radians(angle)), 1e-9)), behind_db):.3f}"
+                  for angle in range(360)]
+    pattern = loaded(tmp_path, "\n".join(lines))
+    gains = np.abs(pattern.field(TOWARD)) ** 2
+    assert gains.max() < 10.0 ** 0.477 * 1.01
+    up_and_down = np.abs(pattern.field([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])) ** 2
+    np.testing.assert_allclose(up_and_down, 0.25 * 10.0 ** 0.477, rtol=0.01)  # the root of the gain is half of its peak
+    cardioid = 10.0 ** 0.477 * (0.5 + 0.5 * TOWARD[:, 0]) ** 2
+    lit = TOWARD[:, 0] > -0.5
+    assert np.max(np.abs(10.0 * np.log10(gains[lit] / cardioid[lit]))) < 2.0  # dB
 
 
 @pytest.mark.parametrize("change, complaint", [

@@ -37,7 +37,7 @@ def echo(radar, direction, velocity_bin, range_bin):
     slots = turns * np.arange(NUM_CHIRPS) + np.arange(turns)[:, None]
     over_chirps = np.exp(2j * np.pi * velocity_bin * slots / (turns * NUM_CHIRPS))
     over_samples = np.exp(2j * np.pi * range_bin * np.arange(NUM_SAMPLES) / NUM_SAMPLES)
-    steered = np.exp(2j * np.pi / WAVELENGTH * (np.array(places) @ toward))
+    steered = np.exp(-2j * np.pi / WAVELENGTH * (np.array(places) @ toward))
     return steered[:, :, None, None] * over_chirps[:, None, :, None] * over_samples
 
 
@@ -49,6 +49,17 @@ def in_cell(radar):
 def cosines(count):
     """Of antennas half a wavelength apart: those of a transform of twice as many points."""
     return np.arange(-count, count) / count if count > 1 else np.zeros(1)
+
+
+@pytest.mark.parametrize("spacing", [0.5, 0.499, 0.45, 0.3])
+@pytest.mark.parametrize("columns", [2, 7, 16])
+def test_echoes_lose_little_between_beams_whatever_their_direction(columns, spacing):
+    """Without noise, of a line, from one end to the other."""
+    radar = ep.Radar(WAVEFORM, transmitters=[ep.Antenna()], receivers=antennas(columns, spacing=spacing))
+    for sine in np.linspace(-1.0, 1.0, 41):
+        direction = (np.sqrt(1.0 - sine**2), sine, 0.0)
+        spectrum = ep.range_doppler(echo(radar, direction, 4, 20), radar)
+        assert ep.cfar(spectrum, radar, beams=True).power.max() > SCALLOPING * (1.0 - 1e-3)
 
 
 @pytest.mark.parametrize("columns, rows", [(8, 1), (1, 5), (4, 3)])
@@ -63,7 +74,7 @@ def test_cells_are_those_of_each_beam_by_itself(columns, rows, method):
     places = np.array([rx.position for rx in radar.receivers]) / WAVELENGTH
     rate, best = 1e-2, {}
     for column, row in zip(u[seen], w[seen]):
-        weights = np.exp(-2j * np.pi * (column * places[:, 1] + row * places[:, 2])) / len(places)
+        weights = np.exp(2j * np.pi * (column * places[:, 1] + row * places[:, 2])) / len(places)
         of_beam = np.einsum("n,tncs->tcs", weights, cube)[:, None]
         found = ep.cfar(ep.range_doppler(of_beam, one), one, method=method, false_alarm_rate=rate / seen.sum())
         for cell, level in zip(map(tuple, found.cells.tolist()), found.noise):
@@ -103,6 +114,11 @@ def test_the_power_of_an_echo_is_kept_and_its_place_found():
         assert peaks["range"][strongest] == pytest.approx(20.4 * step, rel=1e-6)
         resolution = WAVELENGTH / (2.0 * NUM_CHIRPS * 3 * WAVEFORM.chirp_interval)
         assert peaks["velocity"][strongest] == pytest.approx(velocity_bin * resolution, abs=1e-4 * resolution)
+        with pytest.warns(RuntimeWarning, match="holds no noise"):
+            found = ep.detect(spectrum, radar, beams=True)
+        strongest = np.argmax(found.power)
+        assert found.azimuth[strongest] == pytest.approx(np.arctan2(direction[1], direction[0]), abs=1e-3)
+        assert found.elevation[strongest] == pytest.approx(np.arctan2(direction[2], np.hypot(*direction[:2])), abs=1e-3)
 
 
 def test_weak_echoes_are_found_in_beams_alone():
@@ -167,5 +183,9 @@ def test_arrays_of_too_many_beams_and_rates_too_small_are_refused():
     with pytest.raises(ValueError, match="^radar: must have an array of at most 131,072 beams to test cells in all of them, got"):
         ep.cfar(ep.range_doppler(noise(wide, 1), wide), wide, beams=True)
     line = ep.Radar(WAVEFORM, transmitters=antennas(1), receivers=antennas(8))
-    with pytest.raises(ValueError, match="^false_alarm_rate: must be at least 1e-15 for each beam, got 1e-15"):
+    with pytest.raises(ValueError, match="^false_alarm_rate: must be at least 1.6e-14 for the 16 beams of the array, got"):
         ep.cfar(ep.range_doppler(noise(line, 1), line), line, beams=True, false_alarm_rate=1e-15)
+    for radar, keywords in ((wide, {}), (line, {"false_alarm_rate": 1e-15})):  # before the trace, of all channels
+        with pytest.raises(ValueError, match="^(radar|false_alarm_rate): must "):
+            ep.simulate(ep.Scene(), radar, num_rays=100, detections={"beams": True, **keywords},
+                        progress=lambda stage, fraction: pytest.fail(stage))

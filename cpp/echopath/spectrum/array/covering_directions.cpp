@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kStepsPerWidth = 2;
 constexpr double kMostBeams = 131072.0;
-constexpr double kRounding = 1e-6;  // of a step: antennas half a wavelength apart have one along their line
 
 // Holds direction cosines along one axis, in equal steps.
 struct Cosines {
@@ -23,13 +22,12 @@ struct Cosines {
   int64_t count() const { return last - first + 1; }
 };
 
-// Returns the cosines of a transform of twice as many points as the grid has along the axis, as far as waves come from
-// there.
+// Returns the cosines of a transform of twice as many points as the grid has along the axis.
 Cosines grid_cosines(const Vec3& axis, int num_points, double spacing) {
   if (num_points == 1) return {axis};
   const double step = 1.0 / (kStepsPerWidth * num_points * spacing);
-  const int half = kStepsPerWidth * num_points / 2, within = static_cast<int>(std::floor(1.0 / step + kRounding));
-  return {axis, step, -std::min(half, within), std::min(half - 1, within)};
+  const int half = kStepsPerWidth * num_points / 2;
+  return {axis, step, -half, half - 1};
 }
 
 Cosines free_cosines(const VirtualArray& array, const Vec3& axis) {

@@ -6,6 +6,7 @@
 #include "echopath/base/memory/recent_results.h"
 #include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/spectrum/array/covering_directions.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/cfar/beam_maps.h"
 #include "echopath/spectrum/cfar/training_power.h"
@@ -146,6 +147,12 @@ void detect_in_sum(CfarResult& result, const RangeDoppler& map, const std::vecto
   }
 }
 
+void require_rate_of_beams(double false_alarm_rate, int64_t num_beams) {
+  const double least = kLeastRate * static_cast<double>(num_beams);
+  require(false_alarm_rate >= least, "false_alarm_rate",
+          streamed("must be at least ", least, " for the ", num_beams, " beams of the array"), false_alarm_rate);
+}
+
 // Holds, for a cell that was found in some beam, the strongest of these.
 struct InBeam {
   int64_t beam = -1;
@@ -181,6 +188,11 @@ void detect_in_beams(CfarResult& result, const BeamMaps& maps, const std::vector
 }
 
 }  // namespace
+
+void check_beams(const Radar& radar, double false_alarm_rate) {
+  radar.validate();
+  require_rate_of_beams(false_alarm_rate, std::ssize(covering_directions(virtual_array(radar))));
+}
 
 CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOptions& options) {
   radar.validate();
@@ -221,10 +233,9 @@ CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& 
     return result;
   }
   const BeamMaps maps(map, radar);
-  require(options.false_alarm_rate >= kLeastRate * static_cast<double>(maps.num_beams()), "false_alarm_rate",
-          "must be at least 1e-15 for each beam", options.false_alarm_rate);
   CfarDesign of_beam = result.design;
   of_beam.noise.num_channels = 1;
+  require_rate_of_beams(options.false_alarm_rate, maps.num_beams());
   of_beam.false_alarm_rate /= static_cast<double>(maps.num_beams());
   result.factors = kept_factors(of_beam, job);
   detect_in_beams(result, maps, options.noise_shape, job);

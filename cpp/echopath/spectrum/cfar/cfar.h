@@ -56,6 +56,9 @@ struct CfarResult {
 // counted without padding; raises Cancelled within half a second after the job is cancelled.
 CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& options = {}, Job* job = nullptr);
 
+// Raises what `cfar` would with beams for an array of too many and for a false-alarm rate that is too small for them.
+void check_beams(const Radar& radar, double false_alarm_rate);
+
 // Returns the design that the options give for a map.
 CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOptions& options);
 

@@ -75,7 +75,7 @@ def _measure(num_cells: int, of_map: NoiseMap, rates) -> list[dict]:
         cells += len(spectrum.velocity) * (len(spectrum.range) - first)
         if cells >= num_cells and seed > 0:
             break
-    least = 1.0 - TARGET - (OF_BEAMS if of_map.beams else 0.0)
+    least = 1.0 - (OF_BEAMS if of_map.beams else TARGET)
     return [{"map": str(of_map)} | _row(method, rate, np.array(counts), cells, least)
             for (method, rate), counts in found.items()]
 

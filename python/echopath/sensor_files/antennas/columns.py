@@ -12,12 +12,12 @@ PAIRS = (("azimuth", "elevation"), ("theta", "phi"))
 # Each pattern takes a cell of a head in lower case, without its spaces.
 _ANGLE = re.compile(r"(azimuth|elevation|theta|phi)(?:[_\[(]?(deg|rad)(?:rees?|ians?)?\.?[\])]?)?")
 _PHASE = re.compile(r"phase_deg")
-_DECIBELS = (re.compile(r"(?:realized)?(?:gain|directivity)[_\[(]dbi?[\])]?"),        # gain_db, Gain (dBi)
-             re.compile(r"db(?:10)?\((?:realized)?(?:gain|dir)(?:total)?\)(?:\[.*\])?"),  # HFSS: dB(GainTotal) []
-             re.compile(r"abs\((?:realized)?(?:gain|dir|directivity)\.?\)\[dbi?\]"),  # CST: Abs(Gain)[dBi   ]
-             re.compile(r"(?:realized)?(?:gain|directivity)\(total\)"))               # FEKO, which writes it in dB
-_LINEAR = (re.compile(r"(?:mag\()?(?:realized)?(?:gain|dir)total\)?(?:\[.*\])?"),     # HFSS: GainTotal []
-           re.compile(r"abs\((?:realized)?(?:gain|dir|directivity)\.?\)\[\]"))        # CST: Abs(Gain)[      ]
+_DECIBELS = (re.compile(r"(?:reali[sz]ed)?(?:gain|directivity)[_\[(]dbi?[\])]?"),        # gain_db, Gain (dBi)
+             re.compile(r"db(?:10)?\((?:reali[sz]ed)?(?:gain|dir)(?:total)?\)(?:\[.*\])?"),  # HFSS: dB(GainTotal) []
+             re.compile(r"abs\((?:(?:reali[sz]ed)?(?:gain|dir|directivity)|grlz)\.?\)\[dbi?\]"),  # CST: Abs(Gain)[dBi   ]
+             re.compile(r"(?:reali[sz]ed)?(?:gain|directivity)\(total\)"))               # FEKO, which writes it in dB
+_LINEAR = (re.compile(r"(?:mag\()?(?:reali[sz]ed)?(?:gain|dir)total\)?(?:\[.*\])?"),     # HFSS: GainTotal []
+           re.compile(r"abs\((?:(?:reali[sz]ed)?(?:gain|dir|directivity)|grlz)\.?\)\[\]"))        # CST: Abs(Gain)[      ]
 _CELL = re.compile(r'"[^"]*"|[^\s"(\[]+(?:\s*\([^)]*\))?(?:\s*\[[^\]]*\])?')           # of a head without commas
 
 

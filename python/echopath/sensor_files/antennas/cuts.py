@@ -16,8 +16,10 @@ from ...arguments.checks import ArrayLike
 
 DBI_OF_DBD = 2.15                             # gain of a half-wave dipole
 CUTS = ("HORIZONTAL", "VERTICAL")
+DARKEST_DB = -120.0                           # what a cut has of its largest gain at least
 ELEVATION_DEG = np.linspace(-90.0, 90.0, 181)
 AZIMUTH_DEG = np.linspace(-180.0, 179.0, 360)
+_HEAD = re.compile(r"\s*(HORIZONTAL|VERTICAL)(\s+[-+.\d]+)?\s*", re.IGNORECASE)
 _GAIN = re.compile(r"\s*([-+.\deE]+)\s*(dbi|dbd)?\s*", re.IGNORECASE)
 
 
@@ -25,37 +27,44 @@ class _Cut(NamedTuple):
     angle_deg: NDArray[np.float64]  # ascending
     level_db: NDArray[np.float64]   # over the largest gain, at most 0
 
-    def at(self, angle_deg: ArrayLike) -> NDArray[np.float64]:
-        return np.interp(angle_deg, self.angle_deg, self.level_db, period=360.0)
+    def power(self, angle_deg: ArrayLike) -> NDArray[np.float64]:
+        """Over that of the largest gain."""
+        return 10.0 ** (0.1 * np.maximum(np.interp(angle_deg, self.angle_deg, self.level_db, period=360.0), DARKEST_DB))
 
     def peak(self) -> float:
-        """The angle of the largest level, of equal ones the nearest to 0."""
-        highest = self.angle_deg[self.level_db == self.level_db.max()]
-        return float(highest[np.argmin(np.minimum(highest, 360.0 - highest))])
+        """The angle of the largest level, -180 to 180, of equal ones the nearest to 0."""
+        highest = (self.angle_deg[self.level_db == self.level_db.max()] + 180.0) % 360.0 - 180.0
+        return float(highest[np.argmin(np.abs(highest))])
 
 
 def are_cuts(lines: list[str]) -> bool:
     """Whether lines are of this kind."""
-    return any(_keyword(line) in CUTS for line in lines)
+    return any(_HEAD.fullmatch(line) for line in lines)
 
 
 def pattern_of_cuts(lines: list[str], normalize: bool) -> _core.AntennaPattern:
-    """The pattern of two cuts through the direction of the largest gain.
+    """The pattern of two cuts that meet in the direction of the largest gain, and behind it.
 
-    At an elevation the level in dB is that of the horizontal cut and what the vertical cut differs there from where both meet, in
-    front and behind, by the share of the azimuth between them (Gil, Claro, Ferreira, Pardelinha and Correia, IEEE Antennas and
-    Propagation Magazine 43, 2001). Raises ValueError naming the line.
+    Over elevations the power goes as the vertical cut, of which front and back count by the share of the azimuth between them,
+    times what the horizontal cut has at that azimuth over what these two have where they meet it. That ratio fades with the
+    cosine of the elevation, so that up and down are one direction each, and nulls of the horizontal cut fill up. Where cuts
+    agree in both places, both are met exactly. Raises ValueError naming the line.
     """
     gain = _gain(lines)
     across, along = (_cut(lines, name) for name in CUTS)
-    peak = across.peak()
+    peak, meeting = across.peak(), -along.peak()  # degrees: azimuth to the right, elevation
     behind = np.abs((-AZIMUTH_DEG - peak + 180.0) % 360.0 - 180.0) / 180.0
-    level = across.at(-AZIMUTH_DEG) + np.zeros((len(ELEVATION_DEG), 1))
-    for share, there, meeting in ((1.0 - behind, along.at(-ELEVATION_DEG), across.at(peak)),
-                                  (behind, along.at(180.0 + ELEVATION_DEG), across.at(peak + 180.0))):
-        level += share * (there - meeting)[:, None]
+
+    def over_elevation(elevation_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+        front, back = (along.power(angle)[..., None] for angle in (-elevation_deg, 180.0 + elevation_deg))
+        return (1.0 - behind) * front + behind * back
+
+    fading = np.clip(np.cos(np.radians(ELEVATION_DEG)) / np.cos(np.radians(meeting)), 0.0, 1.0)[:, None]
+    filling = (1.0 - fading) ** 2
+    ratio = (across.power(-AZIMUTH_DEG) + filling) / (over_elevation(np.array([meeting])) + filling)
+    power = over_elevation(ELEVATION_DEG) * ratio ** fading
     return _core.GainTable(azimuth=np.radians(AZIMUTH_DEG), elevation=np.radians(ELEVATION_DEG),
-                           gain=10.0 ** (0.1 * (gain + level)), normalize=normalize)
+                           gain=10.0 ** (0.1 * gain) * power, normalize=normalize)
 
 
 def _keyword(line: str) -> str:

@@ -1,7 +1,9 @@
 """Tables of gain, and phase, over two angles."""
 from __future__ import annotations
 
+import cmath
 import contextlib
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -12,8 +14,9 @@ from ... import _core
 from .columns import OWN, Head, head_of, is_head
 
 ANGLE_DIGITS = 6        # of angles in degrees: samples that agree in them belong to one row or column
-SAME_GAIN = 0.011       # dB: what two samples of one direction may differ by, written with two digits
-DARKEST = -400.0        # dB: below it two samples are alike
+ROUNDED = 1e-3          # degrees off a quarter of a turn: 3.1416 rad is half a turn
+SAME_FIELD = 2e-3       # two samples of one direction differ by less of their field, written in dB with two digits,
+OF_PEAK = 1e-4          # and of that of the peak
 
 Samples = dict[tuple[float, float], tuple[int, float, float]]  # by both angles: the number of the line, dB and degrees
 
@@ -44,7 +47,9 @@ def read_grid(lines: list[str]) -> Grid:
     """Of the lines of a file. Raises ValueError naming the line."""
     numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip(" \t-")]  # CST rules off its head
     plain = [(number, line) for number, line in numbered if not line.startswith("#")]
-    start = next(((number, line) for number, line in numbered if is_head(line)), plain[0] if plain else None)
+    # Solvers head their tables by a comment; other comments may name the angles, too.
+    others = [plain[0]] if plain and is_head(plain[0][1]) else numbered
+    start = next(((number, line) for number, line in others if is_head(line)), plain[0] if plain else None)
     if start is None:
         raise ValueError(f"holds no line of column names, {', '.join(OWN[:3])}")
     with _line(start[0]):
@@ -64,17 +69,35 @@ def _line(number: int) -> Iterator[None]:
 
 def _samples(head: Head, numbered: list[tuple[int, str]]) -> Samples:
     found: Samples = {}
+    again = []
     for number, line in numbered:
         with _line(number):
             texts = head.texts(line)
-            first, second = (round(column.read(texts), ANGLE_DIGITS) for column in head.angles)
+            first, second = (_angle(column.read(texts)) for column in head.angles)
             key = _phi_and_elevation(first, second) if head.is_spherical else _azimuth_and_elevation(first, second)
             value = head.gain.read(texts), 0.0 if head.phase is None else head.phase.read(texts)
-            if key in found and not (head.is_spherical and _are_alike(found[key][1:], value)):
-                again = " with another gain; a file holds one pattern, at one frequency" if head.is_spherical else ""
-                raise ValueError(f"direction ({first:g}, {second:g}) deg stands already in line {found[key][0]}{again}")
+            if key in found and not head.is_spherical:
+                raise ValueError(f"direction ({first:g}, {second:g}) deg stands already in line {found[key][0]}")
+            if key in found:
+                again.append((number, first, second, key, value))
             found.setdefault(key, (number, *value))
+    peak = max((abs(_field(gain, 0.0)) for _, gain, _ in found.values()), default=0.0)
+    for number, first, second, key, value in again:
+        one, other = _field(*found[key][1:]), _field(*value)
+        if not abs(one - other) <= SAME_FIELD * max(abs(one), abs(other)) + OF_PEAK * peak:
+            raise ValueError(f"line {number}: direction ({first:g}, {second:g}) deg stands already in line {found[key][0]} with "
+                             "another gain; a file holds one pattern, at one frequency")
     return found
+
+
+def _angle(degrees: float) -> float:
+    quarter = 90.0 * round(degrees / 90.0)
+    return quarter if abs(degrees - quarter) < ROUNDED else round(degrees, ANGLE_DIGITS)
+
+
+def _field(gain_db: float, phase_deg: float) -> complex:
+    """Kept within what numbers hold: a gain that is too large is told of later."""
+    return 10.0 ** (min(gain_db, 3000.0) / 20.0) * cmath.exp(1j * math.radians(phase_deg))
 
 
 def _azimuth_and_elevation(azimuth: float, elevation: float) -> tuple[float, float]:
@@ -88,11 +111,6 @@ def _phi_and_elevation(phi: float, theta: float) -> tuple[float, float]:
     if abs(theta) > 180.0:
         raise ValueError(f"theta must lie in [-180, 180] deg, got {theta:g}; it counts from the z axis")
     return round((phi + (180.0 if theta < 0.0 else 0.0)) % 360.0, ANGLE_DIGITS) % 360.0, 90.0 - abs(theta)
-
-
-def _are_alike(one: tuple[float, float], other: tuple[float, float]) -> bool:
-    gain, phase = (abs(np.maximum(a, DARKEST) - np.maximum(b, DARKEST)) for a, b in zip(one, other))
-    return gain <= SAME_GAIN and phase <= SAME_GAIN
 
 
 def _grid(head: Head, samples: Samples) -> Grid:

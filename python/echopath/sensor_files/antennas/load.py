@@ -29,8 +29,8 @@ def load_antenna(path: str | os.PathLike[str], *, normalize: bool = False,
         one angle needs every value of the other. Lines that begin with # are passed over. The names that HFSS, CST and FEKO
         give to angles and to the whole gain are known, and what else these write is passed over: no phases are read from them.
         Directivity is taken for gain, with a mean of 1 at most;
-        cuts of Planet (.msi, .pln): GAIN, HORIZONTAL and VERTICAL. Between the cuts the gain is as interpolated by the share
-        of the front and of the back, which is exact in both planes
+        cuts of Planet (.msi, .pln): GAIN, HORIZONTAL and VERTICAL. The gain between the
+        cuts is interpolated; it is exact in both planes
     normalize: True scales the gain to a mean of 1 over the sphere, as of an antenna without losses
     boresight: the axis of a file over theta and phi along which the antenna looks, None: "z". The next axis (after z comes x)
         is then the antenna's left, and the one after it is up
@@ -39,10 +39,7 @@ def load_antenna(path: str | os.PathLike[str], *, normalize: bool = False,
     than 45 degrees off the boresight.
     """
     path = Path(path)
-    try:
-        lines = bytes_of(path).decode("utf-8-sig").splitlines()  # with a byte-order mark, too
-    except UnicodeDecodeError as error:
-        raise _core.FileError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+    lines = _text_of(path).splitlines()
     try:
         grid = None if are_cuts(lines) else read_grid(lines)
         if grid is not None and grid.is_spherical:
@@ -53,3 +50,14 @@ def load_antenna(path: str | os.PathLike[str], *, normalize: bool = False,
     if boresight is not None:
         raise refused(ValueError, "boresight", f"left out for {path}, whose angles count from the boresight", boresight)
     return found
+
+
+def _text_of(path: Path) -> str:
+    """With a byte-order mark or without. Names of makers and comments may be of an older encoding; what counts is ASCII."""
+    content = bytes_of(path)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        if b"\0" in content:
+            raise _core.FileError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+        return content.decode("latin-1")

@@ -10,6 +10,7 @@
 #include "echopath/power/faint_paths.h"
 #include "echopath/power/received_power.h"
 #include "echopath/radar/noise_power.h"
+#include "echopath/sim/rays/beam_foci.h"
 #include "echopath/sim/rays/plan_foci.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/strata/fitted_strata.h"
@@ -25,7 +26,7 @@ constexpr double kImageWeight = 0.5;              // beside that of the target
 constexpr double kObjectsFirst = 0.65;            // of the rays, where they are too few for objects and images
 constexpr double kServedFirst = 0.75;             // of the rays of either
 constexpr double kPlannedDb = 0.8 * kResolvedDb;  // a margin: what a pilot foretells may come out larger
-constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
+constexpr double kFocusFieldShare = 0.1;          // of the field of view, at least, where it has a focus and is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
 
@@ -136,15 +137,16 @@ void share_out_among(const RayNeeds& needs, bool is_image, double num_rays, RayS
   fill_by_weight(std::move(unserved), left, shares);
 }
 
-// Raises the rays of the field of view where its echo is not resolved and a glint makes it.
+// Raises the rays of the field of view where its echo is not resolved and a glint makes it, or a narrow beam.
 void raise_field_of_view(const TraceFrame& frame, const RayNeeds& needs, const std::vector<Glint>& glints,
-                         RayShares& shares) {
+                         const BeamFoci& beam_foci, RayShares& shares) {
   const int field = static_cast<int>(frame.strata.size()) - 1;
   const std::string& name = frame.strata.back().name;
   const bool has_glints = std::ranges::any_of(glints, [&](const Glint& glint) { return glint.stratum == field; });
   const bool is_resolved =
       std::ranges::all_of(needs.strata, [&](const RayNeed& need) { return need.stratum != name || need.is_resolved; });
-  if (has_glints && !is_resolved) shares.at(name) = std::max(shares.at(name), kGlintFieldShare * sum_of(shares));
+  if ((has_glints || beam_foci.fits(frame.strata.back())) && !is_resolved)
+    shares.at(name) = std::max(shares.at(name), kFocusFieldShare * sum_of(shares));
 }
 
 // Returns the echoes by index of the strata.
@@ -207,7 +209,8 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   const double left = static_cast<double>(num_rays) - still.guide.num_rays();
   if (!needs.strata.empty()) guide.shares = share_out(needs, left);
   const std::vector<Glint> glints = find_glints(paths, job);
-  if (!still.any()) raise_field_of_view(paths.frame, needs, glints, guide.shares);
+  const BeamFoci beam_foci(paths);
+  if (!still.any()) raise_field_of_view(paths.frame, needs, glints, beam_foci, guide.shares);
   const double shared = sum_of(guide.shares);  // 0 where nothing but what stands still is there
   const double rays_per_share = shared > 0.0 ? left / shared : 0.0;
   // Shares that persist count rays (LaunchSettings::by_name), of which there are not to be more than num_rays.
@@ -215,6 +218,7 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   for (auto& [name, share] : guide.shares) share = rounded_rays(rays_per_share * share, up);
   put_in(still, guide);
   set_foci(paths.frame, echoes_of(paths.frame, needs), glints, guide);
+  beam_foci.set(guide);
   put_in(still, guide);  // without the foci that this frame would have set
   return guide;
 }

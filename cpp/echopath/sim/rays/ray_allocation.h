@@ -66,7 +66,8 @@ inline constexpr double kMaxGrowth = 32.0;
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints
-// (plan_foci.h). What stands still gets the rays of `still`, and the needs are those of all else. Raises Cancelled.
+// (plan_foci.h) and about narrow beams (beam_foci.h). What stands still gets the rays of `still`, and the needs are those of
+// all else. Raises Cancelled.
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, const StillRays& still = {},
                        Job* job = nullptr);
 

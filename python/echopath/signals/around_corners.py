@@ -11,6 +11,7 @@ from ..paths.absent import NO_MESH
 from ..scene.lifetimes import scene_in_frame
 from ..tracing.around_corners import Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
+from .rows import row_times, signal_of_rows
 
 _STREAM = 0x65646765  # tells these random numbers from others of the same seed
 NODES = np.array([0.0, 0.5, 1.0])  # of the frame, between which lengths are parabolas
@@ -57,15 +58,12 @@ def _add(cube, scene, radar, hidden: Hidden, amplitudes, start_time) -> None:
     kept = np.all([is_kept for ways in ends.values() for _, is_kept, _ in ways], axis=0) & (amplitudes != 0.0)
     if not kept.any():
         return
-    # Rows as far apart as they are on the average, by which delays change within a chirp.
-    waveform = radar.waveform.replace(chirp_interval=radar.waveform.mean_interval, extra_idle=())
     for i, (out, _, sent) in enumerate(ends["out"]):
-        share = np.array([radar.chirp_time(i, chirp) for chirp in range(waveform.num_chirps)]) / radar.frame_duration
+        share = row_times(radar, i) / radar.frame_duration
         for j, (back, _, received) in enumerate(ends["back"]):
             delays = _parabolas(share) @ (out + back)[:, kept] / _core.speed_of_light
             fields = (amplitudes * sent * received)[kept]
-            cube[i, j] += _core.synthesize_echoes(waveform, delays, np.broadcast_to(fields, delays.shape),
-                                                  num_slots=radar.num_slots)
+            cube[i, j] += signal_of_rows(radar, delays, np.tile(fields, (radar.waveform.num_chirps, 1)))
 
 
 def _legs(scene, radar, antenna, points, times) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

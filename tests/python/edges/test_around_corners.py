@@ -240,6 +240,13 @@ def test_a_timing_that_is_told_in_two_ways_gives_one_signal(radar):
     assert one.any() and np.abs(other - one).max() <= 1e-9 * np.abs(one).max()
 
 
+def test_chirps_do_not_depend_on_how_far_apart_others_are(radar):
+    chirps = radar.waveform.replace(num_samples=256, num_chirps=8, chirp_interval=1e-4)
+    uneven = chirps.replace(chirp_interval=5e-5, extra_idle=(9e-5, 1e-5))
+    one, other = (ep.synthesize_around_corners(hidden_block(), radar.replace(waveform=waveform)) for waveform in (chirps, uneven))
+    assert one.any() and np.abs(other - one)[:, :, ::2].max() <= 1e-4 * np.abs(one).max()  # parabolas of 0.71 and 0.75 ms
+
+
 def test_what_is_absent_neither_sends_nor_hides(radar):
     """Its motion need not be known before it comes."""
     radar, comes = radar.replace(waveform=radar.waveform.replace(num_samples=256)), (1.0, 2.0)

@@ -106,6 +106,16 @@ def test_steps_of_frequency_are_those_of_each_chirp():
         np.testing.assert_array_equal(cube[:, :, first::2], ep.point_targets(plain, POSITIONS, RCS)[:, :, first::2])
 
 
+@pytest.mark.parametrize("timing", [{"num_chirps": 1}, {"extra_idle": (0.0, 40e-6, 5e-6)}])
+def test_ways_change_within_chirps_that_are_alone_or_unevenly_apart(timing):
+    waveform = WAVEFORM.replace(chirp_interval=15e-6, **timing)
+    cube = ep.point_targets(ep.Radar(waveform, **FANS), POSITIONS, RCS, velocities=VELOCITIES, phases=PHASES)
+    idle = np.resize(waveform.extra_idle or [0.0], 2 * waveform.num_chirps)
+    begins = 15e-6 * np.arange(2 * waveform.num_chirps) + np.cumsum(idle) - idle
+    assert_is(cube, signal(ep.Radar(waveform, **FANS), lambda time: POSITIONS + VELOCITIES * time,
+                           lambda tx, chirp: begins[2 * chirp + tx]))
+
+
 def test_what_is_beyond_the_axis_of_range_is_not_heard():
     radar = ep.Radar(WAVEFORM, **FANS)
     np.testing.assert_array_equal(ep.point_targets(radar, [[30.0, 0.0, 0.0]], 1.0), 0.0)

@@ -74,7 +74,8 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
     right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
     channels whose noise is independent. That of transmitters whose codes correlate ("cdm") is not: eight of random phases in 64
-    chirps have 4 times the false alarms asked for at 1e-3, 7 times at 1e-4. Behind the filters of `radar.receiver` cells compare
+    chirps have 4 times the false alarms asked for at 1e-3, 7 times at 1e-4. Nor is that of "ddm" in maps of the windows "rect"
+    and "taylor", which have the ends of the frame: 50 and 4 times. Behind the filters of `radar.receiver` cells compare
     by their power over that of the noise at their range, which follows from the filters, the imbalance of the branches and, for
     what the converter adds, the quietest ranges of the map.
     Velocity is a circle; at the ends of the range axis training cells are taken from the other side.

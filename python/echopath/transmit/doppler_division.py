@@ -6,7 +6,7 @@ shares have the least power, summed over the receivers and over the cells next t
 velocity is then that of share b + m; at velocities of other shares stands what an empty one holds, the noise, for each
 transmitter that of other cells nearby: detectors take the noise of channels for independent. Cells whose shares do not differ
 more than noise does, or not much more and are no stronger than noise, are left as they are, so that noise keeps its level and its
-distribution.
+distribution behind windows that fall towards the ends.
 
 Both axes are tapered by Hamming's window meanwhile (sidelobes at -43 dB), so that a strong target does not decide for weak
 ones beside it; the taper is taken out again. Velocities of two targets at one range that are a multiple of a share apart

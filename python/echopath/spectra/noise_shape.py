@@ -15,6 +15,7 @@ _ROUNDING = 1e-12  # of the largest power, below which there is nothing but roun
 _SHORT = 128       # squared samples of a chirp over those of its past, up to which it is cheapest to go through them
 _MOST_SAMPLES = 1 << 20  # of responses that are transformed at once
 _LOST = 1e-14      # of the largest power, of what the past sends
+_ROUNDS = 8  # that more would change by 1e-4, of white noise down to 70 dB below what filters let pass
 _ROWS_AT_ONCE = 16  # that are looked for in what the past sends
 
 
@@ -128,10 +129,25 @@ def _shares(spectrum, radar, thermal) -> tuple[float, float]:
     blocks = np.array_split(np.arange(len(level)), min(_BLOCKS, len(level)))
     faint = sorted(blocks, key=lambda block: np.median(thermal[block]))[:max(1, len(blocks) // 4)]
     quietest = min(faint, key=lambda block: np.median(level[block]))
-    white = max(0.0, float(np.median(level[quietest] - thermal[quietest])))
+    white = _white(level[quietest], thermal[quietest])
     is_passed = thermal >= 0.5 * thermal.max()
     share = float(np.median((level[is_passed] - white) / thermal[is_passed]))
     return (min(max(share, 0.0), 1.0) if white > 0.0 else 1.0), white
+
+
+def _white(level: np.ndarray, thermal: np.ndarray) -> float:
+    """What levels have beside thermal noise. Their errors grow with what is expected of them: next to where a high-pass lets
+    nothing pass, ranges that it lets pass would drown the white noise, unless each counts by its variance."""
+    white = float(np.median(level))
+    for _ in range(_ROUNDS):
+        white = max(0.0, _weighted_median(level - thermal, (thermal + white) ** -2.0))
+    return white
+
+
+def _weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
+    """That of which the smaller and the larger values have half of the weights each."""
+    order = np.argsort(values)
+    return float(np.interp(0.5 * weights.sum(), np.cumsum(weights[order]) - 0.5 * weights[order], values[order]))
 
 
 def _median_over_mean(num_channels: int) -> float:

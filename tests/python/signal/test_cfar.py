@@ -84,6 +84,20 @@ def test_false_alarms_behind_filters_come_at_the_rate_at_all_ranges(receiver, wi
     assert max(shares) < 1.0 + tolerance and min(shares) > least, np.round(shares, 2)
 
 
+@pytest.mark.parametrize("adc", [None, ep.Adc(bits=12, gain_db=50.0)], ids=["analogue", "converter"])
+def test_noise_next_to_range_0_is_known_where_a_high_pass_leaves_none(adc):
+    """The levels that tell white noise lie below those of the next ranges by 20 dB and more."""
+    alarms, levels, told = [], [], []
+    for seed in range(20):
+        radar, noise = noise_behind(dict(high_pass=[4e5, 4e5], adc=adc), seed)
+        spectrum = ep.range_doppler(noise, radar)
+        alarms.append(ep.cfar(spectrum, radar, false_alarm_rate=RATE).mask[:, :2].mean())
+        levels.append(np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1, 2))[:2] / ep.noise_power(radar, window="hann"))
+        told.append(noise_shape(spectrum, radar)[:2])
+    assert np.mean(alarms) < 2.0 * RATE                                  # 26 are asked for, which come in pairs
+    assert 10 * np.log10(np.mean(told, axis=0) / np.mean(levels, axis=0)) == pytest.approx([0.0, 0.0], abs=0.4)  # dB
+
+
 def test_noise_that_has_not_passed_the_filters_is_alike_at_all_ranges():
     radar, _ = noise_behind(BEHIND["low pass"], 0)
     alarms = [ep.cfar(ep.range_doppler(ep.add_noise(np.zeros((1, 4, 64, 256), complex), radar, seed=seed), radar), radar,

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, array, checked, count, optional, real
+from ..base.process.callers import warn_user
 from ..detections import Detections
 from ..truth import Truth
 from .assignment import assigned
@@ -47,13 +48,15 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight
     velocity_std: m/s, by which the radial velocity of a detection differs from that of its object, with limbs and wheels; None:
         radial velocities are not used
-    acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin
+    acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin:
+        what moves faster than about three times this, and whose radial velocity does not tell, begins none
     merge_distance: m, detections of a frame nearer to each other are one, in their mean weighted by power; 0: none are
     gate_probability: with which a detection of an object is within its gate, 0.5 to 1
     min_hits: detections that a track needs to count, within max_misses frames in a row without one; then it ends
     truth_distance: m, from the outline of an object's box at most, for a track to be its; one that is nearer to another object
         by more than half of it does not become its, as the further tracks of a guard rail do not become what passes the rail
-    Returns Tracks, empty without any. Raises TypeError or ValueError naming the argument.
+    Returns Tracks, empty without any, with a warning where `min_hits` frames have detections. Raises TypeError or ValueError
+    naming the argument.
     """
     _check_times(times, detections)
     _check_truth(truth, times)
@@ -63,6 +66,10 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
         carrier = None if radar is None else carrier_of(radar, float(time))
         tracker.take(number, float(time), points_of(found, carrier, **settings))
     rows = tracker.rows()
+    if not rows and sum(len(found) > 0 for found in detections) >= min_hits:
+        axes, more = ("of the radar", ", or radar= for radial velocities") if radar is None else ("of the world", "")
+        warn_user(f"speed_std: no track has min_hits = {min_hits} detections; what moves faster than about three times speed_std "
+                  f"= {speed_std:g} m/s in the axes {axes} begins none: give a larger one{more}")
     return _as_tracks(rows, _objects_of(rows, truth, radar is not None, truth_distance))
 
 

@@ -2,6 +2,7 @@
 import csv
 import dataclasses
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -125,6 +126,18 @@ def test_detections_whose_errors_are_large_make_tracks_too():
     """8 m along and 15 m across the line of sight: likelihoods are small numbers then, and go together all the same."""
     found = [[[30.0 + time, 0.0]] for time in TIMES]
     assert ep.track(found, TIMES, range_std=8.0, azimuth_std=0.5).num_tracks == 1
+
+
+def test_what_is_too_fast_for_any_track_is_told():
+    """At 80 m/s nothing was found without a word; a chi-square gate of 99 % is 3 standard errors wide in the plane."""
+    times = 0.1 * np.arange(10)
+    found = {speed: [[[10.0 + speed * time, 1.0]] for time in times] for speed in (25.0, 80.0)}
+    with pytest.warns(RuntimeWarning, match="three times speed_std = 10 m/s in the axes of the radar begins none"):
+        assert ep.track(found[80.0], times).num_tracks == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert ep.track(found[25.0], times).num_tracks == ep.track(found[80.0], times, speed_std=40.0).num_tracks == 1
+        assert ep.track(found[80.0][:2], times[:2]).num_tracks == 0  # too few for any
 
 
 def test_false_alarms_make_no_tracks():

@@ -239,6 +239,24 @@ def test_instances_that_move_alone_are_an_animation(tmp_path):
         assert np.allclose([scene.world_vertices(mesh.id, code / 10)[0] for mesh in scene.meshes], wanted), code
 
 
+@pytest.mark.parametrize("name, first, then", [("protoIndices", "[0, 0]", "[0, 1]"), ("ids", "[1, 2]", "[1, 3]"),
+                                               ("invisibleIds", "[]", "[1]")])
+def test_instances_that_change_are_told_to_stay_as_at_first(tmp_path, name, first, then):
+    """They stayed so without a word."""
+    arrays = {"protoIndices": ("int[]", "[0, 0]"), "ids": ("int64[]", "[1, 2]"), "invisibleIds": ("int64[]", "[]")}
+    birds = "".join(f'    def Mesh "bird_{k}"\n    {{\n{TRIANGLE}    }}\n' for k in (0, 1))
+
+    def text(changing):
+        lines = [f"    {kind} {key}" + (f".timeSamples = {{ 0: {first}, 10: {then} }}" if key == changing else f" = {value}")
+                 for key, (kind, value) in arrays.items()]
+        return ('def PointInstancer "birds"\n{\n    point3f[] positions = [(0, 0, 0), (0, 5, 0)]\n' + "\n".join(lines) +
+                f"\n    rel prototypes = [</birds/bird_0>, </birds/bird_1>]\n{birds}}}\n")
+
+    (plain, scene), (told, as_first) = loaded(tmp_path, text(None)), loaded(tmp_path, text(name))
+    assert [mesh.name for mesh in as_first.meshes] == [mesh.name for mesh in scene.meshes]
+    assert [any("point instancer change over time" in note for note in model.notes) for model in (plain, told)] == [False, True]
+
+
 @pytest.mark.parametrize("num_codes, turns", [(2, 3000.0), (4000, 2.5)])
 def test_rotors_turn_as_fast_as_the_stage_says(tmp_path, num_codes, turns):
     """Turns between two samples, many in one step or some in each of many: of all but 5000 steps they were taken for fewer."""

@@ -10,7 +10,7 @@ from ..axes import Axes
 from ..sampled import Clock, deformed, moved_rigidly
 from ..tree import MAX_NODES, Tree
 from .skeletons import Skeletons
-from .stage import Timeline, changes_visibility, is_left_out
+from .stage import Timeline, changes_points, changes_visibility, is_left_out
 from .surfaces import SOLIDS, BadMesh, Surface, changes_size, integers, is_subdivided, numbers, surface_of
 from .transforms import MOST_SAMPLES, sampled_transforms
 
@@ -198,6 +198,8 @@ class Content:
         if transforms is None:
             self._tree.note(f"the point instancer {prim.GetPath()} is left out: its arrays do not fit together")
             return
+        if changes_points(instancer):
+            self._tree.count("the prototypes, the ids or the mask of a point instancer change over time: they stay as at first")
         mask = instancer.ComputeMaskAtTime(self._time) or [True] * len(which)
         instances = []
         for number, index in enumerate(which):

@@ -94,6 +94,12 @@ def changes_visibility(prim, usd_geom) -> bool:
     return bool(imageable) and imageable.GetVisibilityAttr().GetNumTimeSamples() > 1
 
 
+def changes_points(instancer) -> bool:
+    """Whether a point instancer has other prototypes, ids or masks at other times."""
+    attributes = (instancer.GetProtoIndicesAttr(), instancer.GetIdsAttr(), instancer.GetInvisibleIdsAttr())
+    return any(attribute.GetNumTimeSamples() > 1 for attribute in attributes)
+
+
 def is_left_out(prim, time, usd_geom) -> str | None:
     """Why a prim with all below it takes no part, None where it does."""
     imageable = usd_geom.Imageable(prim)

@@ -134,7 +134,8 @@ class RangeTime(TimeMap):
 
     times: [T] s, middles of the frames or windows; range: [R] m
     power: [T, R] W, mean over the channels; of all velocities the sum or the peak. A point gives its received power
-    noise_power: W, mean of the receiver's noise in a cell; combine: "sum" or "peak"
+    noise_power: W, mean of the receiver's noise in a cell; of peaks, and of coded transmitters, measured in one drawn map, up
+        to 1 dB off where that has few cells; combine: "sum" or "peak"
     window, zero_pad: as in `range_doppler`
     velocity_gate: (lowest, highest) velocity that is taken, m/s
     part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all

@@ -90,7 +90,8 @@ class ObjectLabel:
     cells: how many cells of the mask it has: where no ghost, no other object and not the surroundings are stronger; a ghost of
         its own has no cell where the direct echoes are at most 10 dB weaker, than the ghost or than their own strongest cell
         (above the noise): there no receiver tells one from the other
-    power: W, received by its direct echoes, mean over channels, chirps and samples; within its cells or not
+    power: W, received by its direct echoes, mean over channels, chirps and samples; within its cells or not. Where it
+        has no signal of its own, as mostly an object that is "hidden in noise", this is the mean over the random phases
     peak: its strongest cell with its own power there, Peak or AzimuthPeak; None without cells
     box: Box or AzimuthBox about its cells, None without cells
     visible_share: of the solid angle in which the radar would see it alone, the share that nothing hides, 0 to 1

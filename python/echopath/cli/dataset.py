@@ -36,7 +36,8 @@ def _forecast_line(forecast: Forecast) -> str:
     if forecast.frames == 0:
         return "all frames are there"
     time = "a time that depends on the workers" if forecast.seconds is None else f"about {duration_words(forecast.seconds)}"
-    return f"{counted(forecast.frames, 'frame')} to be made, in {time}, {max(1, forecast.bytes >> 20)} MiB"
+    return (f"{counted(forecast.frames, 'frame')} to be made, in {time}, {max(1, forecast.bytes >> 20)} MiB, "
+            "if all are like the first one")
 
 
 def _line(made: MadeScene) -> str:

@@ -30,8 +30,10 @@ _MARGIN = 1.1                 # of the disk that is asked for over what the firs
 
 
 class Forecast(NamedTuple):
-    """What is to be made: frames; seconds: that it takes, None: not known, of the workers of a scheduler; bytes: on the disk, by
-    its first frame."""
+    """What is to be made: frames; seconds: that it takes, None: not known, of the workers of a scheduler; bytes: on the disk.
+
+    Both go by the first frame that can be made, as if all were like it: scenes that differ may take half or twice as long.
+    `MadeScene.seconds_left` goes by the scenes that have been made so far."""
 
     frames: int
     seconds: float | None

@@ -112,7 +112,7 @@ class KnownKinds {
 class Sums {
  public:
   Sums(const Paths& paths, size_t num_groups)
-      : paths_(paths), open_(num_groups), rows_(num_groups), triangles_(num_groups), kinds_(num_groups),
+      : paths_(paths), open_(num_groups), rows_(num_groups), steady_rows_(num_groups), triangles_(num_groups), kinds_(num_groups),
         groups_(num_groups) {
     const auto num_entries = static_cast<size_t>(paths.frame.batches) + 1;
     for (GroupSums& group : groups_) {
@@ -157,6 +157,8 @@ class Sums {
       of_kind.endless_with_edges += power / std::norm(share_of_endless(flags));
     if (has_cell && power > 0.0) {  // no lattice can miss images
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
+      const int place = place_in_lattice(static_cast<size_t>(path));
+      if (place > 0) steady_rows_[group][rows_index(static_cast<size_t>(path))].add(place, std::sqrt(steady));
       sums.steady_power += steady;
       sums.steady_squares += steady * steady;
     }
@@ -168,6 +170,7 @@ class Sums {
       close(group);
       kinds_[group].set_shapes(phases, views, image_at_a_metre, groups_[group].kinds);
       for (const RowDifferences& rows : rows_[group]) groups_[group].even_variance += rows.variance();
+      for (const RowDifferences& rows : steady_rows_[group]) groups_[group].steady_variance += rows.variance_of_jumps();
       groups_[group].even_variance += triangles_[group].variance();
     }
     return std::move(groups_);
@@ -177,6 +180,13 @@ class Sums {
   size_t batch_of(int64_t path) const {
     return std::min<size_t>(paths_.batch[path], static_cast<size_t>(paths_.frame.batches));
   }
+
+  int place_in_lattice(size_t path) const {
+    return paths_.frame.sampler == Sampler::kLattice ? place_in_row(paths_.flags[path]) : 0;
+  }
+
+  // Packets of rays go on behind sheets one after the other.
+  size_t rows_index(size_t path) const { return paths_.passes_of(path).empty() ? 0 : 1; }
 
   void close(size_t group) {
     OpenHit& open = open_[group];
@@ -201,9 +211,9 @@ class Sums {
   void add_even(size_t group, size_t path, double power) {
     GroupSums& sums = groups_[group];
     sums.lattice_squares += power * power;
-    const int place = paths_.frame.sampler == Sampler::kLattice ? place_in_row(paths_.flags[path]) : 0;
+    const int place = place_in_lattice(path);
     if (place > 0) {
-      rows_[group][paths_.passes_of(path).empty() ? 0 : 1].add(place, power);
+      rows_[group][rows_index(path)].add(place, power);
     } else if (paths_.frame.scatterers == Scatterers::kSurface) {
       triangles_[group].add(paths_.hits_of(static_cast<int64_t>(path))[std::countr_zero(paths_.diffuse[path])], power);
     } else {
@@ -213,8 +223,7 @@ class Sums {
 
   const Paths& paths_;
   std::vector<OpenHit> open_;
-  // These are by group, of hits before and behind a sheet: packets of rays go on behind sheets one after the other.
-  std::vector<std::array<RowDifferences, 2>> rows_;
+  std::vector<std::array<RowDifferences, 2>> rows_, steady_rows_;  // by group, of hits before and behind a sheet
   std::vector<TrianglePoints> triangles_;  // by group, as the next two
   std::vector<KnownKinds> kinds_;
   std::vector<GroupSums> groups_;

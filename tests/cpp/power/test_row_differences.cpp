@@ -1,6 +1,7 @@
 // Errors of sums over a lattice, by differences between neighbours: against how much such sums scatter.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -80,6 +81,21 @@ TEST(RowDifferences, OfIndependentRaysAddUpTheirVariances) {
     if (uniform(random) < kShare) rows.add(place_at(ray), uniform(random));
   }
   EXPECT_NEAR(rows.variance() / (kRays * kVarianceOfOne), 1.0, kChance);
+}
+
+// A slope has four times as large differences between every other ray as between neighbours, and no jumps but at its ends; a
+// step has nothing else.
+TEST(RowDifferences, SlopesAreNoJumps) {
+  constexpr int kRays = 30;
+  RowDifferences slope, step;
+  for (int64_t ray = 0; ray <= 2 * kRays; ++ray) {
+    const auto from_end = static_cast<double>(std::min<int64_t>(ray, 2 * kRays - ray));
+    if (from_end > 0.0) slope.add(place_at(ray), from_end);
+    step.add(place_at(ray), 1.0);
+  }
+  EXPECT_LT(slope.variance_of_jumps(), 0.05 * slope.variance());
+  EXPECT_DOUBLE_EQ(step.variance_of_jumps(), step.variance());
+  EXPECT_DOUBLE_EQ(RowDifferences{}.variance_of_jumps(), 0.0);
 }
 
 // Lone hits are as uneven as their number. Several hits of one ray, which a sheet may part, are one power.

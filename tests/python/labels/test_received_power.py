@@ -86,6 +86,18 @@ def test_batches_survive_a_file(paths, tmp_path):
     assert ep.received_power(again).standard_error == ep.received_power(paths).standard_error
 
 
+@pytest.mark.parametrize("part", ["posts", "rail"])
+def test_chance_of_thin_bodies_is_how_far_other_rays_find_another_power(part):
+    """A guard rail seen along it. Of the little that its posts and its end send on, and of many outlines, chance was told 4 and
+    30 times too small. The spread of 12 seeds is known to a fifth."""
+    scene = ep.Scene()
+    scene.add(ep.actors.guard_rail(length=60.0), name="rail", position=(35, 6, 0.4), yaw=0.2)
+    traces = [ep.trace(scene, make_radar(), num_rays=100_000, max_bounces=1, seed=seed) for seed in range(12)]
+    found = [ep.received_power(paths.select(f"T 'rail/{part}' R")) for paths in traces]
+    claimed = np.sqrt(np.mean([one.chance ** 2 for one in found]))
+    assert claimed > 0.6 * np.std([one.power for one in found], ddof=1)
+
+
 def rough_ball():
     scene = ep.Scene()
     rough = ep.Material(reflectivity=0.5, scattering=1.0)

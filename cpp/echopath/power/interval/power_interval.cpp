@@ -21,7 +21,7 @@ constexpr double kOfEndless = 0.03;  // 0.26 dB, of which random polygons of up 
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kFewCells = 600.0;
-constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
+constexpr double kOutline = 0.6, kOutlineOfFields = 0.29, kJumpsOfFields = 0.5;
 
 // Says whether an interval counts what more rays hardly mend.
 enum class Lasting { kCounted, kLeftOut };
@@ -149,7 +149,8 @@ double chance_of_record(const PowerEvidence& evidence) {
   const double num_rays = effective_number(evidence.steady_power, evidence.steady_squares);
   const double unfiltered = power_of(evidence, kUnfiltered);
   const double hard = unfiltered > 0.0 ? std::min(power_of(evidence, kAsLaunched) / unfiltered, 1.0) : 0.0;
-  const double field = kOutlineOfFields * std::sqrt(hard * evidence.steady_power / std::sqrt(num_rays));
+  const double of_one_outline = kOutlineOfFields * std::sqrt(hard * evidence.steady_power / std::sqrt(num_rays));
+  const double field = std::max(of_one_outline, kJumpsOfFields * std::sqrt(evidence.steady_variance));
   return std::hypot(2.0 * std::abs(field_of(evidence)) * field + field * field, std::sqrt(diffuse));
 }
 

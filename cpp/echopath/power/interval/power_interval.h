@@ -37,6 +37,7 @@ struct PowerEvidence {
   // These are sums over the coherent paths that hardly change at half the density, such as those of flat surfaces up to
   // their edges: the sum of |a|^2, W, and that of |a|^4, W^2.
   double steady_power = 0.0, steady_squares = 0.0;
+  double steady_variance = 0.0;  // W, of the sum of their |a|, where neighbours of a lattice jump (row_differences.h)
   double lattice_squares = 0.0;  // W^2, sum of squares of the powers of diffuse hits that even directions or points found
   double outline_squares = 0.0;  // W^2, of those among them of which neighbours are not known
   double even_variance = 0.0;    // W^2, of the sum of the others, by their neighbours (row_differences.h, triangle_points.h)
@@ -112,8 +113,10 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // errs where neighbouring rays differ (row_differences.h), and scatterers that stay on their surfaces err by how many of
 // them a triangle has (triangle_points.h). Where neighbours are not known, a lattice is taken to err along one outline of
 // what it meets, so that n equal hits have the variance kOutline^2 sum p^2 / sqrt(n). The same holds for fields with
-// kOutlineOfFields, but less where the filter takes much away, as fields of curved surfaces fade toward their outline. Bias
-// and chance add up as the root of their sum of squares, to either side.
+// kOutlineOfFields, but less where the filter takes much away, as fields of curved surfaces fade toward their outline.
+// Posts, bars and spokes have more outlines than one, and may send on from a small part of what rays meet: the standard
+// error of a field is at least kJumpsOfFields times that of the sum of |a| by their jumps from ray to ray. Bias and chance
+// add up as the root of their sum of squares, to either side.
 PowerInterval power_interval(const PowerEvidence& evidence);
 
 // Returns the two-sided 95 % quantile of Student's t.

@@ -24,12 +24,27 @@ void RowDifferences::add(int place, double power) {
 }
 
 double RowDifferences::variance() const {
+  const RowDifferences all = ended();
+  return all.variance_of(all.next_);
+}
+
+double RowDifferences::variance_of_jumps() const {
+  const RowDifferences all = ended();
+  return all.variance_of(std::clamp(2.0 * all.next_ - 0.5 * all.second_, 0.0, all.next_));
+}
+
+RowDifferences RowDifferences::ended() const {
   RowDifferences all = *this;
   all.end_ray();
   for (int i = 1; i < kFarApart; ++i) all.push(0.0);
-  if (all.next_ == 0.0) return 0.0;
-  const double exponent = std::clamp(std::log2(all.second_ / all.next_), 0.0, 1.0);
-  return all.next_ * std::pow(kAtOutlines, exponent);
+  return all;
+}
+
+// `next`: as much of g1 as counts.
+double RowDifferences::variance_of(double next) const {
+  if (next_ == 0.0) return 0.0;
+  const double exponent = std::clamp(std::log2(second_ / next_), 0.0, 1.0);
+  return next * std::pow(kAtOutlines, exponent);
 }
 
 void RowDifferences::push(double power) {

@@ -12,14 +12,19 @@ namespace echopath {
 // surface whose semivariogram rises with that power of the distance (Matheron 1963).
 class RowDifferences {
  public:
-  // Adds to the power, W, of the ray at a place of its row (place_in_row). Rays come in the order of the record.
+  // Adds to the power, W, of the ray at a place of its row (place_in_row), or to the size of its field, sqrt(W). Rays come
+  // in the order of the record.
   void add(int place, double power);
-  // Returns the variance of the sum of all that was added, W^2.
+  // Returns the variance of the sum of all that was added, W^2, or W of fields.
   double variance() const;
+  // Returns the same without what changes evenly from ray to ray, over which a lattice errs little: slopes have g2 = 4 g1.
+  double variance_of_jumps() const;
 
  private:
   void push(double power);
   void end_ray();
+  RowDifferences ended() const;
+  double variance_of(double next) const;
 
   int place_ = 0;                     // of the ray that may get more; 0: none yet
   double open_ = 0.0;                 // W, of that ray

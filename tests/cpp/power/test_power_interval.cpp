@@ -124,6 +124,19 @@ PowerInterval interval_of(const CoherentKind& kind) {
   return power_interval(evidence);
 }
 
+// Of a row of posts one may be known, while cells hold another wave, of any phase, between rays: where that may be larger,
+// nothing may be left of both, though the known one hardly changes with the cells.
+TEST(PowerInterval, AFieldBelowWhatCellsMayHoldHasNoLowerEnd) {
+  for (const auto& [missing, has_lower_end] : {std::pair(0.8, true), std::pair(1.5, false)}) {
+    CoherentKind kind;
+    for (std::complex<double>& field : kind.field) field = 1.0;
+    kind.power[kPoints] = 4.0 * (1.0 + missing);  // rule (3)
+    const PowerInterval found = interval_of(kind);
+    EXPECT_NEAR(std::sqrt(found.high), 1.0 + missing, 1e-3);
+    EXPECT_EQ(found.low > 0.9, has_lower_end) << found.low;
+  }
+}
+
 // Facets that stray from the surface that they stand for limit what rays know of it, but never so much that the body could
 // not be resolved.
 TEST(PowerInterval, FacetsLimitWhatIsKnownByLessThanAResolvedEchoMayErr) {

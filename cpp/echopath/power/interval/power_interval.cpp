@@ -101,7 +101,8 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
   double finer = 0.0, points = 0.0, edges = 0.0, edges_below = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
-    points += squared(missing_of_points(kind, evidence.num_batches));
+    const double of_points = squared(missing_of_points(kind, evidence.num_batches));
+    points += of_points;
     const double smoothness = smoothness_of_edges(kind);
     const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
     if (lasting == Lasting::kCounted) surface += squared(kOfEndless) * kind.endless_with_edges;
@@ -123,7 +124,8 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
     const double missing = std::min(share_of_edges(kind, still_changes, most, lasting) * most, most_of_edges);
     edges += missing;
-    edges_below += size > kind.rims_at_most ? squared(size) : smoothness * missing;
+    const double of_another_phase = std::clamp(of_points + missing - squared(size), 0.0, squared(size));
+    edges_below += size > kind.rims_at_most ? squared(size) : std::max(smoothness * missing, of_another_phase);
   }
   return {std::sqrt(of_one_error(squared(above.size()), finer) + points + edges + surface),
           std::sqrt(of_one_error(squared(below.size()), finer) + edges_below + surface)};

@@ -88,6 +88,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //  (5) The field may be larger by sqrt(q e) with e = k^2 E, where k goes from kOfEdges for planes (s = 0) to kOfSmoothEdges
 //      for smooth surfaces (s = 1): these end where they are steep, so that their edges hold less, in any phase. So it may
 //      also be smaller by sqrt(s q e).
+//      What (3) and (5) add, m^2 together, may have any phase where it is larger than F, which then tells of a part of the
+//      surface alone: the field may also be smaller by the root of m^2 - |F|^2, and at m^2 = 2 |F|^2 by all of it.
 //  (6) q = min(c / kGone, 1)^4 with c = d is the share of e that counts: a field that hardly changes with the cells has its
 //      edges. Behind other bounces c is the larger of d and kHalvingPerFiner |F_finer - F| / |F|, as the latter is smaller
 //      by that factor where errors fall with the square of a cell's side. There a field that is weaker than its edges may

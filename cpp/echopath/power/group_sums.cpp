@@ -112,8 +112,8 @@ class KnownKinds {
 class Sums {
  public:
   Sums(const Paths& paths, size_t num_groups)
-      : paths_(paths), open_(num_groups), rows_(num_groups), steady_rows_(num_groups), triangles_(num_groups), kinds_(num_groups),
-        groups_(num_groups) {
+      : paths_(paths), open_(num_groups), rows_(num_groups), steady_rows_(num_groups), triangles_(num_groups),
+        kinds_(num_groups), groups_(num_groups) {
     const auto num_entries = static_cast<size_t>(paths.frame.batches) + 1;
     for (GroupSums& group : groups_) {
       group.field.resize(num_entries);
@@ -224,7 +224,7 @@ class Sums {
   const Paths& paths_;
   std::vector<OpenHit> open_;
   std::vector<std::array<RowDifferences, 2>> rows_, steady_rows_;  // by group, of hits before and behind a sheet
-  std::vector<TrianglePoints> triangles_;  // by group, as the next two
+  std::vector<TrianglePoints> triangles_;                          // by group, as the next two
   std::vector<KnownKinds> kinds_;
   std::vector<GroupSums> groups_;
 };

@@ -11,8 +11,8 @@ from ..transmit import is_coded
 def row_times(radar: _core.Radar, tx: int) -> NDArray[np.float64]:
     """s after the frame's start, at which `signal_of_rows` takes delays: the middles of the chirps of a transmitter, first.
 
-    Behind them follow the first and the last samples of all these chirps where one chirp is not as far from the next as all are, or is
-    alone: differences between chirps do not tell there how delays change within each of them.
+    Behind them follow the first and the last samples of all these chirps where one chirp is not as far from the next as all are,
+    or is alone: differences between chirps do not tell there how delays change within each of them.
     """
     middles = np.array([radar.chirp_time(tx, chirp) for chirp in range(radar.waveform.num_chirps)])
     half = _half(radar.waveform)

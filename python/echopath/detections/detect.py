@@ -129,11 +129,11 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     beside = labelling.maps_of("beside", beside, spectrum, radar)
     found = cfar(spectrum, radar, **rules, progress=progress)
     gains = EchoGains(radar, spectrum.range, _start_of(paths) if start_time is None else start_time)
-    warn_of_missing_noise(radar, _core.mean_power(spectrum) if rules["beams"] else found.power, gains.of_filters)
+    beams = rules["beams"]
+    warn_of_missing_noise(radar, _core.mean_power(spectrum) if beams else found.power, gains.of_filters)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
-    beams = rules["beams"]
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
     fields = echoes if signals is None else FamilyFields(signals, radar, spectrum)
     columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains, beams), fields,

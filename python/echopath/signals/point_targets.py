@@ -115,25 +115,28 @@ class _Targets:
         cube = np.empty((len(radar.transmitters), len(radar.receivers), num_chirps, radar.waveform.num_samples), complex)
         for i, transmitter in enumerate(radar.transmitters):
             times = self._start_time + row_times(radar, i)
-            out, sent = self._legs(radar, transmitter, times)
+            points = [self._places(time) for time in times]
+            out, sent = self._legs(radar, transmitter, points, times)
             for j, receiver in enumerate(radar.receivers):
-                back, heard = self._legs(radar, receiver, times)
+                back, heard = self._legs(radar, receiver, points, times)
                 fields = level * self._echoes * sent * heard / (out * back)[:num_chirps]
                 cube[i, j] = signal_of_rows(radar, (out + back) / _core.speed_of_light, fields)
         return cube
 
-    def _legs(self, radar, antenna, times) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-        """Lengths in m of the ways from an antenna at times, [rows, N], and its pattern toward their ends in the middles of the
-        chirps, which are the first of these, [chirps, N]."""
-        lengths = np.array([self._lengths(radar, antenna, time) for time in times])
+    @staticmethod
+    def _legs(radar, antenna, points, times) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """Lengths in m of the ways from an antenna to points [N, 3] at times, [rows, N], and its pattern toward their ends in the
+        middles of the chirps, which are the first of these, [chirps, N]."""
+        lengths = np.array([_lengths(radar, antenna, places, time) for places, time in zip(points, times)])
         middles = times[:radar.waveform.num_chirps]
-        return lengths, np.array([field_toward(radar, antenna, self._places(middle), middle) for middle in middles])
+        return lengths, np.array([field_toward(radar, antenna, places, time) for places, time in zip(points, middles)])
 
-    def _lengths(self, radar, antenna, time: float) -> NDArray[np.float64]:
-        """m, [N], at a time in s."""
-        world_from_radar = radar.world_from_radar(time)
-        place = world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3]
-        found = np.linalg.norm(self._places(time) - place, axis=1)
-        if not np.all(found > 0.0):
-            raise refused(ValueError, "positions", "away from the antennas", antenna)
-        return found
+
+def _lengths(radar, antenna, places, time: float) -> NDArray[np.float64]:
+    """m, [N], from an antenna to places [N, 3] at a time in s."""
+    world_from_radar = radar.world_from_radar(time)
+    antenna_place = world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3]
+    found = np.linalg.norm(places - antenna_place, axis=1)
+    if not np.all(found > 0.0):
+        raise refused(ValueError, "positions", "away from the antennas", antenna)
+    return found

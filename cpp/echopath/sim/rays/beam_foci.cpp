@@ -7,6 +7,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/posed/posed_antenna.h"
 #include "echopath/sim/rays/plan_foci.h"
+#include "echopath/spectrum/array/steering.h"
 
 namespace echopath {
 namespace {
@@ -37,8 +38,7 @@ Vec3 peak_of(const PosedAntenna& antenna) {
   const GainTable& table = *antenna.pattern->table;
   const auto place = std::ranges::max_element(table.gain()) - table.gain().begin();
   const auto columns = std::ssize(table.azimuth());
-  const double azimuth = table.azimuth()[place % columns], elevation = table.elevation()[place / columns];
-  const Vec3 own(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+  const Vec3 own = direction(table.azimuth()[place % columns], table.elevation()[place / columns]);
   return antenna.antenna_from_world.transpose() * own;
 }
 

@@ -16,6 +16,7 @@ constexpr double kLargestElevation = kPi / 4.0;  // of the default grid
 constexpr double kEndfire = 0.1;                 // sine between an array's line and the boresights along it
 constexpr double kAligned = 0.01;                // rad, off the direction across its line: antennas that look that way
 constexpr double kMostSteps = 1e5;               // of a default axis, to either side
+constexpr double kMostTerms = 134217728.0;       // of steering vectors: 2 GiB
 
 void require_axis(const std::vector<double>& axis, const char* name, double limit, const char* rule) {
   require(!axis.empty(), name, "must have at least one angle", axis.size());

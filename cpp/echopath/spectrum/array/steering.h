@@ -19,7 +19,6 @@ struct AngleGrid {
 };
 
 inline constexpr double kTellingExtent = 0.1;  // wavelengths; directions of less differ by less than the noise of an echo
-inline constexpr double kMostTerms = 134217728.0;  // elements times directions of steering vectors: 2 GiB
 
 Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
 

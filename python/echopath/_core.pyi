@@ -3409,7 +3409,8 @@ def find_peaks(spectrum: RangeDoppler, radar: Radar, found: CfarResult, progress
 
     found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
     Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
-    channels, or of the beam that found the cell), velocity_offset, range_offset (cells). Raises ValueError.
+    channels, or of the beam that found the cell), velocity_offset, range_offset (cells); and beam_weights [N, tx, rx], whose sum
+    with the values of a cell is the field of the beam that found it, or None without beams. Raises ValueError.
     """
 def first(glob: str) -> Selection:
     """

@@ -60,6 +60,11 @@ py::array_t<bool> mask_of(const CfarResult& result) {
 py::dict peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult& found, const py::object& progress) {
   Peaks peaks = run_job("find_peaks", progress, [&](Job& job) { return find_peaks(map, radar, found, &job); });
   py::dict out;
+  out["beam_weights"] = py::none();
+  if (found.num_beams > 0) {
+    const Shape channels = {std::ssize(peaks.cells), map.num_transmitters, map.num_receivers};
+    out["beam_weights"] = numpy_take(std::move(peaks.beam_weights), channels);
+  }
   out["cells"] = to_numpy(peaks.cells);
   out["velocity"] = numpy_take(std::move(peaks.velocity));
   out["range"] = numpy_take(std::move(peaks.range));
@@ -170,7 +175,8 @@ void bind_cfar(py::module_& m) {
 
 found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
 Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
-channels, or of the beam that found the cell), velocity_offset, range_offset (cells). Raises ValueError.)");
+channels, or of the beam that found the cell), velocity_offset, range_offset (cells); and beam_weights [N, tx, rx], whose sum
+with the values of a cell is the field of the beam that found it, or None without beams. Raises ValueError.)");
 }
 
 }  // namespace echopath::bindings

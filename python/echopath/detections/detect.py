@@ -85,9 +85,9 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;
-        in beams power and noise are those of the beam in which a cell is strongest, and noise is told from echoes by that power.
-        What made a detection is then still told by the powers of all channels: of two echoes in one cell from different
-        directions that is the stronger one, whichever the beam found. `labels` know no objects below the noise of a channel
+        in beams power and noise are those of the beam in which a cell is strongest, and what made a detection is told in that
+        beam: of two echoes in one cell it is the one that the beam found. Labels keep powers of all channels alone: with
+        `labels` the part is that of the stronger echo, and without paths no objects are known below the noise of a channel
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
     paths: of `trace` with that radar, whatever receiver and noise figure it had: objects, ghosts and the paths behind each
         detection
@@ -136,8 +136,8 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
     fields = echoes if signals is None else FamilyFields(signals, radar, spectrum)
-    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains, beams), fields,
-                         progress)
+    makers = _Makers(paths, parts, labels, beside, objects, floor, gains, peaks["beam_weights"])
+    columns = _labels_of(spectrum, cells, power, makers, fields, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
@@ -153,7 +153,7 @@ class _Makers(NamedTuple):
     objects: object
     noise_floor: float  # W
     gains: EchoGains
-    beams: bool         # whether echoes compare with the power of a beam
+    beams: np.ndarray | None  # weights [N, tx, rx] of the beams that found the cells
 
 
 def _start_of(paths) -> float:
@@ -174,9 +174,9 @@ def _labels_of(spectrum, cells, power, makers: _Makers, fields: EchoFields | Fam
     if paths is not None:
         of_paths = find_families(paths, objects)
         sorted_by = fields if isinstance(fields, FamilyFields) else of_paths
-        families, whole = labelling.families_of_cells(sorted_by, fields, cells, gains, noise_floor=noise_floor,
+        families, whole = labelling.families_of_cells(sorted_by, fields, cells, gains, noise_floor=noise_floor, beams=beams,
                                                        progress=progress)
-        measured = power if beams else fields.measured(cells)
+        measured = fields.measured(cells) if beams is None else power
         found.take_families(families, whole, measured, labelling.resolved_families(paths, of_paths, progress))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)
@@ -184,9 +184,9 @@ def _labels_of(spectrum, cells, power, makers: _Makers, fields: EchoFields | Fam
     if labels is not None:
         found.take_parts(*labelling.label_powers(spectrum, labels, cells, gains), power)
     elif parts is not None:
-        found.take_parts(*labelling.part_powers(parts | beside, cells, gains), power)
+        found.take_parts(*labelling.part_powers(parts | beside, cells, gains, beams), power)
     elif beside:
-        found.take_beside(*labelling.part_powers(beside, cells, gains)[:2], power)
+        found.take_beside(*labelling.part_powers(beside, cells, gains, beams)[:2], power)
     found.leave((*BESIDE, *beside))
     return found.columns()
 

@@ -13,6 +13,7 @@ from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
+from .channels import Channels
 from .histories import FLASHING, UNSTEADY, Histories, length_and_field, off_parabola, phase_of, swing_of
 from .response import MAX_SWEEP, Response
 
@@ -27,17 +28,16 @@ STRONGEST = 0.99       # of the bounds of the powers in a cell: those that tell 
 FADED = 1e-20          # of the power of the strongest path: how the phases of weaker ones turn is rounding
 FAINT = 1e-2           # of the largest field of a cell of range: what is less is taken as it is in mid-frame though it flashes
 SAME_BIN = 0.25        # bins of range, up to which all channels have a path in the same place
-SAME_LINE = 0.1        # bins of range, over which a response is a straight line: 0.4 % of the peak
 
 
 class EchoFields:
     """The field that each path gives to each cell of a map of its radar, by its state in the middle of the frame.
 
-    Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
-    the velocity of `path_cells` and its change over the frame for the first antennas; of echoes whose phase is no parabola over
-    the frame, as of blades and wheels, or that flash, the field of the first antennas in each chirp. Cells are asked for together
-    (`evaluate`). Those paths of a cell are left out that together hold less than a millionth of its power, as far as the
-    windows bound what each may give.
+    Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least,
+    but in beams all; the velocity of `path_cells` and its change over the frame for the first antennas; of echoes whose phase
+    is no parabola over the frame, as of blades and wheels, or that flash, the field of the first antennas in each chirp. Cells
+    are asked for together (`evaluate`). Those paths of a cell are left out that together hold less than a millionth of its
+    power, as far as the windows bound what each may give.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
     """
 
@@ -46,19 +46,52 @@ class EchoFields:
         self._echoes_of_cell = {}  # {(velocity, range): (echoes with those of the channels, places [N] of its own in them)}
 
     @cached_property
-    def channels(self) -> np.ndarray:
-        """(transmitter, receiver) indices of the channels, [C, 2]; the first is that of the first antennas."""
-        num_receivers = len(self._paths.radar.receivers)
-        num_channels = len(self._paths.radar.transmitters) * num_receivers
+    def _all(self) -> Channels:
+        return Channels(self._paths.radar)
+
+    @cached_property
+    def _few(self) -> Channels:
         room = MAX_MEMORY // (BYTES_PER_FIELD * max(self._paths.num_paths, 1))
-        count = int(np.clip(room, 1, min(MAX_CHANNELS, num_channels)))
-        taken = np.linspace(0, num_channels - 1, count).astype(int)
-        return np.stack(np.divmod(taken, num_receivers), axis=-1)
+        return Channels(self._paths.radar, int(np.clip(room, 1, MAX_CHANNELS)))
 
     def measured(self, cells) -> np.ndarray:
         """Power [N] in W of the map in cells [N, 2], mean over the channels: what the sums of the fields compare with."""
-        (tx, rx), (velocity, distance) = self.channels.T[:, :, None], cells.T
-        return np.mean(np.abs(self._spectrum.values[tx, rx, velocity, distance]) ** 2, axis=0)
+        tx, rx = self._few.indices.T[:, :, None]
+        return np.mean(np.abs(self._spectrum.values[tx, rx, *cells.T]) ** 2, axis=0)
+
+    def each(self, cells, gains, beams=None, progress=None):
+        """Yields of each of cells [N, 2] the indices [K] of the paths that hold it, their fields [C, K] in sqrt(W), and power in
+        W of all behind the receiver; those in channels, or, with beams, [1, K] in the beam of the cell.
+
+        gains: EchoGains; beams: weights [N, tx, rx] of `find_peaks`; progress: as in `detect`
+        """
+        if beams is None:
+            self.evaluate(cells, progress)
+            of_channels = gains.of("", *self._few.indices.T[:, :, None], cells[:, 1]).T
+            for cell, gain in zip(cells, of_channels):
+                index, field = self.fields(cell)
+                yield index, field, np.mean(np.abs(gain * field.sum(axis=1)) ** 2)
+            return
+        weights = beams.reshape(len(cells), -1)
+        behind = weights * gains.of("", *self._all.indices.T[:, :, None], cells[:, 1]).T
+        for weight, gained, (index, field) in zip(weights, behind, self._in_all_channels(cells, progress)):
+            yield index, (weight @ field)[None], np.abs(gained @ field.sum(axis=1)) ** 2
+
+    def _in_all_channels(self, cells, progress):
+        """Yields (indices i64 [K], fields complex [C, K] in sqrt(W)) of the paths that hold each of cells [N, 2], in all
+        channels. Cells are made together as far as MAX_MEMORY holds their paths."""
+        keys = [_key(cell) for cell in cells]
+        self._follow(keys)
+        room = MAX_MEMORY // (BYTES_PER_FIELD * len(self._all.indices))
+        held = [self._holding(cell) for cell in with_progress(keys, len(keys), progress, "paths of cells")]
+        turns = np.cumsum([len(some) for some in held]) // max(room, 1)
+        for turn in np.unique(turns):
+            members = np.flatnonzero(turns == turn)
+            keep = _all_of([held[i] for i in members], len(self._power))
+            echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()}, self._all)
+            for i in members:
+                some = np.searchsorted(keep, held[i])
+                yield echoes["index"][some], self._fields(echoes, some, keys[i], self._all)
 
     def peak_of(self, keep) -> float:
         """Power in W of the strongest cell of the map of the paths where `keep` [P] is true, mean over all channels."""
@@ -74,14 +107,14 @@ class EchoFields:
             self._follow(asked)
             held = [self._holding(cell) for cell in with_progress(asked, len(asked), progress, "paths of cells")]
             keep = _all_of(held, len(self._power))
-            echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()})
+            echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()}, self._few)
             self._echoes_of_cell |= {cell: (echoes, np.searchsorted(keep, some)) for cell, some in zip(asked, held)}
 
     def fields(self, cell) -> tuple:
         """(indices i64 [N], fields complex [C, N] in sqrt(W)) of the paths that hold a cell (velocity, range)."""
         self.evaluate([cell])
         echoes, held = self._echoes_of_cell[_key(cell)]
-        return echoes["index"][held], (self._gains(echoes, held, cell) * echoes["field"][:, held]).astype(complex)
+        return echoes["index"][held], self._fields(echoes, held, cell, self._few)
 
     def paths(self, cell) -> tuple:
         """(indices i64 [N], shares [N]) of the strongest paths of a cell (velocity, range), largest first."""
@@ -94,11 +127,15 @@ class EchoFields:
         count = int(np.searchsorted(held, HELD * held[-1])) + 1
         return index[order[:count]], power[order[:count]] / held[-1]
 
-    def _gains(self, echoes: dict, some, cell) -> np.ndarray:
+    def _fields(self, echoes: dict, some, cell, channels: Channels) -> np.ndarray:
+        """The fields of some echoes in a cell, complex [C, N] in sqrt(W)."""
+        return (self._gains(echoes, some, cell, channels) * echoes["field"][:, some]).astype(complex)
+
+    def _gains(self, echoes: dict, some, cell, channels: Channels) -> np.ndarray:
         """What a cell has of the fields of some echoes in the channels, complex64 [C, N]."""
         gain, shift = self._gain(echoes, some, cell), echoes["shift"][:, some]
         gains = np.empty(shift.shape, np.complex64)
-        for rows in self._neighbours:
+        for rows in channels.neighbours:
             low, high = shift[rows].min(axis=0), shift[rows].max(axis=0)
             at_low = gain(low)
             rise = gain(high) - at_low if len(rows) > 1 else 0.0
@@ -167,7 +204,7 @@ class EchoFields:
     @cached_property
     def _far(self) -> float:
         """Cells of range beyond which an echo gives nothing."""
-        reach = self._range_response.reach + 0.5 * self._largest("travel") + self._largest_shift
+        reach = self._range_response.reach + 0.5 * self._largest("travel") + self._all.largest_shift
         return reach * self._spectrum.zero_pad
 
     @cached_property
@@ -201,7 +238,7 @@ class EchoFields:
     @cached_property
     def _power(self) -> np.ndarray:
         """Power [P] of each echo in W, in the first channel where it tells that of all, else in the strongest."""
-        field = self._echoes["first"] if self._channels_are_alike else self._in_channels(self._echoes)["field"]
+        field = self._echoes["first"] if self._channels_are_alike else self._in_channels(self._echoes, self._few)["field"]
         return np.max(np.abs(np.atleast_2d(field)) ** 2, axis=0)
 
     def _holding(self, cell) -> np.ndarray:
@@ -222,19 +259,18 @@ class EchoFields:
         travel, sweep = np.abs(echoes["travel"]), np.minimum(np.abs(echoes["sweep"]), MAX_SWEEP)
         along = self._velocity_response.bound((velocity - echoes["velocity"]) / pad, travel + sweep)
         along = np.where(echoes["unsteady"], 1.0, along)
-        across = self._range_response.bound((distance - echoes["range"]) / pad, travel + 2.0 * self._largest_shift)
+        across = self._range_response.bound((distance - echoes["range"]) / pad, travel + 2.0 * self._all.largest_shift)
         return self._power[some] * (along * across) ** 2
 
-    def _in_channels(self, echoes: dict) -> dict:
+    def _in_channels(self, echoes: dict, channels: Channels) -> dict:
         """Some echoes with "shift", bins of range by which each channel has them farther away than the first antennas, and
         "field", [C, N]."""
         ascending = np.sort(echoes["index"])
         paths, column = subset(self._paths, ascending), np.searchsorted(ascending, echoes["index"])
-        shift = np.empty((len(self.channels), len(column)), np.float32)
+        shift = np.empty((len(channels.indices), len(column)), np.float32)
         field = np.empty(shift.shape, np.complex64)
-        for tx in np.unique(self.channels[:, 0]):
-            rows = np.flatnonzero(self.channels[:, 0] == tx)
-            length, start = _lengths_and_fields(paths, int(tx), self.channels[rows, 1].tolist())
+        for tx, rows in channels.of_transmitters.items():
+            length, start = _lengths_and_fields(paths, tx, channels.indices[rows, 1].tolist())
             shift[rows] = 0.5 * (length[:, column] - echoes["length"]) / self._paths.radar.waveform.range_resolution
             field[rows] = start[:, column]
             self._scale_followed(field, rows, echoes, length[:, column])
@@ -252,36 +288,11 @@ class EchoFields:
         field[np.ix_(channels, some)] = largest * beside_first
 
     @cached_property
-    def _apart(self) -> np.ndarray:
-        """Bins of range by which the length of a path may differ between two channels, at most, [C, C]."""
-        tx, rx = (np.array([antennas[index].position for index in indices]) for antennas, indices in zip(
-            (self._paths.radar.transmitters, self._paths.radar.receivers), self.channels.T))
-        apart = sum(0.5 * np.linalg.norm(places[:, None] - places, axis=-1) for places in (tx, rx))
-        return apart / self._paths.radar.waveform.range_resolution
-
-    @property
-    def _largest_shift(self) -> float:
-        """Bins of range by which the length of a path may differ from that of the first channel, at most."""
-        return float(self._apart[0].max())
-
-    @cached_property
-    def _neighbours(self) -> list:
-        """Lists of channels between which no path goes farther than SAME_LINE."""
-        groups = []
-        for channel, apart in enumerate(self._apart):
-            near = next((group for group in groups if apart[group].max() <= SAME_LINE), None)
-            if near is None:
-                groups.append([channel])
-            else:
-                near.append(channel)
-        return groups
-
-    @cached_property
     def _channels_are_alike(self) -> bool:
         """Whether a path that gives little in the first channel gives little in the others: antennas look the same way."""
         radar = self._paths.radar
         looks = [[look_of(one) for one in antennas] for antennas in (radar.transmitters, radar.receivers)]
-        return self._largest_shift < SAME_BIN and all(look == some[0] for some in looks for look in some)
+        return self._all.largest_shift < SAME_BIN and all(look == some[0] for some in looks for look in some)
 
     @cached_property
     def _velocity_response(self) -> Response:

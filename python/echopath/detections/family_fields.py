@@ -4,35 +4,40 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..base.process.progress import with_progress
 
 
 class FamilyFields:
-    """The fields of the signals of whole families in all channels, by the names that EchoFields has for those of paths.
+    """The fields of the signals of whole families, by the names that EchoFields has for those of paths.
 
     The paths of mid-frame do not tell what made a cell of a frame whose records are renewed.
 
-    families: list [F] of Family; family_of_path: [F], each of them being one echo; channels: (transmitter, receiver), [C, 2]
+    families: list [F] of Family; family_of_path: [F], each of them being one echo
     """
 
     def __init__(self, signals: dict, radar, spectrum):
         """signals: {Family: cube [tx, rx, chirp, sample] in sqrt(W)} without noise; radar, spectrum: of the map"""
         self.families, self.family_of_path = list(signals), np.arange(len(signals))
-        self.channels = np.argwhere(np.ones(spectrum.values.shape[:2], bool))
         self._signals, self._radar, self._spectrum = signals, radar, spectrum
-        self._fields, self._peaks = {}, np.zeros(len(signals))
+        self._peaks = np.zeros(len(signals))
 
-    def evaluate(self, cells, progress=None) -> None:
-        """Makes the maps of all families, one at a time, and keeps of each what it has in cells [N, 2]."""
-        fields = np.zeros((len(cells), len(self.channels), len(self)), complex)
-        for number, cube in enumerate(self._signals.values()):
+    def each(self, cells, gains, beams=None, progress=None):
+        """Yields of each of cells [N, 2] what EchoFields does, of families instead of paths: makes the maps of all, one at a
+        time, and keeps of each what it has in the cells."""
+        indices = np.argwhere(np.ones(self._spectrum.values.shape[:2], bool))
+        of_channels = gains.of("", *indices.T[:, :, None], cells[:, 1]).T
+        weights = None if beams is None else beams.reshape(len(cells), -1)
+        fields = np.zeros((len(cells), len(indices) if beams is None else 1, len(self)), complex)
+        behind = np.zeros((len(cells), fields.shape[1]), complex)
+        families = with_progress(self._signals.values(), len(self), progress, "maps of families")
+        for number, cube in enumerate(families):
             found = _core.range_doppler(cube, self._radar, self._spectrum.window, self._spectrum.zero_pad)
-            fields[:, :, number] = _in_cells(found.values, cells)
+            values = _in_cells(found.values, cells)
+            fields[:, :, number] = _summed(values, weights)
+            behind += _summed(of_channels * values, weights)
             self._peaks[number] = _core.mean_power(found).max(initial=0.0)
-        self._fields = {tuple(cell): of_cell for cell, of_cell in zip(cells.tolist(), fields)}
-
-    def fields(self, cell) -> tuple:
-        """(indices [F], fields complex [C, F] in sqrt(W)) of the families in one of the cells."""
-        return self.family_of_path, self._fields[tuple(cell.tolist())]
+        for field, whole in zip(fields, behind):
+            yield self.family_of_path, field, np.mean(np.abs(whole) ** 2)
 
     def measured(self, cells) -> np.ndarray:
         """Power [N] in W of the map in cells [N, 2], mean over the channels."""
@@ -50,3 +55,8 @@ def _in_cells(values, cells):
     """[N, C] of values [tx, rx, velocity, range] in cells [N, 2]."""
     velocity, distance = cells.T
     return values[:, :, velocity, distance].reshape(-1, len(cells)).T
+
+
+def _summed(values, weights):
+    """Values [N, C] in channels as they are, or, with weights [N, C], their weighted sums [N, 1]."""
+    return values if weights is None else np.sum(weights * values, axis=1, keepdims=True)

@@ -13,19 +13,27 @@ from .detections import NOISE
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
 
 
-def part_powers(maps: dict, cells, gains) -> tuple:
-    """Names [K], powers [K, N] of maps of parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels.
+def part_powers(maps: dict, cells, gains, beams=None) -> tuple:
+    """Names [K], powers [K, N] of maps of parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels, or
+    in beams.
 
-    gains: EchoGains of the receiver, through which the parts have not gone
+    gains: EchoGains of the receiver, through which the parts have not gone; beams: weights [N, tx, rx], None: none
     """
     velocity, distance = cells[:, 0], cells[:, 1]
     powers, whole = [], 0.0
     for name, part in maps.items():
         tx, rx = (np.arange(count) for count in part.values.shape[:2])
         values = part.values[:, :, velocity, distance] * gains.of(name, tx[:, None, None], rx[:, None], distance)
-        powers.append(np.mean(np.abs(values) ** 2, axis=(0, 1)))
+        powers.append(_power_of(values, beams))
         whole = whole + values
-    return list(maps), np.array(powers), np.mean(np.abs(whole) ** 2, axis=(0, 1))
+    return list(maps), np.array(powers), _power_of(whole, beams)
+
+
+def _power_of(values, beams):
+    """Power [N] in W of values [tx, rx, N]: their mean over channels, or that in beams."""
+    if beams is None:
+        return np.mean(np.abs(values) ** 2, axis=(0, 1))
+    return np.abs(np.einsum("ntr,trn->n", beams, values)) ** 2
 
 
 def maps_of(argument: str, parts: dict | None, spectrum, radar) -> dict:
@@ -67,23 +75,23 @@ def _mean_gain(gains) -> np.ndarray:
     return np.mean(gains ** 2, axis=(0, 1))
 
 
-def families_of_cells(families, echoes, cells, gains, *, noise_floor: float, progress=None) -> tuple:
+def families_of_cells(families, echoes, cells, gains, *, noise_floor: float, beams=None, progress=None) -> tuple:
     """The family that has each of cells [N, 2] by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
-    Powers are means over the channels of the echoes' fields, that of all behind the receiver.
-    gains: EchoGains; noise_floor: W, from which on labels take a cell for more than noise; progress: as in `detect`
+    Powers are means over the channels of the echoes' fields, or of beams; that of all is behind the receiver.
+    echoes: EchoFields or FamilyFields; gains, beams: as in `part_powers`; noise_floor: W, from which on labels take a cell for
+    more than noise; progress: as in `detect`
     """
     owners = CellOwners((len(cells),), families.families, noise_floor)
     own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
     rival_of_family = owners.rival_of_family
     whole = np.zeros(len(cells))
-    echoes.evaluate(cells, progress)
-    for i, cell in enumerate(with_progress(cells, len(cells), progress, "families of cells")):
-        index, field = echoes.fields(cell)
+    fields = with_progress(echoes.each(cells, gains, beams, progress), len(cells), progress, "families of cells")
+    for i, (index, field, power) in enumerate(fields):
         sums = _sums(field, families.family_of_path[index], len(families))
         own[:, i] = np.mean(np.abs(sums) ** 2, axis=0)
         joint[:, i] = np.mean(np.abs(_sums(sums, rival_of_family, len(owners.rivals))) ** 2, axis=0)
-        whole[i] = np.mean(np.abs(gains.of("", *echoes.channels.T, cell[1]) * field.sum(axis=1)) ** 2)
+        whole[i] = power
     for rival, power in enumerate(joint):
         owners.add(rival, power, 0.0)
     for rival in owners.faded():

@@ -10,6 +10,7 @@ from ..base.radar.chirps import chirps_duration
 from ..paths.cells import chirp_times
 from ..spectra.windows import of_velocity, samples_of
 from ..transmit.signals import has_steps, repeated
+from .channels import Channels
 from .echo_fields import EchoFields
 
 ECHOES_AT_ONCE = 1 << 12   # whose phases in all chirps are in memory
@@ -61,8 +62,8 @@ class UnevenEchoFields(EchoFields):
 
     @cached_property
     def _chirps(self) -> dict:
-        """{tx: _Chirps} of the channels."""
-        return {int(tx): _Chirps(self._paths, self._spectrum.window, int(tx)) for tx in np.unique(self.channels[:, 0])}
+        """{tx: _Chirps} of all transmitters."""
+        return {tx: _Chirps(self._paths, self._spectrum.window, tx) for tx in range(len(self._paths.radar.transmitters))}
 
     @cached_property
     def _most_wider(self) -> float:
@@ -72,24 +73,24 @@ class UnevenEchoFields(EchoFields):
     def _candidates(self, number, velocity: int, distance: int):
         """As of EchoFields, those of all velocities."""
         pad, ranges = self._spectrum.zero_pad, self._echoes["range"]
-        far = (self._range_response.reach + 0.5 * self._largest("travel") + self._largest_shift + 1.0) * pad
+        far = (self._range_response.reach + 0.5 * self._largest("travel") + self._all.largest_shift + 1.0) * pad
         return np.flatnonzero(np.abs(ranges - distance) <= far + self._most_wider * ranges)
 
     def _bounds(self, some, cell) -> np.ndarray:
         pad = self._spectrum.zero_pad
         echoes = {name: self._echoes[name][some] for name in ("range", "travel")}
-        spread = np.abs(echoes["travel"]) + 2.0 * (self._largest_shift + self._most_wider * echoes["range"] / pad)
+        spread = np.abs(echoes["travel"]) + 2.0 * (self._all.largest_shift + self._most_wider * echoes["range"] / pad)
         return self._power[some] * self._range_response.bound((cell[1] - echoes["range"]) / pad, spread) ** 2
 
     def _gain(self, echoes: dict, some, cell):
-        return self._gain_of(self._chirps[int(self.channels[0, 0])], echoes, some, cell)
+        return self._gain_of(self._chirps[0], echoes, some, cell)
 
-    def _gains(self, echoes: dict, some, cell) -> np.ndarray:
+    def _gains(self, echoes: dict, some, cell, channels: Channels) -> np.ndarray:
         shift = echoes["shift"][:, some]
         gains = np.empty(shift.shape, np.complex64)
-        for tx, chirps in self._chirps.items():
-            gain = self._gain_of(chirps, echoes, some, cell)
-            for row in np.flatnonzero(self.channels[:, 0] == tx):
+        for tx, rows in channels.of_transmitters.items():
+            gain = self._gain_of(self._chirps[tx], echoes, some, cell)
+            for row in rows:
                 gains[row] = gain(shift[row])
         return gains
 

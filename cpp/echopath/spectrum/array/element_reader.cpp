@@ -54,4 +54,16 @@ void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::
   }
 }
 
+Eigen::VectorXcd ElementReader::channel_weights(int64_t velocity, int64_t range, const Eigen::VectorXcd& of_elements) const {
+  Eigen::VectorXcd weights = Eigen::VectorXcd::Zero(map_.num_transmitters * map_.num_receivers);
+  for (int64_t element = 0; element < num_elements(); ++element) {
+    const double share = 1.0 / static_cast<double>(first_[element + 1] - first_[element]);
+    for (int64_t entry = first_[element]; entry < first_[element + 1]; ++entry) {
+      const Complex carrier = carrier_.empty() ? 1.0 : carrier_[channel_[entry] / map_.num_receivers * num_ranges_ + range];
+      weights[channel_[entry]] = of_elements[element] * share * weight(entry, velocity, 0.0) * carrier;
+    }
+  }
+  return weights;
+}
+
 }  // namespace echopath

@@ -25,6 +25,8 @@ class ElementReader {
   // Reads ranges [first, first + count) of one velocity into values [elements, count], sqrt(W). A target at v + 2 fold v_max
   // has another phase between slots (tdm.h), also where `fold` is not whole; it has no effect without `compensate`.
   void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, double fold = 0.0) const;
+  // Returns the weights [tx * rx] of the channels of a cell that give the sum over the elements with weights [elements].
+  Eigen::VectorXcd channel_weights(int64_t velocity, int64_t range, const Eigen::VectorXcd& of_elements) const;
 
  private:
   std::complex<double> weight(int64_t entry, int64_t velocity, double fold) const;

@@ -52,6 +52,7 @@ class ChannelReader {
     return values;
   }
   double power(int64_t, const Cell&, const Cell& other) const { return power_[places_.place(other)]; }
+  Fields beam_weights(int64_t, const Cell&) const { return {}; }
 
  private:
   const RangeDoppler& map_;
@@ -71,14 +72,21 @@ class BeamReader {
     // The echo of the cell lies in its neighbours, too, with the phase between slots of its own velocity.
     const double turns = static_cast<double>(cell[0] - other[0]) / static_cast<double>(places_.num_velocities());
     reader_.read(other[0], other[1], 1, values, turns);
-    const Eigen::VectorXcd steering = steering_vectors(array_, {directions_[index]}).col(0);
-    return {steering.dot(values.col(0)) / static_cast<double>(reader_.num_elements())};
+    return {of_elements(index).cwiseProduct(values.col(0)).sum()};
   }
   double power(int64_t index, const Cell& cell, const Cell& other) const {
     return std::norm(fields(index, cell, other).front());
   }
+  Fields beam_weights(int64_t index, const Cell& cell) const {
+    const Eigen::VectorXcd weights = reader_.channel_weights(cell[0], cell[1], of_elements(index));
+    return {weights.begin(), weights.end()};
+  }
 
  private:
+  Eigen::VectorXcd of_elements(int64_t index) const {
+    return steering_vectors(array_, {directions_[index]}).col(0).conjugate() / static_cast<double>(reader_.num_elements());
+  }
+
   const VirtualArray array_;
   const ElementReader reader_;
   const CellPlaces& places_;
@@ -163,6 +171,8 @@ Peaks peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult& fo
     tops.push_back(i);
     peaks.cells.push_back(found.cells[i]);
     peaks.noise.push_back(found.noise[i]);
+    const Fields weights = reader.beam_weights(i, found.cells[i]);
+    peaks.beam_weights.insert(peaks.beam_weights.end(), weights.begin(), weights.end());
   }
   const int64_t count = std::ssize(tops);
   for (auto* values : {&peaks.velocity_offset, &peaks.range_offset, &peaks.velocity, &peaks.range, &peaks.power}) {

@@ -1,6 +1,7 @@
 #pragma once
 // Finds echoes among the cells above their thresholds: local maxima, and where between the cells they lie.
 #include <array>
+#include <complex>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Peaks {
   std::vector<double> range;  // [N] m, as in the map: with the shift f_c v / slope that velocity makes
   std::vector<double> power;  // [N] W, mean over channels or of the beam, with the loss by the offsets put back
   std::vector<double> noise;  // [N] W, about the cell
+  // [N, tx, rx] with beams: the field of the beam in the cell is the sum of weight times value over the channels.
+  std::vector<std::complex<double>> beam_weights;
 };
 
 // Finds the local maxima among the cells above their thresholds: a cell is not below any of its eight neighbours, and above

@@ -1,0 +1,120 @@
+"""What made a detection in beams: told by the powers in the beam that found it."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import _core
+from echopath.detections.uneven_fields import echo_fields
+from echopath.receiver.echo_gains import EchoGains
+
+WAVELENGTH = ep.speed_of_light / 77e9
+DISTANCE = 20.0
+TARGET = np.radians(8.0)
+OTHERS = np.radians([*range(-50, 1, 5), *range(18, 49, 5)])  # the first null beside a beam is 7 degrees away from it
+OBJECTS = {"clutter": "clutter*", "target": "target"}
+ROUNDING = 1e-9
+MODEL = 0.06  # of powers: of limbs by the changes of their lengths over the frame, a quarter of a dB
+
+
+def radar(num_transmitters=1, **waveform):
+    sequence = ep.ChirpSequence(**{"start_frequency": 76.9e9, "bandwidth": 200e6, "num_samples": 64, "sampling_rate": 10e6,
+                                   "num_chirps": 16} | waveform)
+    return ep.Radar(sequence, transmitters=[ep.Antenna((0.0, 0.0, 0.5 * WAVELENGTH * k)) for k in range(num_transmitters)],
+                    receivers=[ep.Antenna((0.0, 0.5 * WAVELENGTH * k, 0.0)) for k in range(16)], transmit_power=1.0)
+
+
+def arc(speed=0.0):
+    """Many spheres in all directions, as far away as one whose echo has four times the power of each."""
+    scene = ep.Scene()
+    for name, radius, azimuth in [("target", 0.2, TARGET), *((f"clutter {k}", 0.1, one) for k, one in enumerate(OTHERS))]:
+        toward = np.array((np.cos(azimuth), np.sin(azimuth), 0.0))
+        scene.add(ep.actors.sphere(radius), name=name, material="metal", position=(DISTANCE + radius) * toward, smooth=True,
+                  motion=ep.LinearMotion(velocity=speed * toward) if speed else None)
+    return scene
+
+
+def of_target(found):
+    """Index of the detection toward the target."""
+    return int(np.argmin(np.abs(found.azimuth - TARGET)))
+
+
+@pytest.mark.parametrize("retrace", ["never", "always"])
+@pytest.mark.parametrize("speed", [0.0, 3.0])
+def test_an_echo_is_told_from_stronger_ones_of_other_directions(retrace, speed):
+    """17 echoes of a fourth of its power have four times as much in all channels together."""
+    frame = ep.simulate(arc(speed), radar(3), num_rays=20_000, max_bounces=1, noise_seed=1, retrace=retrace,
+                        parts={name: f"T '{mesh}' R" for name, mesh in OBJECTS.items()})
+    found = ep.detect_frame(frame, beams=True, objects=OBJECTS)
+    assert found.azimuth[of_target(found)] == pytest.approx(TARGET, abs=0.01)
+    assert found.object[of_target(found)] == found.part[of_target(found)] == "target"
+    assert found.share[of_target(found)] > 0.9 and not found.is_noise.any()
+    in_all = ep.detect_frame(frame, objects=OBJECTS)
+    (same_cell,) = np.flatnonzero((in_all.cells == found.cells[of_target(found)]).all(axis=1))
+    assert in_all.object[same_cell] == in_all.part[same_cell] == "clutter"
+
+
+def test_parts_have_the_power_of_the_sum_of_channels_toward_the_beam():
+    """Of transmitters at one place: the phase that motion adds between their turns is that of the cell's velocity."""
+    sender = radar(2)
+    sender = sender.replace(transmitters=[ep.Antenna(), ep.Antenna()])
+    paths = ep.trace(arc(2.0), sender, num_rays=20_000, max_bounces=1)
+    parts = ep.decompose(paths, sender, {"target": "T 'target' R", "clutter": "T 'clutter*' R"})
+    spectrum = ep.range_doppler(sum(parts.values()), sender)
+    with pytest.warns(RuntimeWarning, match="holds no noise"):
+        found = ep.detect(spectrum, sender, beams=True, parts=parts)
+    i = of_target(found)
+    velocity, distance = found.cells[i]
+    later = np.arange(2)[:, None] * sender.waveform.chirp_interval
+    turned = np.exp(4j * np.pi * spectrum.velocity[velocity] / WAVELENGTH * later)
+    cosines = np.arange(-16, 16) / 16.0  # of beams half a beam apart
+    steering = np.exp(1j * np.pi * np.outer(cosines, np.arange(16))) / 32.0
+    power = {}
+    for name, cube in parts.items():
+        values = ep.range_doppler(cube, sender).values[:, :, velocity, distance] * np.conj(turned)
+        power[name] = np.abs(steering @ values.sum(axis=0)) ** 2
+    whole = ep.range_doppler(sum(parts.values()), sender).values[:, :, velocity, distance] * np.conj(turned)
+    beam = np.argmax(np.abs(steering @ whole.sum(axis=0)))
+    assert found.share[i] == pytest.approx(power["target"][beam] / sum(one[beam] for one in power.values()), rel=1e-3)
+
+
+@pytest.mark.parametrize("waveform", [{}, {"frequency_steps": [0.0, 2e6, 5e6]}, {"extra_idle": [0.0, 3e-6]}], ids=[
+    "even", "steps", "idle times"])
+def test_fields_of_paths_in_a_beam_add_up_to_those_of_the_signal(waveform):
+    """Through chains of different gains; the radar passes walking people before a wall."""
+    sender = radar(3, num_chirps=64, **waveform).replace(receiver=ep.Receiver(receiver_gain_db=np.linspace(-6.0, 6.0, 16)),
+                                          motion=ep.LinearMotion(velocity=(4.0, 1.0, 0.0)))
+    scene = ep.Scene()
+    for k, place in enumerate([(9.0, 1.0, -1.0), (6.0, -3.0, -1.0), (4.0, 2.0, -1.0)]):
+        scene.add(ep.actors.pedestrian(phase=0.3 * k), name=f"person {k}", position=place)
+    scene.add(ep.actors.wall(6.0, 3.0), name="wall", material="concrete", position=(12.0, 0.0, 0.0))
+    paths = ep.trace(scene, sender, num_rays=5000, max_bounces=2)
+    cube = ep.synthesize(paths, sender)
+    spectrum, noisy = (ep.range_doppler(one, sender) for one in (cube, ep.add_noise(cube, sender, seed=1)))
+    peaks = _core.find_peaks(noisy, sender, ep.cfar(noisy, sender, beams=True, false_alarm_rate=1e-3))
+    is_echo = peaks["power"] > 30.0 * peaks["noise"]
+    cells, weights = peaks["cells"][is_echo], peaks["beam_weights"][is_echo]
+    gains = EchoGains(sender, spectrum.range)
+    made = list(echo_fields(paths, spectrum).each(cells, gains, weights))
+    values = spectrum.values[:, :, cells[:, 0], cells[:, 1]]
+    behind = values * 10.0 ** (np.linspace(-6.0, 6.0, 16)[:, None] / 20.0)
+    for some, powers in ((values, [np.abs(field.sum()) ** 2 for _, field, _ in made]), (behind, [whole for *_, whole in made])):
+        expected = np.abs(np.einsum("ntr,trn->n", weights, some)) ** 2
+        np.testing.assert_allclose(powers, expected, rtol=MODEL)
+    assert len(cells) > 5
+
+
+def test_cells_are_followed_in_turns_where_memory_is_short(monkeypatch):
+    sender = radar(3)
+    paths = ep.trace(arc(), sender, num_rays=5000, max_bounces=1)
+    spectrum = ep.range_doppler(ep.synthesize(paths, sender), sender)
+    peaks = _core.find_peaks(spectrum, sender, ep.cfar(spectrum, sender, beams=True, false_alarm_rate=0.01))
+    asked = peaks["cells"], EchoGains(sender, spectrum.range), peaks["beam_weights"]
+    at_once = list(echo_fields(paths, spectrum).each(*asked))
+    monkeypatch.setattr("echopath.detections.echo_fields.MAX_MEMORY", 1)
+    in_turns = list(echo_fields(paths, spectrum).each(*asked))
+    assert len(at_once) == len(in_turns) == len(peaks["cells"]) > 1
+    for (index, field, whole), (other_index, other_field, other_whole) in zip(at_once, in_turns):
+        np.testing.assert_array_equal(index, other_index)
+        np.testing.assert_allclose([whole, *field[0]], [other_whole, *other_field[0]], rtol=ROUNDING)

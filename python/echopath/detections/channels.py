@@ -51,3 +51,8 @@ class Channels:
             (self._radar.transmitters, self._radar.receivers), self.indices.T))
         apart = sum(0.5 * np.linalg.norm(places[:, None] - places, axis=-1) for places in (tx, rx))
         return apart / self._radar.waveform.range_resolution
+
+
+def by_channel(beams):
+    """Weights [N, C] of those [N, tx, rx] of beams, of all channels."""
+    return beams.reshape(len(beams), beams.shape[1] * beams.shape[2])

@@ -85,7 +85,8 @@ class Detections:
 
         Model: lengths and amplitudes of at most 8 channels at mid-frame, the velocity of `path_cells` and its change over the
         frame for the first antennas, and the response of the windows; powers are means over the channels, also of what was
-        found in beams: of the whole cell. Taken are the strongest that hold 99.99 % of the sum of the powers of single paths, of which the shares are.
+        found in beams. Taken are the strongest that hold 99.99 % of the sum of the powers of single paths, of which the shares
+        are.
         i: index, 0 to D - 1, or from the end, -1 to -D. Empty where is_noise. Raises ValueError where `detect` was given no
         paths, TypeError or ValueError for what is no whole number, IndexError.
         """

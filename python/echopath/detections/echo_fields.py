@@ -13,7 +13,7 @@ from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
-from .channels import Channels
+from .channels import Channels, by_channel
 from .histories import FLASHING, UNSTEADY, Histories, length_and_field, off_parabola, phase_of, swing_of
 from .response import MAX_SWEEP, Response
 
@@ -72,7 +72,7 @@ class EchoFields:
                 index, field = self.fields(cell)
                 yield index, field, np.mean(np.abs(gain * field.sum(axis=1)) ** 2)
             return
-        weights = beams.reshape(len(cells), -1)
+        weights = by_channel(beams)
         behind = weights * gains.of("", *self._all.indices.T[:, :, None], cells[:, 1]).T
         for weight, gained, (index, field) in zip(weights, behind, self._in_all_channels(cells, progress)):
             yield index, (weight @ field)[None], np.abs(gained @ field.sum(axis=1)) ** 2

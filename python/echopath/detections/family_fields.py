@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..base.process.progress import with_progress
+from .channels import by_channel
 
 
 class FamilyFields:
@@ -26,7 +27,7 @@ class FamilyFields:
         time, and keeps of each what it has in the cells."""
         indices = np.argwhere(np.ones(self._spectrum.values.shape[:2], bool))
         of_channels = gains.of("", *indices.T[:, :, None], cells[:, 1]).T
-        weights = None if beams is None else beams.reshape(len(cells), -1)
+        weights = None if beams is None else by_channel(beams)
         fields = np.zeros((len(cells), len(indices) if beams is None else 1, len(self)), complex)
         behind = np.zeros((len(cells), fields.shape[1]), complex)
         families = with_progress(self._signals.values(), len(self), progress, "maps of families")
@@ -54,7 +55,7 @@ class FamilyFields:
 def _in_cells(values, cells):
     """[N, C] of values [tx, rx, velocity, range] in cells [N, 2]."""
     velocity, distance = cells.T
-    return values[:, :, velocity, distance].reshape(-1, len(cells)).T
+    return values[:, :, velocity, distance].reshape(values.shape[0] * values.shape[1], len(cells)).T
 
 
 def _summed(values, weights):

@@ -118,3 +118,11 @@ def test_cells_are_followed_in_turns_where_memory_is_short(monkeypatch):
     for (index, field, whole), (other_index, other_field, other_whole) in zip(at_once, in_turns):
         np.testing.assert_array_equal(index, other_index)
         np.testing.assert_allclose([whole, *field[0]], [other_whole, *other_field[0]], rtol=ROUNDING)
+
+
+@pytest.mark.filterwarnings("ignore:scene. has no mesh")
+@pytest.mark.parametrize("beams", [False, True])
+@pytest.mark.parametrize("retrace", ["never", "always"])
+def test_nothing_found_is_a_well_shaped_result(beams, retrace):
+    frame = ep.simulate(ep.Scene(), radar(3), num_rays=100, noise_seed=1, retrace=retrace, detections={"beams": beams})
+    assert len(frame.detections) == 0 and frame.detections.object.shape == (0,)

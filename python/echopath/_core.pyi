@@ -2380,6 +2380,15 @@ class Paths:
         Returns (lengths in m, amplitudes in sqrt(W)), [R, P] each, as `lengths` and `amplitudes` give them. Raises TypeError or
         ValueError naming the argument, also for times outside a motion, and IndexError for antennas that are not there.
         """
+    def _echoes_together(self, times: ArrayLike, tx: int, rx: int, begin: int, end: int) -> tuple[typing.Any, ...]:
+        """
+        Lengths and amplitudes of some paths at several times, which take little more time than one.
+
+        times: [T] s; tx, rx: indices of the transmitter and the receiver; begin, end: of the N paths, by index
+        Returns (lengths in m, amplitudes in sqrt(W)), [T, N] each, as `lengths` and `amplitudes` give them but for the rounding of
+        amplitudes. Raises TypeError or ValueError naming the argument, also for times outside a motion, and IndexError for antennas that
+        are not there.
+        """
     def _placed_echoes(self, times: ArrayLike, radars: typing.Sequence[Radar], replay: str = 'material') -> tuple[typing.Any, ...]:
         """
         Echoes of the paths for antennas of which each moves by itself.

@@ -141,6 +141,14 @@ times outside a motion.)");
 time: s; tx: index of the transmitter; receivers: indices [R]
 Returns (lengths in m, amplitudes in sqrt(W)), [R, P] each, as `lengths` and `amplitudes` give them. Raises TypeError or
 ValueError naming the argument, also for times outside a motion, and IndexError for antennas that are not there.)");
+  define(type, "_echoes_together", &echoes_together, py::arg("times"), py::arg("tx"), py::arg("rx"), py::arg("begin"),
+         py::arg("end"),
+         R"(Lengths and amplitudes of some paths at several times, which take little more time than one.
+
+times: [T] s; tx, rx: indices of the transmitter and the receiver; begin, end: of the N paths, by index
+Returns (lengths in m, amplitudes in sqrt(W)), [T, N] each, as `lengths` and `amplitudes` give them but for the rounding of
+amplitudes. Raises TypeError or ValueError naming the argument, also for times outside a motion, and IndexError for antennas that
+are not there.)");
   define(type, "points", &points_of, py::arg("time"),
          "Hits [H, 3] in m in the world at `time` in s. Raises TypeError or ValueError naming the argument.");
 }

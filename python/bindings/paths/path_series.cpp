@@ -47,9 +47,9 @@ std::vector<int64_t> indices_of(const Paths& paths) {
 
 using Moments = std::vector<Replayer::Moment>;
 
-// Evaluates all paths at the moments, so many of them together. Runs beside Python, so that Ctrl-C is answered.
-void evaluate_one_channel(const Paths& paths, const Moments& moments, size_t together, const Antenna& transmitter,
-                          const Antenna& receiver, SpecularPoints specular) {
+// Evaluates some paths at the moments, so many of them together. Runs beside Python, so that Ctrl-C is answered.
+void evaluate_one_channel(const Paths& paths, const std::vector<int64_t>& indices, const Moments& moments, size_t together,
+                          const Antenna& transmitter, const Antenna& receiver, SpecularPoints specular) {
   for (const Replayer::Moment& moment : moments) require(std::isfinite(moment.time), "times", "must be finite", moment.time);
   run_job("replay", py::none(), [&](Job& job) {
     Radar radar = paths.radar;
@@ -58,7 +58,6 @@ void evaluate_one_channel(const Paths& paths, const Moments& moments, size_t tog
     ReplaySettings settings;
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
-    const std::vector<int64_t> indices = indices_of(paths);
     for (size_t first = 0; first < moments.size(); first += together) {
       replayer.evaluate(indices, std::span(moments).subspan(first, std::min(together, moments.size() - first)), &job);
     }
@@ -73,7 +72,7 @@ std::vector<std::complex<double>> series_of_amplitudes(const Paths& paths, const
   std::vector<std::complex<double>> amplitudes(times.size() * num_paths);
   Moments moments;
   for (size_t i = 0; i < times.size(); ++i) moments.push_back({times[i], nullptr, amplitudes.data() + i * num_paths});
-  evaluate_one_channel(paths, moments, 1, transmitter, receiver, specular);
+  evaluate_one_channel(paths, indices_of(paths), moments, 1, transmitter, receiver, specular);
   return amplitudes;
 }
 
@@ -117,7 +116,7 @@ py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
   std::vector<double> lengths((*times).size() * num_paths);
   Moments moments;
   for (const double time : *times) moments.push_back({time, lengths.data() + moments.size() * num_paths, nullptr});
-  evaluate_one_channel(paths, moments, kTimesTogether, from, to, *replay);
+  evaluate_one_channel(paths, indices_of(paths), moments, kTimesTogether, from, to, *replay);
   return numpy_take(std::move(lengths), series_shape(paths, *times));
 }
 
@@ -155,6 +154,26 @@ py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"t
   run_job("replay", py::none(),
           [&](Job& job) { Replayer(paths, radar).evaluate(indices_of(paths), *time, lengths, amplitudes, &job); });
   const Shape shape{std::ssize(radar.receivers), static_cast<py::ssize_t>(paths.num_paths())};
+  return py::make_tuple(numpy_take(std::move(lengths), shape), numpy_take(std::move(amplitudes), shape));
+}
+
+py::tuple echoes_together(const Paths& paths, Arg<"times", VectorOf<double>> times, Arg<"tx", Index> tx, Arg<"rx", Index> rx,
+                          Arg<"begin", Index> begin, Arg<"end", Index> end) {
+  const Antenna transmitter = paths.radar.transmitters[antenna_index(*tx, "tx", paths.radar.transmitters.size())];
+  const Antenna receiver = paths.radar.receivers[antenna_index(*rx, "rx", paths.radar.receivers.size())];
+  require(*begin >= 0 && *begin <= *end && *end <= paths.num_paths(), "begin", "must lie in 0 to end, and end in the paths",
+          *begin);
+  std::vector<int64_t> indices(*end - *begin);
+  std::iota(indices.begin(), indices.end(), *begin);
+  std::vector<double> lengths((*times).size() * indices.size());
+  std::vector<std::complex<double>> amplitudes(lengths.size());
+  Moments moments;
+  for (size_t place = 0; const double time : *times) {
+    moments.push_back({time, lengths.data() + place, amplitudes.data() + place});
+    place += indices.size();
+  }
+  evaluate_one_channel(paths, indices, moments, kTimesTogether, transmitter, receiver, SpecularPoints::kMaterial);
+  const Shape shape{std::ssize(*times), std::ssize(indices)};
   return py::make_tuple(numpy_take(std::move(lengths), shape), numpy_take(std::move(amplitudes), shape));
 }
 

@@ -42,6 +42,9 @@ py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> ti
 // (lengths [R, P] in m, amplitudes [R, P] in sqrt(W)) at `time` in s of one transmitter and some receivers, by index.
 py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"tx", Index> tx,
                               Arg<"receivers", List<Index>> receivers);
+// (lengths [T, N] in m, amplitudes [T, N] in sqrt(W)) of paths [begin, end) at `times` [T] in s for two antennas by index.
+py::tuple echoes_together(const Paths& paths, Arg<"times", VectorOf<double>> times, Arg<"tx", Index> tx, Arg<"rx", Index> rx,
+                          Arg<"begin", Index> begin, Arg<"end", Index> end);
 // [H, 3] m in the world at `time` in s.
 py::array points_of(const Paths& paths, Arg<"time", Real> time);
 

@@ -9,12 +9,13 @@ from .. import _core
 from ..base.process.progress import with_progress
 from ..base.radar.antennas import look_of
 from ..base.radar.chirps import chirps_duration
-from ..paths.cells import OUTSIDE, cells_of, chirp_times, turning_of
+from ..paths.cells import OUTSIDE, cells_of, chirp_times
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
 from .channels import Channels, by_channel
-from .histories import FLASHING, UNSTEADY, Histories, length_and_field, off_parabola, phase_of, swing_of
+from .courses import courses_of
+from .histories import Histories, length_and_field, phase_of
 from .response import MAX_SWEEP, Response
 
 SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
@@ -26,6 +27,7 @@ MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
 LEFT_OUT = 1e-6        # of the power of single paths in a cell: those that together hold less
 STRONGEST = 0.99       # of the bounds of the powers in a cell: those that tell how much power there is at least
 FADED = 1e-20          # of the power of the strongest path: how the phases of weaker ones turn is rounding
+FLASHING = 0.25        # of its largest field, by which an echo changes that is followed
 FAINT = 1e-2           # of the largest field of a cell of range: what is less is taken as it is in mid-frame though it flashes
 SAME_BIN = 0.25        # bins of range, up to which all channels have a path in the same place
 
@@ -220,20 +222,20 @@ class EchoFields:
         index = inside[order]
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
         bin_width = 2.0 * waveform.max_velocity(paths.radar.num_slots) / waveform.num_chirps
-        first = _lengths_and_fields(paths, 0, [0])[1][0, index]
-        off, away = (values[index] for values in off_parabola(paths, cells.length))
-        power = np.abs(first) ** 2
+        courses = courses_of(paths).take(index)
+        power = np.abs(courses.field) ** 2
         told = power > FADED * power.max(initial=0.0)
-        sweep = np.where(told, _speed_change(paths, cells.length)[index] / bin_width, 0.0)
+        sweep = np.where(told, courses.speed_change / bin_width, 0.0)
         range_step = waveform.range_resolution / pad
         travel = np.where(told, cells.velocity[index] * chirps_duration(paths.radar) / (range_step * pad), 0.0)
-        swing, strongest = (values[index] for values in swing_of(paths))
-        flashes = (swing > FLASHING) & (strongest > FAINT * _largest_beside(cells.range_index[index], strongest))
-        unsteady = (off > UNSTEADY) | (np.abs(sweep) > MAX_SWEEP) | flashes
+        is_strong = courses.strongest > FAINT * _largest_beside(cells.range_index[index], courses.strongest)
+        flashes = (courses.swing > FLASHING) & is_strong
+        unsteady = ~courses.is_parabola | (np.abs(sweep) > MAX_SWEEP) | flashes
+        farther = np.copysign(courses.away / waveform.range_resolution, travel)
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
-                "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
-                "sweep": sweep, "first": first, "strongest": strongest, "length": cells.length[index], "unsteady": unsteady,
-                "travel": np.where(unsteady, np.copysign(away / waveform.range_resolution, travel), travel)}
+                "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2, "sweep": sweep, "first": courses.field,
+                "strongest": courses.strongest, "length": cells.length[index], "unsteady": unsteady,
+                "travel": np.where(unsteady, farther, travel)}
 
     @cached_property
     def _power(self) -> np.ndarray:
@@ -345,19 +347,6 @@ def _largest_beside(cells, field) -> np.ndarray:
     largest = np.zeros(int(cells.max(initial=0)) + 1)
     np.maximum.at(largest, cells, field)
     return largest[cells]
-
-
-def _speed_change(paths, length):
-    """By how much the velocity of each path of some length [P] in m rises over all chirps, m/s: with half the rate of the
-    length, and with the phase of the amplitude."""
-    first, _, last = chirp_times(paths)
-    num_chirps = paths.radar.waveform.num_chirps
-    if num_chirps < 3:
-        return np.zeros(len(length))
-    before, after = paths.lengths([first, last], 0, 0)
-    of_length = 2.0 * (before + after - 2.0 * length) / (last - first)
-    of_phase = 0.5 * paths.radar.waveform.wavelength * (turning_of(paths, last) - turning_of(paths, first))
-    return (of_length + of_phase) * num_chirps / (num_chirps - 1)
 
 
 def _lengths_and_fields(paths, tx: int, receivers: list) -> tuple:

@@ -1,42 +1,14 @@
-"""Echoes that flash, or whose phase is no parabola over the frame, as of blades and wheels: followed from chirp to chirp."""
+"""Echoes that are followed from chirp to chirp."""
 from __future__ import annotations
 
 import numpy as np
 
 from .. import _core
-from ..paths.cells import chirp_times
+from ..paths.cells import chirp_times, echoes_at
 from ..paths.subset import subset
 
-CHECKED = (0.137, 0.311, 0.618, 0.843)  # of the frame: at no simple fraction, as what turns comes back after whole turns
-UNSTEADY = 0.05       # turns of the phase, by which a parabola may be wrong
-FLASHING = 0.25       # of the largest field, by which one changes that is followed
-BYTES = 28            # of an echo in a chirp, while it is evaluated
+BYTES = 12            # of an echo in a chirp
 MAX_MEMORY = 2 ** 28  # bytes, of all echoes that are followed
-
-
-def off_parabola(paths, middle) -> tuple:
-    """(turns, m), [P] each: by how much the phase of each path leaves the parabola through its lengths in the first, the middle
-    (`middle` [P] in m) and the last chirp, and how far its length goes from that in the middle, at the checked times."""
-    first, centre, last = chirp_times(paths)
-    if last == first:
-        return np.zeros(len(middle)), np.zeros(len(middle))
-    before, after = paths.lengths([first, last], 0, 0)
-    off, away = np.zeros(len(middle)), np.maximum(np.abs(before - middle), np.abs(after - middle))
-    for fraction in CHECKED:
-        place = 2.0 * fraction - 1.0
-        length = paths.lengths([centre + 0.5 * place * (last - first)], 0, 0)[0]
-        parabola = middle + 0.5 * place * (after - before) + place ** 2 * (0.5 * (after + before) - middle)
-        off, away = np.maximum(off, np.abs(length - parabola)), np.maximum(away, np.abs(length - middle))
-    return off / paths.radar.waveform.wavelength, away
-
-
-def swing_of(paths) -> tuple:
-    """(share, sqrt(W)), [P] each: by how much of its largest the field of each path changes among the first, the middle and the
-    last chirp and the checked times, and that largest."""
-    first, centre, last = chirp_times(paths)
-    fields = np.abs(paths.amplitudes([first, centre, last, *(first + np.array(CHECKED) * (last - first))], 0, 0))
-    largest = fields.max(axis=0)
-    return (largest - fields.min(axis=0)) / np.maximum(largest, np.finfo(float).tiny), largest
 
 
 class Histories:
@@ -82,14 +54,15 @@ class Histories:
         return self._farther[rows]
 
     def _evaluated(self, paths) -> tuple:
-        middle = paths.lengths([chirp_times(paths)[1]], 0, 0)[0]
-        shape = (paths.num_paths, len(self._times))
-        fields, farther = np.zeros(shape, np.complex128), np.zeros(shape, np.float32)
-        for chirp, time in enumerate(self._times):
-            length, field = length_and_field(paths, time, 0, [0])
-            fields[:, chirp], farther[:, chirp] = field[0], length[0] - middle
-        largest = np.abs(fields).max(axis=1)
-        return (fields / np.maximum(largest, np.finfo(float).tiny)[:, None]).astype(np.complex64), farther, largest
+        (middle,) = paths.lengths([chirp_times(paths)[1]], 0, 0)
+        shape, waveform = (paths.num_paths, len(self._times)), paths.radar.waveform
+        fields, farther = np.zeros(shape, np.complex64), np.zeros(shape, np.float32)
+        largest = np.zeros(paths.num_paths)
+        for some, lengths, amplitudes in echoes_at(paths, self._times):
+            largest[some] = np.abs(amplitudes).max(axis=0)
+            over_largest = np.conj(amplitudes) / np.maximum(largest[some], np.finfo(float).tiny)
+            fields[some], farther[some] = (over_largest * phase_of(lengths, waveform)).T, (lengths - middle[some]).T
+        return fields, farther, largest
 
 
 def length_and_field(paths, time: float, tx: int, receivers: list) -> tuple:

@@ -17,7 +17,7 @@ from ..transmit.signals import chirp_of, step_names
 TURNING_STEP = 0.125  # chirps, over which the phase of an amplitude is followed: by less than half a turn
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
 _ENDS = array("[2]", kind="whole")
-_BLOCK = 1 << 15  # paths whose numbers stay in the cache
+_STATES = 1 << 20  # of paths at times, that are in memory: 40 MiB
 _PLACES = "range", "velocity", "range_index", "velocity_index"
 
 
@@ -91,13 +91,13 @@ def cells_of(paths: _core.Paths, spectrum: _core.RangeDoppler, tx: int = 0, rx: 
              chirp: _core.ChirpSequence | None = None) -> PathCells:
     """The PathCells of `path_cells` where all chirps are alike; chirp: that waveform without steps, None: the radar's without
     its steps."""
-    waveform = paths.radar.waveform if chirp is None else chirp
-    before, length, after = _lengths(paths, tx, rx)
-    turning = turning_of(paths, chirp_times(paths, tx)[1], tx, rx)
-    cells = PathCells(length, *(np.empty(len(length), kind) for kind in (float, float, np.int32, np.int32)))
-    for first in range(0, len(length), _BLOCK):
-        some = slice(first, first + _BLOCK)
-        places = _places(length[some], after[some] - before[some], turning[some], waveform, paths.radar, spectrum)
+    waveform, middle = paths.radar.waveform, chirp_times(paths, tx)[1]
+    half = 0.5 * waveform.chirp_duration
+    cells = PathCells(*(np.empty(paths.num_paths, kind) for kind in (float, float, float, np.int32, np.int32)))
+    for some, lengths, amplitudes in echoes_at(paths, [middle - half, middle, middle + half, *around(middle, waveform)], tx, rx):
+        cells.length[some] = lengths[1]
+        turning = turning_of(*amplitudes[3:], waveform)
+        places = _places(lengths[1], lengths[2] - lengths[0], turning, chirp or waveform, paths.radar, spectrum)
         for name, values in zip(_PLACES, places, strict=True):
             getattr(cells, name)[some] = values
     return cells
@@ -118,21 +118,27 @@ def _places(length, longer, turning, chirp, radar, spectrum) -> tuple:
     return beat * _core.speed_of_light / (2.0 * waveform.slope), 0.5 * rate, range_index, velocity_index
 
 
-def _lengths(paths, tx: int, rx: int):
-    """Lengths [3, P] in m at the beginning, the middle and the end of a chirp in the middle of the frame."""
-    _, middle, _ = chirp_times(paths, tx)
-    half = 0.5 * paths.radar.waveform.chirp_duration
-    return paths.lengths([middle - half, middle, middle + half], tx, rx)
+def echoes_at(paths, times, tx: int = 0, rx: int = 0):
+    """Yields (slice of paths, lengths [T, N] in m, amplitudes [T, N] in sqrt(W)) at some times [T] in s, a block of paths after
+    the other. tx, rx: indices of the antennas"""
+    block = max(1, _STATES // len(times))
+    for first in range(0, paths.num_paths, block):
+        some = slice(first, min(first + block, paths.num_paths))
+        yield some, *paths._echoes_together(times, tx, rx, some.start, some.stop)
 
 
-def turning_of(paths, time: float, tx: int = 0, rx: int = 0) -> np.ndarray:
-    """Rate [P] in Hz by which the phase of each amplitude falls at a time in s, 0 of one that is 0; tx, rx: indices of the
-    antennas."""
-    half = 0.5 * TURNING_STEP * paths.radar.waveform.chirp_duration
-    before, after = (paths._echoes_at_receivers(at, tx, [rx])[1][0] for at in (time - half, time + half))
+def around(time: float, waveform) -> list:
+    """The times in s between which `turning_of` follows the phase of an amplitude at a time in s."""
+    half = 0.5 * TURNING_STEP * waveform.chirp_duration
+    return [time - half, time + half]
+
+
+def turning_of(before, after, waveform) -> np.ndarray:
+    """Rate [P] in Hz by which the phase of each amplitude falls, 0 of one that is 0; before, after: [P] at the times of
+    `around`."""
     turned = before * np.conj(after)
     turned[turned == 0.0] = 1.0  # zeros have signs, by which their angle may be half a turn
-    return np.angle(turned) / (4.0 * np.pi * half)
+    return np.angle(turned) / (2.0 * np.pi * TURNING_STEP * waveform.chirp_duration)
 
 
 def chirp_times(paths, tx: int = 0) -> np.ndarray:

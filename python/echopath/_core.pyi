@@ -3255,7 +3255,7 @@ class PartPass:
         """
         Adds sets of groups to the whole and bounds what each can show, [set, R] in W, at any velocity or azimuth.
 
-        cpp/echopath/sim/stream/cell_bounds.h has the rule.
+        cpp/echopath/sim/cells/cell_bounds.h has the rule.
         """
     def cubes(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], progress: typing.Any) -> list[typing.Any]:
         """

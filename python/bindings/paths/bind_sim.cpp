@@ -185,7 +185,7 @@ samples in W, which sets of several groups do not have: 0).)")
       .def("bounds", &bounds_of_pass, py::arg("sets"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
            R"(Adds sets of groups to the whole and bounds what each can show, [set, R] in W, at any velocity or azimuth.
 
-cpp/echopath/sim/stream/cell_bounds.h has the rule.)");
+cpp/echopath/sim/cells/cell_bounds.h has the rule.)");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ from . import labelling
 from .detections import Detections
 from .directions import directions_of
 from .echo_fields import EchoFields
-from .family_fields import FamilyFields
+from .family_fields import FamilyFields, Signals
 from .noise import warn_of_missing_noise
 from .uneven_fields import echo_fields
 
@@ -112,11 +112,11 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
 
 
 def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=None, labels=None, beside=None, objects=None,
-             noise_margin_db=None, start_time=None, signals: dict | None = None, progress=None) -> Detections:
+             noise_margin_db=None, start_time=None, signals: Signals | None = None, progress=None) -> Detections:
     """As `detect`, of arguments that are right.
 
-    rules: keywords of `cfar`; signals: with paths, of a frame whose records are renewed: {Family: cube} of all its families,
-        which tell objects and ghosts in place of the paths
+    rules: keywords of `cfar`; signals: with paths, of a frame whose records are renewed: those of all its families, which tell
+        objects and ghosts in place of the paths
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
@@ -135,9 +135,8 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
-    fields = echoes if signals is None else FamilyFields(signals, radar, spectrum)
-    makers = _Makers(paths, parts, labels, beside, objects, floor, gains, peaks["beam_weights"])
-    columns = _labels_of(spectrum, cells, power, makers, fields, progress)
+    makers = _Makers(paths, signals, parts, labels, beside, objects, floor, gains, peaks["beam_weights"])
+    columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
@@ -147,6 +146,7 @@ class _Makers(NamedTuple):
     """What may have made a detection, as in `detect`."""
 
     paths: _core.Paths | None
+    signals: Signals | None
     parts: dict | None
     labels: Labels | None
     beside: dict
@@ -167,16 +167,20 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
     return floor_over(_core.cell_noise_power(radar, spectrum.window), margin_db)
 
 
-def _labels_of(spectrum, cells, power, makers: _Makers, fields: EchoFields | FamilyFields | None, progress) -> dict:
-    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; fields: with paths; progress: as in `detect`."""
-    paths, parts, labels, beside, objects, noise_floor, gains, beams = makers
+def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:
+    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; echoes: with paths; progress: as in `detect`."""
+    paths, signals, parts, labels, beside, objects, noise_floor, gains, beams = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
-        sorted_by = fields if isinstance(fields, FamilyFields) else of_paths
-        families, whole = labelling.families_of_cells(sorted_by, fields, cells, gains, noise_floor=noise_floor, beams=beams,
+        if signals is None:
+            sorted_by, source, fields = of_paths, echoes, echoes.each(cells, gains, beams, progress)
+        else:
+            sorted_by = source = FamilyFields(of_paths, signals, radar, spectrum, cells, gains, beams, progress)
+            fields = source.each()
+        families, whole = labelling.families_of_cells(sorted_by, fields, len(cells), source.peak_of, noise_floor=noise_floor,
                                                        progress=progress)
-        measured = fields.measured(cells) if beams is None else power
+        measured = source.measured(cells) if beams is None else power
         found.take_families(families, whole, measured, labelling.resolved_families(paths, of_paths, progress))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)

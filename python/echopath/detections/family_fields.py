@@ -1,63 +1,79 @@
 """What each family of a frame whose records are renewed gives to a cell of its map."""
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .. import _core
 from ..base.process.progress import with_progress
+from ..labels.planes import with_receivers
+from ..labels.powers import receiver_sets
+from ..paths.families import Families
 from .channels import by_channel
+
+# Gives for families and a radar, which may have some of the receivers, {Family: cube [tx, rx, chirp, sample] in sqrt(W)} without
+# noise of all these families.
+Signals = Callable[[Families, _core.Radar], dict]
 
 
 class FamilyFields:
-    """The fields of the signals of whole families, by the names that EchoFields has for those of paths.
+    """The fields of the signals of whole families in cells, by the names that EchoFields has for those of paths.
 
-    The paths of mid-frame do not tell what made a cell of a frame whose records are renewed.
-
+    The paths of mid-frame do not tell what made a cell of a frame whose records are renewed: these may have further families.
     families: list [F] of Family; family_of_path: [F], each of them being one echo
     """
 
-    def __init__(self, signals: dict, radar, spectrum):
-        """signals: {Family: cube [tx, rx, chirp, sample] in sqrt(W)} without noise; radar, spectrum: of the map"""
-        self.families, self.family_of_path = list(signals), np.arange(len(signals))
-        self._signals, self._radar, self._spectrum = signals, radar, spectrum
-        self._peaks = np.zeros(len(signals))
+    def __init__(self, families: Families, signals: Signals, radar, spectrum, cells, gains, beams=None, progress=None):
+        """Makes the maps of all, one at a time and of as many receivers as memory holds the signals of, and keeps of each what it
+        has in the cells. families: of mid-frame; radar, spectrum: of the map; cells, gains, beams, progress: as of EchoFields"""
+        indices = np.argwhere(np.ones(spectrum.values.shape[:2], bool))
+        self._spectrum, self._weights = spectrum, None if beams is None else by_channel(beams)
+        self._gains = gains.of("", *indices.T[:, :, None], cells[:, 1]).T
+        self._shape = len(cells), len(indices) if beams is None else 1
+        self._behind = np.zeros(self._shape, complex)  # of all, behind the receiver
+        self._fields, self._powers = {}, {}
+        channels = np.arange(len(indices)).reshape(spectrum.values.shape[:2])
+        for which in receiver_sets(radar, len(families)):
+            some, columns = with_receivers(radar, which), channels[:, which].ravel()
+            cubes = signals(families, some)
+            for family, cube in with_progress(cubes.items(), len(cubes), progress, "maps of families"):
+                found = _core.range_doppler(cube, some, spectrum.window, spectrum.zero_pad)
+                share = len(columns) / len(indices)
+                self._powers[family] = self._powers.get(family, 0.0) + share * _core.mean_power(found).astype(np.float32)
+                self._add(family, columns, _values_in(found, cells))
+        self.families, self.family_of_path = list(self._fields), np.arange(len(self._fields))
 
-    def each(self, cells, gains, beams=None, progress=None):
-        """Yields of each of cells [N, 2] what EchoFields does, of families instead of paths: makes the maps of all, one at a
-        time, and keeps of each what it has in the cells."""
-        indices = np.argwhere(np.ones(self._spectrum.values.shape[:2], bool))
-        of_channels = gains.of("", *indices.T[:, :, None], cells[:, 1]).T
-        weights = None if beams is None else by_channel(beams)
-        fields = np.zeros((len(cells), len(indices) if beams is None else 1, len(self)), complex)
-        behind = np.zeros((len(cells), fields.shape[1]), complex)
-        families = with_progress(self._signals.values(), len(self), progress, "maps of families")
-        for number, cube in enumerate(families):
-            found = _core.range_doppler(cube, self._radar, self._spectrum.window, self._spectrum.zero_pad)
-            values = _in_cells(found.values, cells)
-            fields[:, :, number] = _summed(values, weights)
-            behind += _summed(of_channels * values, weights)
-            self._peaks[number] = _core.mean_power(found).max(initial=0.0)
-        for field, whole in zip(fields, behind):
-            yield self.family_of_path, field, np.mean(np.abs(whole) ** 2)
+    def _add(self, family, columns, values) -> None:
+        """Adds values [N, K] of some channels, which have columns [K], or their sums in beams."""
+        if family not in self._fields:
+            self._fields[family] = np.zeros(self._shape, complex)
+        for to, of_channels in ((self._fields[family], values), (self._behind, self._gains[:, columns] * values)):
+            if self._weights is None:
+                to[:, columns] += of_channels
+            else:
+                to[:, 0] += np.sum(self._weights[:, columns] * of_channels, axis=1)
+
+    def each(self):
+        """Yields of each cell what EchoFields does, of families instead of paths."""
+        for i, behind in enumerate(self._behind):
+            yield self.family_of_path, np.array([field[i] for field in self._fields.values()]).T, np.mean(np.abs(behind) ** 2)
 
     def measured(self, cells) -> np.ndarray:
         """Power [N] in W of the map in cells [N, 2], mean over the channels."""
-        return np.mean(np.abs(_in_cells(self._spectrum.values, cells)) ** 2, axis=1)
+        return np.mean(np.abs(_values_in(self._spectrum, cells)) ** 2, axis=1)
 
     def peak_of(self, keep) -> float:
         """Power in W of the strongest cell of the map of the one family where `keep` [F] is true, mean over all channels."""
-        return float(self._peaks[keep].max(initial=0.0))
+        (number,) = np.flatnonzero(keep)
+        return float(self._powers[self.families[number]].max(initial=0.0))
 
     def __len__(self) -> int:
         return len(self.families)
 
 
-def _in_cells(values, cells):
-    """[N, C] of values [tx, rx, velocity, range] in cells [N, 2]."""
+def _values_in(spectrum, cells):
+    """[N, C] of a map in cells [N, 2]."""
     velocity, distance = cells.T
-    return values[:, :, velocity, distance].reshape(values.shape[0] * values.shape[1], len(cells)).T
-
-
-def _summed(values, weights):
-    """Values [N, C] in channels as they are, or, with weights [N, C], their weighted sums [N, 1]."""
-    return values if weights is None else np.sum(weights * values, axis=1, keepdims=True)
+    num_channels = len(spectrum.values) * spectrum.values.shape[1]
+    return spectrum.values[:, :, velocity, distance].reshape(num_channels, len(cells)).T

@@ -75,19 +75,17 @@ def _mean_gain(gains) -> np.ndarray:
     return np.mean(gains ** 2, axis=(0, 1))
 
 
-def families_of_cells(families, echoes, cells, gains, *, noise_floor: float, beams=None, progress=None) -> tuple:
-    """The family that has each of cells [N, 2] by the rule of labels, None without echoes, and power [N] of all as fields, W.
+def families_of_cells(families, fields, count: int, peak_of, *, noise_floor: float, progress=None) -> tuple:
+    """The family that has each of N cells by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
-    Powers are means over the channels of the echoes' fields, or of beams; that of all is behind the receiver.
-    echoes: EchoFields or FamilyFields; gains, beams: as in `part_powers`; noise_floor: W, from which on labels take a cell for
-    more than noise; progress: as in `detect`
+    families: Families of the echoes, or FamilyFields; fields: `each` of EchoFields or of FamilyFields, which yields so many;
+    peak_of: of these; noise_floor: W, from which on labels take a cell for more than noise; progress: as in `detect`
     """
-    owners = CellOwners((len(cells),), families.families, noise_floor)
-    own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
+    owners = CellOwners((count,), families.families, noise_floor)
+    own, joint = np.zeros((len(families), count)), np.zeros((len(owners.rivals), count))
     rival_of_family = owners.rival_of_family
-    whole = np.zeros(len(cells))
-    fields = with_progress(echoes.each(cells, gains, beams, progress), len(cells), progress, "families of cells")
-    for i, (index, field, power) in enumerate(fields):
+    whole = np.zeros(count)
+    for i, (index, field, power) in enumerate(with_progress(fields, count, progress, "families of cells")):
         sums = _sums(field, families.family_of_path[index], len(families))
         own[:, i] = np.mean(np.abs(sums) ** 2, axis=0)
         joint[:, i] = np.mean(np.abs(_sums(sums, rival_of_family, len(owners.rivals))) ** 2, axis=0)
@@ -96,7 +94,7 @@ def families_of_cells(families, echoes, cells, gains, *, noise_floor: float, bea
         owners.add(rival, power, 0.0)
     for rival in owners.faded():
         (number,) = owners.rivals[rival]
-        owners.peak[number] = echoes.peak_of(families.family_of_path == number)
+        owners.peak[number] = peak_of(families.family_of_path == number)
     for rival in owners.give(joint.any(axis=0)):
         members = owners.rivals[rival]
         owners.divide(rival, own[members], np.zeros(len(members)))

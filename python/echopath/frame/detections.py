@@ -9,7 +9,7 @@ from ..arguments.objects import Objects
 from ..arguments.settings import FRAME_KEYWORDS, LEAST_MARGIN_DB
 from ..detections import Detections, detected
 from ..detections.checks import RULES, require_folds
-from ..paths.families import families
+from ..detections.family_fields import Signals
 from ..signals.parts import decompose
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from .frame import Frame
@@ -45,16 +45,16 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
              "training_velocity": training_velocity, "training_range": training_range, "rank": rank, "beams": beams}
     found = detected(frame.spectrum, frame.radar, rules, paths=frame.paths, parts=parts, beside=frame.beside_spectra or None,
                      objects=objects, angles=settings, noise_margin_db=_noise_margin_db(frame),
-                     signals=_signals_of_families(frame, objects, progress), progress=progress)
+                     signals=_signals_of_families(frame, progress), progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)
 
 
-def _signals_of_families(frame: Frame, objects: Objects, progress) -> dict | None:
-    """{Family: cube} of a frame whose records are renewed, None of others: their paths tell."""
+def _signals_of_families(frame: Frame, progress) -> Signals | None:
+    """Of a frame whose records are renewed, None of others: their paths tell."""
     if frame.retrace == "never":
         return None
     settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
-    return decompose(frame.paths, frame.radar, families(frame.paths, objects), **settings, progress=progress)
+    return lambda found, radar: decompose(frame.paths, radar, found, **settings, progress=progress)
 
 
 def _noise_margin_db(frame: Frame) -> float | None:

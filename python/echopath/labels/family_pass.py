@@ -2,7 +2,7 @@
 
 The families that can are found in rounds. The first takes those that may reach the noise by the amplitudes of their paths; all
 others are added to the whole as one, and what each of them can show at a range is bounded from its echoes
-(cpp/echopath/sim/stream/cell_bounds.h). Once the whole and its mask are known, a family that was left out can own a cell of the
+(cpp/echopath/sim/cells/cell_bounds.h). Once the whole and its mask are known, a family that was left out can own a cell of the
 mask only where its bound is above the strongest rival so far, or of direct echoes above what a ghost leaves them: such families
 follow, until there are none. So the owners are those that all families would give.
 """

@@ -7,7 +7,7 @@
 #include "cpp/sim/slow_map.h"
 #include "cpp/support/scenes.h"
 #include "cpp/support/waveforms.h"
-#include "echopath/sim/stream/cell_bounds.h"
+#include "echopath/sim/cells/cell_bounds.h"
 
 namespace echopath::test_cell_bounds {
 namespace {

@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "echopath/sim/stream/band_map.h"
-#include "echopath/sim/stream/cell_bounds.h"
+#include "echopath/sim/cells/band_map.h"
+#include "echopath/sim/cells/cell_bounds.h"
 #include "echopath/sim/stream/cube_pass.h"
 #include "echopath/sim/stream/replay_stream.h"
 #include "echopath/spectrum/range_doppler.h"

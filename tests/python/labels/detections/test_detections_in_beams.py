@@ -120,6 +120,24 @@ def test_cells_are_followed_in_turns_where_memory_is_short(monkeypatch):
         np.testing.assert_allclose([whole, *field[0]], [other_whole, *other_field[0]], rtol=ROUNDING)
 
 
+@pytest.mark.parametrize("beams", [False, True])
+def test_families_of_renewed_frames_are_made_for_some_receivers_at_a_time(beams, monkeypatch):
+    """As many as memory holds the signals of, in chains of different gains."""
+    faults = ep.Receiver(receiver_gain_db=np.linspace(-6.0, 6.0, 16))
+    frame = ep.simulate(arc(3.0), radar(3).replace(receiver=faults), num_rays=5000, max_bounces=1, noise_seed=1, retrace="always")
+    at_once = ep.detect_frame(frame, beams=beams, false_alarm_rate=0.01)
+    made = []
+
+    def decompose(paths, of, *args, **keywords):
+        made.append(len(of.receivers))
+        return ep.decompose(paths, of, *args, **keywords)
+
+    monkeypatch.setattr("echopath.labels.powers.CUBES_IN_MEMORY", 1)
+    monkeypatch.setattr("echopath.frame.detections.decompose", decompose)
+    assert ep.detect_frame(frame, beams=beams, false_alarm_rate=0.01) == at_once
+    assert made == [1] * 16 and at_once.is_noise.any() and not at_once.is_noise.all()
+
+
 @pytest.mark.filterwarnings("ignore:scene. has no mesh")
 @pytest.mark.parametrize("beams", [False, True])
 @pytest.mark.parametrize("retrace", ["never", "always"])

@@ -4,8 +4,8 @@
 
 #include "echopath/base/lanes/interleave.h"
 #include "echopath/base/lanes/simd.h"
-#include "echopath/sim/stream/band_loops.h"
-#include "echopath/sim/stream/band_map.h"
+#include "echopath/sim/cells/band_loops.h"
+#include "echopath/sim/cells/band_map.h"
 
 namespace echopath {
 namespace {

@@ -1,4 +1,4 @@
-#include "echopath/sim/stream/cell_bounds.h"
+#include "echopath/sim/cells/cell_bounds.h"
 
 #include <algorithm>
 #include <cmath>

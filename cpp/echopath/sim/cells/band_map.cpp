@@ -1,4 +1,4 @@
-#include "echopath/sim/stream/band_map.h"
+#include "echopath/sim/cells/band_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "echopath/base/lanes/simd.h"
 #include "echopath/signal/kernels/kernels.h"
-#include "echopath/sim/stream/band_loops.h"
+#include "echopath/sim/cells/band_loops.h"
 #include "echopath/spectrum/range_doppler.h"
 
 namespace echopath {

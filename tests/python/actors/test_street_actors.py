@@ -6,7 +6,10 @@ import echopath as ep
 from echopath.tracing.tessellation import coarse_meshes
 from support.closed import boundary_edges, extent, joined_parts, scene_of, volume_of
 
-MAKERS = {"pole": ep.actors.pole, "guard_rail": lambda: ep.actors.guard_rail(length=6.0), "tree": ep.actors.tree,
+RADIUS = 40.0
+ARC = RADIUS * np.array([(np.sin(turn), 1.0 - np.cos(turn)) for turn in np.linspace(0.0, 0.3, 9)])  # m, to the left
+MAKERS = {"pole": ep.actors.pole, "guard_rail": lambda: ep.actors.guard_rail(length=6.0),
+          "bent rail": lambda: ep.actors.guard_rail(points=ARC), "tree": ep.actors.tree,
           "round": lambda: ep.actors.traffic_sign(shape="round"), "triangle": lambda: ep.actors.traffic_sign(shape="triangle"),
           "rectangle": lambda: ep.actors.traffic_sign(shape="rectangle"),
           "octagon": lambda: ep.actors.traffic_sign(shape="octagon"), "drone": ep.actors.drone}
@@ -62,6 +65,37 @@ def test_the_rail_has_the_w_profile():
     size, _ = extent(rail, lambda name: name == "rail")
     np.testing.assert_allclose(size, (6.0, 0.081 + 0.003, 0.311), atol=0.004)
     assert extent(rail, lambda name: name == "posts")[1] == -0.05   # below the ground
+
+
+def test_a_bent_rail_has_that_profile_all_along_its_line():
+    """Its front on the arc, to the right; posts behind it, as upright and as wide as those of a straight one."""
+    bent, straight = ep.actors.guard_rail(points=ARC), ep.actors.guard_rail(length=0.3 * RADIUS)
+    for part, same in zip(bent.parts, straight.parts, strict=True):
+        (x, y, z), old = np.asarray(part.mesh.vertices).T, np.asarray(same.mesh.vertices)
+        behind = RADIUS - np.hypot(x, y - RADIUS)
+        assert [behind.min(), behind.max()] == pytest.approx([old[:, 1].min(), old[:, 1].max()], abs=1e-4)
+        assert [z.min(), z.max()] == [old[:, 2].min(), old[:, 2].max()]
+        along = RADIUS * np.arctan2(x, RADIUS - y)
+        assert [along.min(), along.max()] == pytest.approx([0.0, 0.3 * RADIUS], abs=0.06)
+    one, other = (np.asarray(actor.parts[1].mesh.vertices)[24:48] for actor in (bent, straight))
+    apart, other_apart = (np.sort(np.linalg.norm(post[:, None] - post, axis=2).ravel()) for post in (one, other))
+    np.testing.assert_allclose(apart, other_apart, atol=1e-12)
+
+
+def test_a_rail_along_straight_points_is_the_straight_one():
+    for part, same in zip(ep.actors.guard_rail(points=[(-3.0, 0.0), (0.0, 0.0), (3.0, 0.0)]).parts,
+                          ep.actors.guard_rail(length=6.0).parts, strict=True):
+        np.testing.assert_allclose(part.mesh.vertices, same.mesh.vertices, atol=1e-12)
+
+
+@pytest.mark.parametrize("keywords, told", [
+    ({"points": ARC, "length": 3.0}, "^length: cannot be given beside points, which say how long the rail is, got 3"),
+    ({"points": [(0, 0), (1, 0), (0.8, 0.1)]}, "^points: must be those of a line of at most 10000 m that nowhere bends"),
+    ({"points": [(0, 0), (9000, 0), (20000, 5)]}, "^points: must be those of a line of at most 10000 m"),
+    ({"points": [(0, 0)]}, "^points: must be 2 to ")])
+def test_rails_of_no_line_are_refused(keywords, told):
+    with pytest.raises(ValueError, match=told):
+        ep.actors.guard_rail(**keywords)
 
 
 def test_a_tree_is_the_same_for_its_seed_alone():

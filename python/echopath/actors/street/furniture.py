@@ -4,11 +4,14 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ... import _core
-from ...arguments.checks import checked, one_of, optional, real
+from ...arguments.checks import checked, one_of, optional, real, refused
+from ...trajectories.arguments import checked_path, checked_points
+from ...trajectories.path import Path
 from ..actor import Actor, Part
-from ..limits import row_rule, size_rule
+from ..limits import LONGEST_ROW, row_rule, size_rule
 from ..solids import extruded, outward, round_segments, tube
 from ..surfaces import joined
 
@@ -26,6 +29,11 @@ RAIL_HEIGHT, RAIL_DEPTH, RAIL_THICKNESS = 0.311, 0.081, 0.003   # m: the W profi
 RAIL_TOP = 0.75            # m above the ground
 POST = (0.055, 0.10)       # m, along and across: beams IPE 100, whose flanges lie along the road
 FLANGE, WEB = 0.0057, 0.0041   # m, thicknesses
+POST_FRONT = RAIL_DEPTH + RAIL_THICKNESS + 0.002   # m behind the front of the rail
+LENGTH = 20.0              # m, of a rail, where no other is asked for
+BENDS = 1000               # places of a line at which it is asked how much it bends
+SMALLEST_RADIUS = 0.5      # m, of a bent rail: its posts reach 0.2 m behind it
+STRAY = 1e-3               # m, by which the sides of triangles leave a bent line
 # The W profile from its lower to its upper edge: height over that of the rail, depth behind the front over the whole depth.
 RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0), (0.31, 0.06), (0.40, 0.78), (0.45, 0.97),
              (0.50, 1.0), (0.55, 0.97), (0.60, 0.78), (0.69, 0.06), (0.75, 0.0), (0.81, 0.02), (0.88, 0.30), (0.95, 0.80),
@@ -64,20 +72,68 @@ def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float
                   Part("pole", _core.Mesh(*mast), "metal", smooth=True)])
 
 
-@checked(length=row_rule, spacing=real(0.1, unit="m"), edge=real(0.02, unit="m"))
-def guard_rail(*, length: float = 20.0, spacing: float = 2.0, edge: float = 1.0) -> Actor:
-    """A steel guard rail along x about the origin, its front towards -y, 0.75 m high, on posts of H section.
+@checked(length=optional(row_rule), spacing=real(0.1, unit="m"), edge=real(0.02, unit="m"), points=optional(checked_points))
+def guard_rail(*, length: float | None = None, spacing: float = 2.0, edge: float = 1.0,
+               points: ArrayLike | None = None) -> Actor:
+    """A steel guard rail, 0.75 m high, on posts of H section: along x about the origin, its front towards -y, or along a line.
 
     Parts: rail (the W profile of 311 mm x 81 mm, 3 mm thick), posts.
-    length, spacing: m, of the rail and of its posts. edge: m, longest side of the rail's triangles along it.
+    length: m, of a straight rail; None: 20
+    spacing: m, of the posts. edge: m, longest side of the rail's triangles along it, less where it is bent
+    points: [P, 2] or [P, 3] in m, on the ground: the rail goes along the C2 spline through them, its front to their right
     Raises TypeError or ValueError naming the argument.
     """
-    count = max(2, int(round(length / spacing)) + 1)
-    places = np.linspace(-length / 2 + POST[0], length / 2 - POST[0], count)
-    back = RAIL_DEPTH + RAIL_THICKNESS + 0.002
-    posts = [_post(x, back, RAIL_TOP - 0.03) for x in places]
-    return Actor([Part("rail", _core.Mesh(*_rail(length, edge)), "metal", smooth=True),
-                  Part("posts", _core.Mesh(*joined(*posts)), "metal")])
+    if points is None:
+        length = LENGTH if length is None else length
+        places = _post_places(length, spacing) - length / 2
+        posts = [_post(x, POST_FRONT, RAIL_TOP - 0.03) for x in places]
+        rail = _rail(length, max(1, int(np.ceil(length / edge))))
+    elif length is not None:
+        raise ValueError(f"length: cannot be given beside points, which say how long the rail is, got {length:g}")
+    else:
+        rail, posts = _along(_checked_line(points), spacing, edge)
+    return Actor([Part("rail", _core.Mesh(*rail), "metal", smooth=True), Part("posts", _core.Mesh(*joined(*posts)), "metal")])
+
+
+def _post_places(length, spacing):
+    """Distances [N] in m of the posts from the beginning of a rail."""
+    return np.linspace(POST[0], length - POST[0], max(2, int(round(length / spacing)) + 1))
+
+
+def _checked_line(points) -> Path:
+    line = checked_path(checked_points("points", points), None)
+    if not line.length <= LONGEST_ROW or _bend_of(line) * SMALLEST_RADIUS > 1.0:
+        raise refused(ValueError, "points", f"those of a line of at most {LONGEST_ROW:g} m that nowhere bends with a radius "
+                      f"below {SMALLEST_RADIUS:g} m", points)
+    return line
+
+
+def _bend_of(line: Path) -> float:
+    """The largest curvature of a line in 1/m."""
+    return float(np.linalg.norm(line.at(line.fine_places(BENDS))[2], axis=1).max())
+
+
+def _along(line: Path, spacing, edge):
+    """(rail, [post, ...]), surfaces along a line."""
+    posts = [_bent(line, _post(0.0, POST_FRONT, RAIL_TOP - 0.03), at) for at in _post_places(line.length, spacing)]
+    bend = _bend_of(line)
+    sides = min(edge, np.sqrt(8.0 * STRAY / bend) if bend > 0.0 else edge)
+    vertices, triangles = _rail(line.length, max(1, int(np.ceil(line.length / sides))))
+    return (_bent(line, (vertices, triangles))[0], triangles), posts
+
+
+def _bent(line: Path, surface, at=None):
+    """A surface along x, whose middle is at the origin, bent along a line, or turned to where the line is `at` so many m."""
+    vertices, triangles = surface
+    along = vertices[:, 0] + 0.5 * line.length if at is None else np.full(len(vertices), at)
+    place, tangent, _ = line.at(along)
+    level = tangent[:, :2] / np.linalg.norm(tangent[:, :2], axis=1, keepdims=True)
+    left = np.column_stack([-level[:, 1], level[:, 0]])
+    place[:, :2] += vertices[:, 1:2] * left
+    if at is not None:
+        place[:, :2] += vertices[:, :1] * level
+    place[:, 2] += vertices[:, 2]
+    return place, triangles
 
 
 def _post(x, y, height):
@@ -95,8 +151,8 @@ def _post(x, y, height):
     return outward((vertices, np.concatenate([sides, cap[:, ::-1], cap + 12])))
 
 
-def _rail(length, edge):
-    """Pieces of the rail one behind the other, without walls between them."""
+def _rail(length, pieces):
+    """So many pieces of the rail one behind the other, without walls between them."""
     line = np.array(RAIL_LINE)
     dense = np.interp(np.linspace(0, 1, 49), np.linspace(0, 1, len(line)), np.arange(len(line)))
     z = np.interp(dense, np.arange(len(line)), line[:, 0])
@@ -105,7 +161,6 @@ def _rail(length, edge):
     slope = np.gradient(front, axis=0)
     normal = np.column_stack([slope[:, 1], -slope[:, 0]]) / np.linalg.norm(slope, axis=1)[:, None]
     outline = np.concatenate([front, (front + RAIL_THICKNESS * normal)[::-1]])
-    pieces = max(1, int(np.ceil(length / edge)))
     vertices, triangles = extruded(outline, length)
     return _cut_along_x(vertices, triangles, len(outline), pieces)
 

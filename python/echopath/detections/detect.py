@@ -16,7 +16,7 @@ from ..arguments.settings import LabelSettings
 from ..base.radar.antennas import centre_of
 from ..labels.labels import Labels
 from ..labels.part_cells import floor_over
-from ..paths.families import families as find_families
+from ..paths.resolution import FamilyPowers, family_powers
 from ..receiver.echo_gains import EchoGains
 from ..signals.parts import decompose
 from ..signals.same_radar import difference
@@ -112,11 +112,12 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
 
 
 def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=None, labels=None, beside=None, objects=None,
-             noise_margin_db=None, start_time=None, signals: Signals | None = None, progress=None) -> Detections:
+             known: FamilyPowers | None = None, noise_margin_db=None, start_time=None, signals: Signals | None = None,
+             progress=None) -> Detections:
     """As `detect`, of arguments that are right.
 
-    rules: keywords of `cfar`; signals: with paths, of a frame whose records are renewed: those of all its families, which tell
-        objects and ghosts in place of the paths
+    rules: keywords of `cfar`; known: of paths and objects, where there are some already; signals: with paths, of a frame whose
+        records are renewed: those of all its families, which tell objects and ghosts in place of the paths
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
@@ -135,7 +136,7 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
-    makers = _Makers(paths, signals, parts, labels, beside, objects, floor, gains, peaks["beam_weights"])
+    makers = _Makers(paths, signals, parts, labels, beside, objects, known, floor, gains, peaks["beam_weights"])
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
@@ -151,6 +152,7 @@ class _Makers(NamedTuple):
     labels: Labels | None
     beside: dict
     objects: object
+    known: FamilyPowers | None
     noise_floor: float  # W
     gains: EchoGains
     beams: np.ndarray | None  # weights [N, tx, rx] of the beams that found the cells
@@ -169,10 +171,11 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 
 def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; echoes: with paths; progress: as in `detect`."""
-    paths, signals, parts, labels, beside, objects, noise_floor, gains, beams = makers
+    paths, signals, parts, labels, beside, objects, known, noise_floor, gains, beams = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
-        of_paths = find_families(paths, objects)
+        known = known or family_powers(paths, objects, progress)
+        of_paths = known.families
         if signals is None:
             sorted_by, source, fields = of_paths, echoes, echoes.each(cells, gains, beams, progress)
         else:
@@ -181,7 +184,7 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
         families, whole = labelling.families_of_cells(sorted_by, fields, len(cells), source.peak_of, noise_floor=noise_floor,
                                                        progress=progress)
         measured = source.measured(cells) if beams is None else power
-        found.take_families(families, whole, measured, labelling.resolved_families(paths, of_paths, progress))
+        found.take_families(families, whole, measured, known.resolved)
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)
         found.resolved = labelling.resolved_labels(labels)

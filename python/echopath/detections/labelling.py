@@ -7,7 +7,6 @@ from .. import _core
 from ..arguments.checks import array
 from ..base.process.progress import with_progress
 from ..labels.cell_owners import CellOwners
-from ..paths.resolution import mean_powers
 from .detections import NOISE
 
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
@@ -118,12 +117,6 @@ def families_of_labels(labels, cells) -> list:
         return _core.Family(labels.objects[of_object].name, 0, 1, ()) if of_object >= 0 else None
 
     return [family(cell) for cell in cells]
-
-
-def resolved_families(paths, families, progress=None) -> set:
-    """The families whose mean received power the rays know; progress: as in `detect`."""
-    powers = mean_powers(paths, families, {}, progress).of_families
-    return {family for family, power in zip(families.families, powers) if power.resolved}
 
 
 def resolved_labels(labels) -> set:

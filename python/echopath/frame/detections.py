@@ -44,7 +44,7 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     rules = {"method": method, "false_alarm_rate": false_alarm_rate, "guard_velocity": guard_velocity, "guard_range": guard_range,
              "training_velocity": training_velocity, "training_range": training_range, "rank": rank, "beams": beams}
     found = detected(frame.spectrum, frame.radar, rules, paths=frame.paths, parts=parts, beside=frame.beside_spectra or None,
-                     objects=objects, angles=settings, noise_margin_db=_noise_margin_db(frame),
+                     angles=settings, known=frame._powers_of(objects, progress), noise_margin_db=_noise_margin_db(frame),
                      signals=_signals_of_families(frame, progress), progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)
 

@@ -16,7 +16,7 @@ from ..base.process.stages import Stage
 from ..base.text.counts import counted
 from ..effects import of_paths
 from ..paths.families import families as find_families
-from ..paths.resolution import mean_powers, unresolved_of
+from ..paths.resolution import FamilyPowers, family_powers, mean_powers, unresolved_of
 from ..receiver.chain import reception
 from ..signals.beside import cubes_beside
 from ..spectra.angles import range_azimuth
@@ -267,8 +267,7 @@ class Frame:
     def unresolved(self) -> list[Unresolved]:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
         Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
-        return unresolved_of(self.paths, self._families, self._mean_powers.of_families,
-                             least_power=_core.noise_power_in_cell(self.radar))
+        return unresolved_of(self.paths, self._family_powers, least_power=_core.noise_power_in_cell(self.radar))
 
     @cached_property
     def truth(self) -> Truth:
@@ -278,6 +277,18 @@ class Frame:
     @cached_property
     def _families(self):
         return find_families(self.paths)
+
+    @cached_property
+    def _family_powers(self) -> FamilyPowers:
+        return FamilyPowers(self._families, self._mean_powers.of_families)
+
+    def _powers_of(self, objects=None, progress=None) -> FamilyPowers:
+        """Of the families of the paths; objects: as in `families`; progress: as in `simulate`."""
+        return self._family_powers if objects is None else family_powers(self.paths, objects, progress)
+
+    def _keep_powers(self, found: FamilyPowers) -> None:
+        """Keeps those of the objects of the scene, which took a pass over the paths."""
+        self._families, self._family_powers = found.families, found
 
     @cached_property
     def _mean_powers(self):

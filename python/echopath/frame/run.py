@@ -15,6 +15,7 @@ from ..labels.annotate import label_frame, owners_of_cubes
 from ..labels.family_pass import FamilyPass
 from ..labels.request import Labelling, as_label_settings, labelling_of, make_request
 from ..paths.families import check_objects
+from ..paths.resolution import FamilyPowers
 from ..paths.subset import part_of_path
 from ..receiver.chain import transmitted_code
 from ..receiver.channels import require_channels, require_drift
@@ -100,6 +101,8 @@ class FrameRun:
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
         frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)
+        if work is not None and work.request.objects is None:
+            frame._keep_powers(FamilyPowers(work.families, work.mean.of_families))
         frame.rain_cube = self._rain_cube(paths, clock)
         frame.interference_cube = self._interference_cube(paths, clock, progress)
         if is_coded(self.radar):

@@ -13,7 +13,7 @@ from ..arguments.objects import Objects, objects_rule
 from ..base.classes.made_by import made_by
 from ..base.numerics.decibels import in_dbm
 from ..scene.large_planes import large_planes
-from .families import families as families_of
+from .families import Families, families as families_of
 from .visibility import visibility_in_trace
 
 RESOLVED_DB = 0.3       # the 95 % interval of a resolved power reaches no further to either side
@@ -123,6 +123,24 @@ def mean_powers(paths, families, groups: dict, progress=None) -> MeanPowers:
     return MeanPowers(of_families, dict(zip(groups, of_parts)), of_paths, lengths)
 
 
+class FamilyPowers(NamedTuple):
+    """families: Families of some paths; powers: list [F] of ep.ReceivedPower of these, in W"""
+
+    families: Families
+    powers: list
+
+    @property
+    def resolved(self) -> set:
+        """The families whose power the rays know."""
+        return {family for family, power in zip(self.families, self.powers) if power.resolved}
+
+
+def family_powers(paths, objects=None, progress=None) -> FamilyPowers:
+    """Of the families of paths; objects: as in `families`; progress: callable (stage, fraction) or None"""
+    families = families_of(paths, objects)
+    return FamilyPowers(families, mean_powers(paths, families, {}, progress).of_families)
+
+
 @checked(objects=objects_rule, least_power=real(0.0, unit="W"))
 def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: float = 0.0,
                progress: Progress = None) -> list[Unresolved]:
@@ -136,16 +154,13 @@ def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: floa
     as its upper end; so is one whose paths a selection or a file leaves out. Raises ValueError for bad names and for
     globs that take no mesh, KeyboardInterrupt on Ctrl-C.
     """
-    families = families_of(paths, objects)
-    powers = mean_powers(paths, families, {}, progress).of_families
-    return unresolved_of(paths, families, powers, objects, least_power=least_power, progress=progress)
+    found = family_powers(paths, objects, progress)
+    return unresolved_of(paths, found, objects, least_power=least_power, progress=progress)
 
 
-def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, progress=None) -> list:
-    """`unresolved` from powers that are known.
-
-    families: of the paths and objects; powers: [F] ep.ReceivedPower of these, in W
-    """
+def unresolved_of(paths, found: FamilyPowers, objects=None, *, least_power=0.0, progress=None) -> list:
+    """`unresolved` from powers that are known. found: of the paths and objects"""
+    families, powers = found
     in_doubt = [(family, power) for family, power in zip(families.families, powers)
                 if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
     flagged = set(large_planes(paths.scene, paths.radar, paths.frame.trace_time) if in_doubt else ())

@@ -7,7 +7,7 @@ from .. import _core
 from ..arguments.objects import named_globs
 from ..base.numerics.rates import radar_rate
 from ..base.radar.antennas import centre_of
-from ..paths.families import families
+from ..paths.resolution import FamilyPowers, family_powers
 from ..paths.visibility import visibility_in_trace
 from .boxes import boxes_at
 from .cross_section import isotropic_power
@@ -20,7 +20,8 @@ def truth_of_frame(frame, objects=None, number: int = 0) -> Truth:
     """The Truth of one Frame or of its Paths. objects: as in `families`; number: index of the frame"""
     paths = getattr(frame, "paths", frame)
     radar = getattr(frame, "radar", paths.radar)
-    found, time = families(paths, objects), paths.frame.trace_time
+    powers = family_powers(paths, objects) if isinstance(frame, _core.Paths) else frame._powers_of(objects)
+    found, time = powers.families, paths.frame.trace_time
     globs = dict(named_globs(objects) or [(name, [name]) for name in found.objects])
     boxes = boxes_at(paths.scene, [globs[name] for name in found.objects], time, radar.frame_duration)
     count = len(found.objects)
@@ -30,7 +31,7 @@ def truth_of_frame(frame, objects=None, number: int = 0) -> Truth:
                  rotation=boxes.rotation, yaw=_yaw(boxes.rotation), angular_velocity=boxes.angular_velocity,
                  origin=boxes.origin, **_in_radar(boxes, radar, time),
                  visible_share=np.array([seen[name] for name in found.objects], float),
-                 **_cross_sections(paths, radar, found, boxes.centre, time))
+                 **_cross_sections(powers, radar, boxes.centre, time))
 
 
 def _in_radar(boxes, radar, time: float) -> dict:
@@ -49,15 +50,13 @@ def _in_radar(boxes, radar, time: float) -> dict:
             "radial_velocity": np.sum(sight * velocity, axis=1) / np.maximum(distance, np.finfo(float).tiny)}
 
 
-def _cross_sections(paths, radar, found, centres, time: float) -> dict:
+def _cross_sections(found: FamilyPowers, radar, centres, time: float) -> dict:
     """Received power of the direct echoes and the cross section that it means."""
-    count = len(found.objects)
-    index = {name: number for number, name in enumerate(found.objects)}
-    group = np.array([count if family.ghost_type else index.get(family.object, count) for family in found], np.uint32)
-    powers = _core.received_powers(paths, group[found.family_of_path], count + 1)[:count]
+    direct = {family.object: power for family, power in zip(*found) if not family.is_ghost}
+    powers = [direct.get(name) for name in found.families.objects]
     unit = isotropic_power(radar, centres, time)
     unit = np.where(unit > 0.0, unit, np.nan)
-    received, low, high = (np.array([getattr(one, name) for one in powers], float) for name in ("power", "low", "high"))
+    received, low, high = (np.array([getattr(one, name, 0.0) for one in powers], float) for name in ("power", "low", "high"))
     return {"received": received, "rcs": received / unit, "rcs_low": low / unit, "rcs_high": high / unit}
 
 

@@ -51,6 +51,8 @@ def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], name
     for group in sorted(groups, key=lambda path: path.count("/"), reverse=True):  # those that others carry first
         paths[group] = _joint_class({kind for path, kind in paths.items() if path.rpartition("/")[0] == group})
     found = {one["name"]: paths[_full_name(one)] for one in objects}
+    # Labels call the objects of the root by their names: what another one carries may have the same name.
+    found |= {name: paths[name] for name in found if name in paths}
     for name, globs in named:
         if name not in found:
             found[name] = _chosen_class(chosen, name, *globs) or _class_below(paths, globs)

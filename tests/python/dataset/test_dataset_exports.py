@@ -164,6 +164,14 @@ def test_groups_are_what_they_carry():
     assert found["roof"] == "pedestrian"
 
 
+def test_what_an_object_carries_leaves_others_of_its_name_their_class():
+    """Names are unique beside each other alone, and labels have those of the root."""
+    rider, sledge = {"name": "rider", "actor": "pedestrian"}, {"name": "sledge", "actor": "box"}
+    bag = {"name": "rider", "actor": "box", "parent": "sledge"}
+    for objects in ([rider, sledge, bag], [sledge, bag, rider]):
+        assert classes_of(objects, {}) == {"rider": "pedestrian", "sledge": "static"}
+
+
 def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
     """By a glob of [dataset.classes] that takes their name or what they consist of, else by the object that they are part of."""
     text = TEMPLATE.format(keep="labels", walker=PERSON).replace("frames = 2\ninterval = 0.05\n", "").replace(

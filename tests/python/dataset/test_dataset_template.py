@@ -85,6 +85,35 @@ parent = {parent}
         dataset.Template(written(tmp_path, fixed.replace('"wal', '"plate_1').replace('"plate_2"', '"plate_3"'))).scene_file(0)
 
 
+def test_what_other_objects_carry_by_one_name_is_drawn_by_itself(tmp_path):
+    """Two lids of one name had one dotted path: the same draws, of which one was kept, and the faults of both on one line."""
+    carried = "".join(f"""[[objects]]
+name = "lid"
+count = 2
+parent = "{carrier}"
+actor = "plate"
+parameters = {{width = 0.1, height = {height}}}
+material = "{material}"
+""" for carrier, height, material in (("first", "{uniform = [0.0, 1.0]}", "metal"), ("second", "{uniform = [0.0, 1.0]}", "tin"),
+                                      ("third", '{same_as = "objects.second/lid_2.parameters.height"}', "metal")))
+    carriers = "".join(f'[[objects]]\nname = "{name}"\ngroup = true\n' for name in ("first", "second", "third"))
+    text = HEAD + SCENE.replace("[trace]", carriers + carried + "[trace]")
+    template, path = dataset.Template(written(tmp_path, text.replace('"tin"', '"metal"'))), written(tmp_path, text)
+    heights = []
+    for number in range(20):
+        drawn = template.draw(number)
+        lids = {f"{one['parent']}/{one['name']}": one["parameters"]["height"] for one in drawn.table["objects"]
+                if one["name"].startswith("lid")}
+        assert drawn.values["objects.lid_1.parameters.height"] == lids["first/lid_1"]
+        assert drawn.values["objects.second/lid_1.parameters.height"] == lids["second/lid_1"]
+        assert lids["third/lid_1"] == lids["third/lid_2"] == lids["second/lid_2"]
+        heights.append((lids["first/lid_1"], lids["second/lid_1"]))
+    assert abs(np.corrcoef(np.transpose(heights))[0, 1]) < 0.7  # of 20 pairs that are drawn by themselves: once in 1700
+    line = text[:text.index('"tin"')].count("\n") + 1
+    with pytest.raises(ValueError, match=rf"line {line}: scene 0: objects.second/lid_1.material: unknown material 'tin'"):
+        dataset.Template(path).scene_file(0)
+
+
 def require_apart(template, num_scenes: int) -> None:
     """All but the wall have middles 1 m apart or more at time 0, and in some scene not much more."""
     near = 0

@@ -17,7 +17,7 @@ from ...scene_file.objects import motion_of
 from ...scene_file.tables.object_tables import ObjectTable
 from ...scene_file.trajectories import Trajectories
 from .distributions import REFERENCE, drawn, is_distribution, is_number, refuse_misspelt
-from .references import Source, changed, is_reference, refuse_wrong_reference
+from .references import Source, changed, is_reference, places_of, refuse_wrong_reference
 
 _OWN_KEYS = ("count", "chance", "apart")  # of an entry, which no scene knows
 _MOST_COPIES = 10_000                   # of an entry
@@ -119,14 +119,13 @@ class DrawnObjects:
             return [entries]  # which the schema of the scene refuses
         self._stand_apart = any(isinstance(entry, dict) and "apart" in entry for entry in entries)
         objects: list[Any] = []
-        for index, entry in enumerate(entries):
-            is_table = isinstance(entry, dict) and isinstance(entry.get("name"), str)
-            objects += self._copies(dict(entry)) if is_table else [self._drawing.of(entry, f"objects[{index}]")]
+        for index, (entry, place) in enumerate(zip(entries, places_of(entries))):
+            objects += self._copies(dict(entry), place) if place else [self._drawing.of(entry, f"objects[{index}]")]
         return objects
 
-    def _copies(self, entry: dict[str, Any]) -> list[dict[str, Any]]:
+    def _copies(self, entry: dict[str, Any], place: str) -> list[dict[str, Any]]:
+        """The tables of the objects of an entry; place: its dotted path."""
         name = entry.pop("name")
-        place = f"objects.{name}"
         _refuse_misspelt_own(entry, place)
         chance = self._number(entry.pop("chance", 1.0), f"{place}.chance", "a number from 0 to 1", lambda x: 0.0 <= x <= 1.0)
         is_row, is_fixed = "count" in entry, is_number(entry.get("count", 1))
@@ -137,7 +136,7 @@ class DrawnObjects:
         names = [f"{name}_{number}" for number in range(1, int(count) + 1)] if is_row else [name] * int(count)
         if not is_fixed or not names:
             self._leave_out(name, entry.get("parent"), int(count), is_row)
-        made = (self._one(one, dict(entry), f"objects.{one}") for one in names)
+        made = (self._one(one, dict(entry), place + one.removeprefix(name)) for one in names)
         return [one for one in made if one is not None]
 
     def _leave_out(self, name: str, parent: Any, last: int, is_row: bool) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 from ... import _core
 from ...scene_file.lines import key_lines, line_of, with_table
 from .distributions import with_kinds
+from .references import places_of
 
 _PLACE = re.compile(r"objects\[(\d+)\]")  # of an object among those that were drawn
 
@@ -20,7 +21,7 @@ class Faults:
     def __init__(self, path: Path, table: dict[str, Any]):
         self._path = path
         objects = table.get("objects")
-        self._names = [one.get("name") if isinstance(one, dict) else None for one in objects] if isinstance(objects, list) else []
+        self._places = places_of(objects) if isinstance(objects, list) else []
         self._lines = key_lines(path.read_text(encoding="utf-8-sig"))
 
     @contextmanager
@@ -55,14 +56,15 @@ class Faults:
         place = _PLACE.match(text)
         if drawn is None or place is None:
             return text
-        named = drawn["objects"][int(place[1]):][:1]
-        name = named[0].get("name") if named and isinstance(named[0], dict) else None
-        return f"objects.{name}{text[place.end():]}" if isinstance(name, str) else text
+        one = next(iter(drawn["objects"][int(place[1]):]), None)
+        if not isinstance(one, dict) or not isinstance(one.get("name"), str):
+            return text
+        full, own = f"objects.{one.get('parent')}/{one['name']}", f"objects.{one['name']}"
+        return (own if self._written(full) == full else full) + text[place.end():]
 
     def _written(self, key: str) -> str:
         """The key as the template has it: objects.car_2.yaw stands at objects[1].yaw, if the second entry is that of cars."""
-        for index, name in enumerate(self._names):
-            found = isinstance(name, str) and re.match(rf"objects\.{re.escape(name)}(_\d+)?(?=\.|$)", key)
-            if found:
+        for index, place in enumerate(self._places):
+            if place and (found := re.match(rf"{re.escape(place)}(_\d+)?(?=\.|$)", key)):
                 return f"objects[{index}]{key[found.end():]}"
         return f"dataset.{key}" if key in ("frames", "interval") else key

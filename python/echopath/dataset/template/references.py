@@ -47,13 +47,29 @@ class Step(NamedTuple):
     path: str
 
 
+def places_of(entries: list[Any]) -> list[str]:
+    """The dotted path of each entry of a template's objects, "" of one without a name.
+
+    It has the name of the entry, and of one whose name another has at the root, or before it, also that of what carries it.
+    """
+    named = [one if isinstance(one, dict) and isinstance(one.get("name"), str) else {} for one in entries]
+    places = {f"objects.{one['name']}" for one in named if one and not one.get("parent")}
+    found = []
+    for one in named:
+        own, carrier = f"objects.{one['name']}" if one else "", one.get("parent")
+        is_again = own in places and carrier and isinstance(carrier, str)
+        found.append(f"objects.{carrier}/{one['name']}" if is_again else own)
+        places.add(own)
+    return found
+
+
 class Source:
-    """What a template says, by dotted paths. rest: all but its objects; objects: its entries, which go by their names"""
+    """What a template says, by dotted paths. rest: all but its objects; objects: its entries, which go by `places_of`"""
 
     def __init__(self, rest: dict[str, Any], objects: Any):
         self._rest = rest
-        self._entries = [one for one in objects if isinstance(one, dict) and isinstance(one.get("name"), str)] if isinstance(
-            objects, list) else []
+        entries = objects if isinstance(objects, list) else []
+        self._entries = [(place, one) for place, one in zip(places_of(entries), entries) if place]
 
     def walk(self, path: str) -> tuple[Any, str, list[Step]]:
         """The way to the value at a path: (the table in which it begins, the path of that table, the steps from there on).
@@ -63,9 +79,9 @@ class Source:
 
     def _begin(self, path: str) -> tuple[Any, str]:
         """The table in which a path begins, an object by its name or all the rest, and the path of that table."""
-        for entry in self._entries:
+        for place, entry in self._entries:
             copies = r"_[1-9]\d*" if "count" in entry else ""
-            if found := re.match(re.escape(f"objects.{entry['name']}") + copies + r"(?=\.)", path):
+            if found := re.match(re.escape(place) + copies + r"(?=\.)", path):
                 return entry, found[0]
         if path.startswith("objects"):
             raise KeyError(path)

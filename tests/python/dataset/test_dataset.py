@@ -111,7 +111,9 @@ exclude = ["ego"]
 actors = {x = false, truck_heavy = "van", taxi = {model = "taxi.obj"}, "m*" = {model = "taxi.obj"}}
 position = [{uniform = [20.0, 30.0]}, 0.0, 0.0]
 """
-    path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + traffic + SCENE)
+    carried = '[[objects]]\nname = "b"\nparent = "plate_1"\ngroup = true\n'  # has the name of a truck, and another place
+    scene = SCENE.replace("[trace]", carried + "[trace]")
+    path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + traffic + scene)
     template = dataset.Template(path)
     assert dataset.Template(str(path)).objects(1) == template.objects(1)
     known = classes_of(template.objects(1), {})

@@ -126,7 +126,7 @@ class Template:
             with self._faults.of(number, scene.table):
                 self._traffic = {told: TrafficFiles(validated(SceneTable, scene.table).traffic, self.folder, self._rows)}
         objects = scene.table["objects"]
-        return objects + self._traffic[told].objects(one["name"] for one in objects)
+        return objects + self._traffic[told].objects(one["name"] for one in objects if not one.get("parent"))
 
     def classes(self, number: int, named: NamedGlobs = ()) -> dict[str, ClassName]:
         """{name: class} of the objects of scene `number`, by the template's `classes`, else by actors. Raises as `draw`.

@@ -7,6 +7,7 @@ from .. import _core
 from ..base.numerics.rotations import matrices
 
 _BORESIGHT = 1.0, 0.0, 0.0  # in an antenna's frame
+_ROUNDING = 1e-9            # rad, of directions: what has no gain so much farther aside has none
 
 
 def isotropic_power(radar, points, time: float):
@@ -42,4 +43,11 @@ def _leg(antenna, points) -> tuple:
     distance = np.linalg.norm(ways, axis=1)
     ways[distance == 0.0] = _BORESIGHT
     directions = ways / np.where(distance == 0.0, 1.0, distance)[:, None]
-    return (np.abs(antenna.pattern.field(directions)) ** 2 if len(points) else np.zeros(0)), distance
+    return (_gains(antenna.pattern, directions) if len(points) else np.zeros(0)), distance
+
+
+def _gains(pattern, directions):
+    """Power gain [N] toward unit vectors [N, 3]: of what is right beside an antenna not what rounding makes of none."""
+    aside = directions - np.multiply(_ROUNDING, _BORESIGHT)
+    has_gain = pattern.field(aside / np.linalg.norm(aside, axis=1)[:, None]) != 0.0
+    return np.where(has_gain, np.abs(pattern.field(directions)) ** 2, 0.0)

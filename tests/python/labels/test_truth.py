@@ -500,6 +500,16 @@ def test_a_square_metre_between_two_antennas_sends_what_the_radar_equation_says(
     assert isotropic_power(radar, point[None], 0.0)[0] == pytest.approx(expected)
 
 
+def test_what_is_right_beside_a_radar_that_looks_ahead_has_no_cross_section():
+    """Rounding left of its gain, which is 0 at 90 degrees, some 1e-33, by which a lorry had 1e63 m^2."""
+    antenna = ep.Antenna((0.0, 0.0, 0.0), pattern=ep.CosinePower(2.0))
+    for yaw in np.linspace(-np.pi, np.pi, 40):
+        radar = build_radar((antenna,), (antenna,), num_chirps=4, position=(20.0, -30.0, 1.0), yaw=yaw)
+        place = np.array([20.0, -30.0, 2.5]) + turned((0, 0, 1), yaw) @ [0.0, 8.0, 0.0]
+        assert isotropic_power(radar, place[None], 0.0)[0] == 0.0
+        assert np.isnan(cross_section_dbsm(np.array([1e-14]), radar, place[None], 0.0)[0])
+
+
 def test_cross_sections_of_nulls_are_told_without_a_warning():
     """An echo of no power has none, and where the antennas hear nothing nobody knows it."""
     pattern = ep.CosinePower(2.0)

@@ -1,5 +1,6 @@
 """What comes in beside the echoes is no echo in the exports and the statistics of datasets."""
 
+import numpy as np
 import pytest
 
 import echopath as ep
@@ -29,6 +30,17 @@ def test_interference_is_clutter_that_does_not_exist_in_osi(frame):
     told = {(str(part), one.existence_probability, one.classification)
             for part, one in zip(frame.detections.part, radar.detection)}
     assert told == {("interference", 0.0, 3), ("", 1.0, 1)}  # CLASSIFICATION_CLUTTER and CLASSIFICATION_OTHER
+
+
+def test_what_leaks_from_antenna_to_antenna_has_no_cross_section(frame):
+    """It is within some micrometres of 0 m, and beside the antennas: it had anything from -80 to 330 dBsm."""
+    antennas = [ep.Antenna((0, 0.0019 * k, 0), pattern=ep.CosinePower(2.0)) for k in range(3)]
+    for turn, seed in ((0.0, 1), (0.3, 2), (-2.0, 3), (1.3, 4)):
+        radar = ep.Radar(WAVEFORM, transmitters=antennas[:1], receivers=antennas[1:], yaw=turn, position=(3.0, -7.0, 1.0),
+                         receiver=ep.Receiver(leakage_db=[[-80.0, -80.0]]))
+        found = ep.simulate(ep.Scene(frame.scene), radar, num_rays=100, noise_seed=seed, detections=True).detections
+        leaked = found.part == "leakage"
+        assert leaked.any() and np.isnan(cross_sections_dbsm(found, radar, 0.0)[leaked]).all()
 
 
 def test_statistics_count_interference_as_such(frame):

@@ -59,8 +59,10 @@ def detections_of(dataset: Dataset, one: DatasetFrame) -> Detections:
 def cross_sections_dbsm(found: Detections, radar: Radar, time: float) -> NDArray[np.float64]:
     """[D] dB re 1 m^2 of detections whose directions are known, by the radar equation with the gains of the first antennas.
 
+    Nearer than a wavelength, where what leaks from antenna to antenna is, it does not hold: NaN.
     radar: that the detections are of, as it stands at `time` in s
     """
     world = radar.world_from_radar(time)
     places = found.points @ world[:3, :3].T + world[:3, 3]
-    return cross_section_dbsm(found.power, radar, places, time)
+    is_far = found.range >= radar.waveform.wavelength
+    return np.where(is_far, cross_section_dbsm(found.power, radar, places, time), np.nan)

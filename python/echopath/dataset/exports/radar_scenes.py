@@ -71,7 +71,7 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
         points that no moving road user makes; "omit": they are left out. `write_osi` has them as CLUTTER of
         existence_probability 0
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
-    the radar equation with the gains of the first antennas, not finite for leakage at 0 m), vr and vr_compensated (m/s, receding
+    the radar equation with the gains of the first antennas, NaN nearer than a wavelength), vr and vr_compensated (m/s, receding
     positive; the second without the radar's own motion, the smallest of those that look the same, with `folds` in [detections]
     to the transmitters in turns; 0 of frames of one chirp, to which all do), x_cc, y_cc (m, car frame), x_seq, y_seq (m,
     world), uuid, track_id ("" of what is static or clutter), label_id; and behind them ghost_label, the label of the Radar

@@ -52,9 +52,10 @@ def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], name
         paths[group] = _joint_class({kind for path, kind in paths.items() if path.rpartition("/")[0] == group})
     found = {one["name"]: paths[_full_name(one)] for one in objects}
     # Labels call the objects of the root by their names: what another one carries may have the same name.
-    found |= {name: paths[name] for name in found if name in paths}
+    of_root = {name: paths[name] for name in found if name in paths}
+    found |= of_root
     for name, globs in named:
-        if name not in found:
+        if name not in of_root:
             found[name] = _chosen_class(chosen, name, *globs) or _class_below(paths, globs)
     return found
 

@@ -172,6 +172,15 @@ def test_what_an_object_carries_leaves_others_of_its_name_their_class():
         assert classes_of(objects, {}) == {"rider": "pedestrian", "sledge": "static"}
 
 
+def test_labels_of_what_one_object_carries_have_its_class_whatever_another_carries():
+    man = {"name": "load", "actor": "standing_person", "parent": "cart"}
+    sack = {"name": "load", "actor": "box", "parent": "sledge"}
+    for objects in ([man, sack], [sack, man]):
+        for name, expected in (("cart", "pedestrian"), ("sledge", "static")):
+            for told in ("load", f"{name}/load"):
+                assert classes_of(objects, {}, [(told, (f"{name}/load",))])[told] == expected
+
+
 def test_objects_that_labels_name_have_the_class_of_what_they_are(tmp_path):
     """By a glob of [dataset.classes] that takes their name or what they consist of, else by the object that they are part of."""
     text = TEMPLATE.format(keep="labels", walker=PERSON).replace("frames = 2\ninterval = 0.05\n", "").replace(

@@ -30,7 +30,7 @@ def turning_plate(turn, pushed=0.0, mirror=False):
 
 def shares_by_integral(paths, rate, pushed=0.0):
     """[chirps] |field| in the middle of each chirp over that of an endless plane: Kirchhoff's integral over the plate."""
-    places, weights = np.polynomial.legendre.leggauss(300)
+    places, weights = np.polynomial.legendre.leggauss(100)
     y, z = np.meshgrid(SIDE / 2 * places + pushed, SIDE / 2 * places, indexing="ij")
     area = (SIDE / 2) ** 2 * np.outer(weights, weights)
     shares = []

@@ -22,21 +22,27 @@ def signal(radar, place_of, chirp_times, level_of=lambda i, j: 1.0):
     wavelength = SPEED_OF_LIGHT / (f0 + 0.5 * waveform.bandwidth)
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), waveform.num_chirps, len(t)), complex)
     for i, tx in enumerate(radar.transmitters):
-        for j, rx in enumerate(radar.receivers):
-            for chirp in range(waveform.num_chirps):
-                begin = chirp_times(i, chirp)
-                for n, instant in enumerate(t):
-                    frame = radar.world_from_radar(begin + instant)
-                    out, back = (place_of(begin + instant) - (frame[:3, :3] @ end.position + frame[:3, 3]) for end in (tx, rx))
-                    d_out, d_back = (np.linalg.norm(way, axis=1) for way in (out, back))
-                    gains = [antenna.pattern.field(way / np.linalg.norm(way, axis=1)[:, None] @ frame[:3, :3])
-                             for antenna, way in ((tx, out), (rx, back))]
+        for chirp in range(waveform.num_chirps):
+            for n, instant in enumerate(t):
+                time = chirp_times(i, chirp) + instant
+                frame, places = radar.world_from_radar(time), place_of(time)
+                d_out, sent = way_to(places, tx, frame)
+                for j, rx in enumerate(radar.receivers):
+                    d_back, heard = way_to(places, rx, frame)
                     delay = (d_out + d_back) / SPEED_OF_LIGHT
                     level = np.sqrt(radar.transmit_power * RCS / (4 * np.pi) ** 3) * wavelength / (d_out * d_back)
-                    fields = np.conj(level * np.exp(1j * PHASES) * gains[0] * gains[1])
+                    fields = np.conj(level * np.exp(1j * PHASES) * sent * heard)
                     turns = f0 * delay + slope * instant * delay - 0.5 * slope * delay**2
                     cube[i, j, chirp, n] = np.sum(fields * np.exp(2j * np.pi * turns))
     return cube
+
+
+def way_to(places, antenna, world_from_radar):
+    """(lengths in m, fields by the pattern) of the ways between an antenna and places [N, 3]."""
+    turned = world_from_radar[:3, :3]
+    way = places - (turned @ antenna.position + world_from_radar[:3, 3])
+    length = np.sqrt(np.einsum("ij,ij->i", way, way))
+    return length, antenna.pattern.field(way / length[:, None] @ turned)
 
 
 def starts(waveform, slots):

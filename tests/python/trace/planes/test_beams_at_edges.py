@@ -52,7 +52,7 @@ def disk(radius, center=(0.0, 0.0, 0.0)):
 
 def disk_head_on(radius, exponent):
     """|field| of a disk below both antennas, over that of an endless one without a beam: Gauss-Legendre over its radius."""
-    nodes, weights = np.polynomial.legendre.leggauss(2000)
+    nodes, weights = np.polynomial.legendre.leggauss(200)
     places, weights = 0.5 * radius * (nodes + 1.0), 0.5 * radius * weights
     lengths = np.hypot(places, HEIGHT)
     gains = (HEIGHT / lengths) ** exponent  # both ways, of fields

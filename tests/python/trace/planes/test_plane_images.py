@@ -75,7 +75,8 @@ def beside_edges(within, *, turn=0.0, antennas=((0, 0, 10), (0, 0.05, 10)), acro
     wavelength = ep.speed_of_light / 77e9
     endless = wavelength / (4 * np.pi * (before + behind))
     edge = point + (within * out + np.linspace(-FAR, FAR, 100_001)[:, np.newaxis] * aside) @ axes
-    detour = min(np.linalg.norm(edge - transmitter, axis=1) + np.linalg.norm(edge - receiver, axis=1)) - before - behind
+    ways = np.linalg.norm(edge - transmitter, axis=1) + np.linalg.norm(edge - receiver, axis=1)
+    detour = ways.min() - before - behind
     field = np.sqrt(ep.received_power(paths).power / paths.radar.transmit_power) / endless
     return field, len(images(paths)), np.copysign(np.sqrt(max(2.0 * detour / wavelength, 0.0)), within)
 
@@ -115,7 +116,7 @@ def test_beside_a_corner_each_edge_takes_its_part(turn):
 def head_on(size, distance):
     """The echo in W of a metal plate, which faces the radar, by Kirchhoff's integral: Gauss-Legendre over the plate."""
     wavelength = ep.speed_of_light / 77e9
-    places, weights = np.polynomial.legendre.leggauss(1000)
+    places, weights = np.polynomial.legendre.leggauss(250)
     squares = (places * size / 2.0) ** 2
     lengths = np.sqrt(distance**2 + squares[:, np.newaxis] + squares)
     integral = np.outer(weights, weights) * distance / lengths**3 * np.exp(-4j * np.pi / wavelength * lengths)
@@ -152,7 +153,7 @@ def test_the_seam_of_two_meshes_in_one_plane_is_no_edge():
 def disk_head_on(radius, distance):
     """The echo in W of a metal disk, which faces the radar, by Kirchhoff's integral: Gauss-Legendre over the lengths to it."""
     wavelength = ep.speed_of_light / 77e9
-    nodes, weights = np.polynomial.legendre.leggauss(1000)
+    nodes, weights = np.polynomial.legendre.leggauss(200)
     half = 0.5 * (np.hypot(distance, radius) - distance)
     lengths = distance + half * (nodes + 1.0)
     integral = np.sum(half * weights * distance / lengths**2 * np.exp(-4j * np.pi / wavelength * lengths))
@@ -196,13 +197,14 @@ def bent_plane(within, bend):
     beside = np.arange(-2.0 * FADES, 2.0 * FADES, STEP) + STEP / 2.0  # half zones
     whole = 0.0
     for away, normal in ((-level, (0, 0, 1)), (down, (np.sin(bend), 0, np.cos(bend)))):
-        places = foot + (np.arange(0.0, 2.0 * FADES + within, STEP) + STEP / 2.0)[:, np.newaxis, np.newaxis] * away
-        places = places + beside[:, np.newaxis] * aside
-        ways = [place - places for place in np.array(RAISED, float)]
-        lengths = [np.sqrt(np.einsum("...x,...x", way, way)) for way in ways]
-        slant = sum(way @ np.array(normal) / length for way, length in zip(ways, lengths)) / 2.0
-        kept = faded(places[..., 0] / half) * faded(places[..., 1] / half)
-        whole += np.sum(kept * slant * np.exp(-2j * np.pi * 77e9 / ep.speed_of_light * sum(lengths)) / np.prod(lengths, axis=0))
+        places = foot + (np.arange(0.0, 2.0 * FADES + within, STEP) + STEP / 2.0)[:, np.newaxis] * away
+        ways = [place - places for place in np.array(RAISED, float)]  # but for y, along which `beside` goes
+        one, two = (np.sqrt(way[:, 0, np.newaxis] ** 2 + way[:, 2, np.newaxis] ** 2 + (place[1] - half * beside) ** 2)
+                    for place, way in zip(RAISED, ways))
+        above, over = (way @ np.array(normal)[:, np.newaxis] for way in ways)
+        slant = (above / one + over / two) / 2.0
+        kept = np.outer(faded(places[:, 0] / half), faded(beside))
+        whole += np.sum(kept * slant / (one * two) * np.exp(-2j * np.pi * 77e9 / ep.speed_of_light * (one + two)))
     endless = 2.0 * RAISED[0][2]
     return over_endless(planes), abs(whole) * (STEP * half) ** 2 * 77e9 / ep.speed_of_light * endless
 

@@ -22,11 +22,11 @@ def lobed(exponent=4, share=0.0, back=0):
 
 def hemisphere(exponent, cosine):
     """Integral over the half space of ((1 + cos psi)/2)^exponent about a direction at this cosine from the normal."""
-    z, weights = np.polynomial.legendre.leggauss(120)
+    z, weights = np.polynomial.legendre.leggauss(40)
     z, weights = 0.5 * (z + 1), 0.5 * weights
-    turn = 2 * np.pi * (np.arange(240) + 0.5) / 240
+    turn = 2 * np.pi * (np.arange(80) + 0.5) / 80
     along = cosine * z[:, None] + math.sqrt(1 - cosine**2) * np.sqrt(1 - z[:, None]**2) * np.cos(turn)
-    return 2 * np.pi * np.sum(weights[:, None] * ((1 + along) / 2)**exponent) / 240
+    return 2 * np.pi * np.sum(weights[:, None] * ((1 + along) / 2)**exponent) / 80
 
 
 def lobe(material, arrival, normal, departure):

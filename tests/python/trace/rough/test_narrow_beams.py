@@ -27,7 +27,7 @@ def field_with_plates():
 
 def power_of_ground(radar, pitch_deg):
     """W, by the sum over rings and sectors: what a Lambert surface sends back of what it meets."""
-    edges, azimuth = np.geomspace(0.5, HALF, 3000), np.radians(np.linspace(-90.0, 90.0, 3601))
+    edges, azimuth = np.geomspace(0.5, HALF, 1000), np.radians(np.linspace(-90.0, 90.0, 721))
     distance, around = np.meshgrid(0.5 * (edges[1:] + edges[:-1]), azimuth, indexing="ij")
     area = distance * np.diff(edges)[:, None] * (azimuth[1] - azimuth[0])
     way = np.stack([distance * np.cos(around), distance * np.sin(around), np.full_like(distance, -HEIGHT)], axis=-1)

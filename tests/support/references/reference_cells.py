@@ -87,26 +87,26 @@ def inside(points, triangle, margin=1e-12):
     """Whether points [M, 3] of a triangle's plane lie in it."""
     a, b, c = triangle
     normal = cross(b - a, c - a)
-    scale = normal @ normal
-    u = cross(points - a, c - a) @ normal / scale
-    v = cross(b - a, points - a) @ normal / scale
+    to_u, to_v = np.array([cross(c - a, normal), cross(normal, b - a)]) / (normal @ normal)
+    from_a = points - a
+    u, v = from_a @ to_u, from_a @ to_v
     return (u >= -margin) & (v >= -margin) & (u + v <= 1 + margin)
 
 
 def blocked(starts, ends, corners, own, leave_out=()):
     """Whether a triangle [F, 3, 3] meets the open segments between points [M, 3]; own: triangle [M] that does not count."""
     line = ends - starts
-    length = lengths_of(line)
     found = np.zeros(len(starts), bool)
-    for index, (a, b, c) in enumerate(corners):
-        if index in leave_out:
-            continue
-        normal = cross(b - a, c - a)
-        slope = line @ normal
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.where(slope != 0, ((a - starts) @ normal) / slope, -1.0)
-        between = (share * length > CLEAR) & ((1 - share) * length > CLEAR) & (own != index)
-        if between.any():
-            point = starts[between] + share[between, None] * line[between]
-            found[np.flatnonzero(between)[inside(point, corners[index])]] = True
+    with np.errstate(divide="ignore", invalid="ignore"):  # no share of a line along the plane lies between its ends
+        near = CLEAR / lengths_of(line)
+        far = 1 - near
+        for index, (a, b, c) in enumerate(corners):
+            if index in leave_out:
+                continue
+            normal = cross(b - a, c - a)
+            share = (a @ normal - starts @ normal) / (line @ normal)
+            between = np.flatnonzero((share > near) & (share < far) & (own != index))
+            if len(between):
+                point = starts[between] + share[between, None] * line[between]
+                found[between[inside(point, corners[index])]] = True
     return found

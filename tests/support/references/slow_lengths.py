@@ -14,14 +14,20 @@ def lengths(paths, time, transmitter, receiver):
     shift, turn = rigid(radar.motion, time)
     turn = turn @ turned(radar.yaw, radar.pitch)
     start, end = (radar.position + shift + turn @ antenna for antenna in (transmitter, receiver))
-    posed = {mesh.id: surface(scene, mesh, time, paths.frame.trace_time) for mesh in scene.meshes}
-    return np.array([_length(paths, path, posed, start, end) for path in range(paths.num_paths)])
+    posed = {mesh.id: _with_facets(*surface(scene, mesh, time, paths.frame.trace_time)) for mesh in scene.meshes}
+    mirrors = {mesh.id for mesh in scene.meshes if mesh.material.mirror}
+    return np.array([_length(paths, path, posed, mirrors, start, end) for path in range(paths.num_paths)])
 
 
-def _length(paths, path, posed, start, end):
+def _with_facets(vertices, triangles, *of_smooth):
+    """What `surface` tells, and unit normals [F, 3] of the triangles."""
+    corners = vertices[triangles]
+    return vertices, triangles, *of_smooth, _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+
+
+def _length(paths, path, posed, mirrors, start, end):
     first = paths.offsets[path]
     rows = range(first, first + paths.num_bounces[path])
-    mirrors = [mesh.id for mesh in paths.scene.meshes if mesh.material.mirror]
     planes, points = [], [start]
     total = 0.0
     for bit, row in enumerate(rows):
@@ -43,18 +49,17 @@ def _image(point, planes):
 
 def _hit(paths, row, posed):
     """Point and normal of a hit, on the curved surface where its triangle stands for one."""
-    vertices, triangles, normals, smooth = posed[paths.mesh_id[row]]
+    vertices, triangles, normals, smooth, facets = posed[paths.mesh_id[row]]
     triangle = paths.triangle_id[row]
     corners = vertices[triangles[triangle]]
     u, v = float(paths.u[row]), float(paths.v[row])
     weights = np.array([1 - u - v, u, v])
     point = weights @ corners
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     if normals is not None and smooth[triangle]:
         of_corners = normals[triangles[triangle]]
         lift = np.einsum("ij,ij->i", corners - point, of_corners)
         point = point + 0.5 * (weights * lift) @ of_corners
-    return point, normal / np.linalg.norm(normal)
+    return point, facets[triangle]
 
 
 def surface(scene, mesh, time, trace_time):

@@ -112,9 +112,9 @@ def power_by_hit(paths, of_mesh):
         found = inside & (row < 0)
         at = np.where(inside, starts + k, 0)
         row = np.where(found & (paths.mesh_id[at] == of_mesh), at, row)
-    keys = np.stack([paths.triangle_id[row], paths.u[row].view(np.uint32), paths.v[row].view(np.uint32)], axis=1)
-    _, group = np.unique(keys, axis=0, return_inverse=True)
-    group = group.ravel()
+    group = np.zeros(len(row), np.int64)
+    for key in (paths.triangle_id[row], paths.u[row].view(np.uint32), paths.v[row].view(np.uint32)):
+        _, group = np.unique(group << 32 | key, return_inverse=True)
     field = fields(paths)
     return float(np.sum(np.bincount(group, field.real) ** 2 + np.bincount(group, field.imag) ** 2))
 

@@ -75,7 +75,7 @@ def test_a_liquid_below_a_narrow_beam_has_the_echo_that_its_rim_leaves(radius, e
 
 def plate_by_integral(plate, radar, length):
     """|field| of a level rectangle (x and y from, to) at z = 0 over that of an endless one: Gauss-Legendre over it."""
-    nodes, weights = np.polynomial.legendre.leggauss(1200)
+    nodes, weights = np.polynomial.legendre.leggauss(1000)
     sides = [(0.5 * (end - begin) * nodes + 0.5 * (begin + end), 0.5 * (end - begin) * weights) for begin, end in plate]
     x, y = np.meshgrid(sides[0][0], sides[1][0], indexing="ij")
     field, way, slant = np.outer(sides[0][1], sides[1][1]).astype(complex), 0.0, 0.0

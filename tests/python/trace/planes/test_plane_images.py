@@ -74,7 +74,7 @@ def beside_edges(within, *, turn=0.0, antennas=((0, 0, 10), (0, 0.05, 10)), acro
     paths = ep.trace(scene, radar(*antennas), num_rays=30_000, max_bounces=1, polarization="scalar")
     wavelength = ep.speed_of_light / 77e9
     endless = wavelength / (4 * np.pi * (before + behind))
-    edge = point + (within * out + np.linspace(-FAR, FAR, 100_001)[:, np.newaxis] * aside) @ axes
+    edge = point + (within * out + np.linspace(-FAR, FAR, 20_001)[:, np.newaxis] * aside) @ axes
     ways = np.linalg.norm(edge - transmitter, axis=1) + np.linalg.norm(edge - receiver, axis=1)
     detour = ways.min() - before - behind
     field = np.sqrt(ep.received_power(paths).power / paths.radar.transmit_power) / endless

@@ -18,8 +18,10 @@ from .courses import courses_of
 from .histories import Histories, length_and_field, phase_of
 from .response import MAX_SWEEP, Response
 
-SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
-MAX_SEGMENTS = 32
+SEGMENTS_PER_BIN = 8   # of range that echoes go on by in the frame, straight lines between: 60 dB below the peak
+MIN_SEGMENTS = 5       # where any does
+MAX_SEGMENTS = 64
+STAYING = 1e-3         # bins, up to which an echo stays in its bin of range
 BYTES_PER_FIELD = 12   # place and field of a path in a channel
 HELD = 0.9999          # of the power of single paths, by the paths that are named
 MAX_CHANNELS = 8       # whose fields are made: an echo fades in one antenna, hardly ever in eight
@@ -157,14 +159,13 @@ class EchoFields:
 
     def _along_histories(self, rows, velocity: int) -> tuple:
         """What a cell of velocity has of echoes that are followed from chirp to chirp, and bins of range by which they are
-        farther away than in the middle of the frame, [segments, N] each."""
-        segments = len(self._velocity_response.centres)
-        first = [part[0] for part in np.array_split(np.arange(len(self._chirp_weights)), segments)]
+        farther away than in the middle of the frame, at the nodes of the response, [nodes, N] each."""
+        response = self._velocity_response
         tone = self._chirp_weights * np.exp(-2j * np.pi * self._cell_turns(velocity))
-        along = np.add.reduceat(self._histories.fields(rows) * tone.astype(np.complex64), first, axis=1)
-        counts = np.diff([*first, len(tone)])
-        farther = np.add.reduceat(self._histories.farther(rows), first, axis=1) / counts
-        return along.T, 0.5 * farther.T / self._paths.radar.waveform.range_resolution
+        terms = self._histories.fields(rows) * tone.astype(np.complex64)
+        along = np.stack([_weighted_sums(terms, share) for share in response.shares.astype(np.float32)])
+        farther = self._histories.farther(rows)[:, np.rint(response.nodes).astype(int)]
+        return along, 0.5 * farther.T / self._paths.radar.waveform.range_resolution
 
     def _cell_turns(self, velocity: int) -> np.ndarray:
         """Turns [C] of the tone of a cell of velocity in each chirp, from the middle of the frame on."""
@@ -299,7 +300,9 @@ class EchoFields:
     @cached_property
     def _velocity_response(self) -> Response:
         num_chirps = self._paths.radar.waveform.num_chirps
-        segments = int(np.clip(np.ceil(SEGMENTS_PER_BIN * self._largest("travel")), 1, min(MAX_SEGMENTS, num_chirps)))
+        travel = self._largest("travel")
+        wanted = np.clip(np.ceil(SEGMENTS_PER_BIN * travel), MIN_SEGMENTS, MAX_SEGMENTS) if travel > STAYING else 1
+        segments = max(min(int(wanted), num_chirps - 1), 1)
         return Response(of_velocity(self._spectrum.window), num_chirps, self._largest("sweep"), segments)
 
     @cached_property
@@ -333,6 +336,13 @@ def _all_of(lists, count: int) -> np.ndarray:
     for places in lists:
         marked[places] = True
     return np.flatnonzero(marked)
+
+
+def _weighted_sums(terms, share) -> np.ndarray:
+    """Sums of terms [N, C] with shares [C] that are 0 but in a row: the same for any N and threads, as products are not."""
+    some = np.flatnonzero(share)
+    row = slice(some[0], some[-1] + 1)
+    return np.sum(terms[:, row] * share[row], axis=1)
 
 
 def _without_weakest(power, least: float) -> np.ndarray:

@@ -7,38 +7,41 @@ from ..spectra.windows import samples_of
 
 FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
-SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; within segments, of each of them
+SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; with segments, of each part
 MAX_SWEEP = 32.0       # bins
 
 
 class Response:
     """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
 
-    In parts, one for each segment of the samples. reach: bins, within which it is known
-    Model: p^2 = 2 c p - c^2 + (p - c)^2 about the centre c of a segment: it sees a tone c sweep bins nearer, whose sweep
-    bends it by the square of the segment's length less. So S segments need steps S^2 as wide for the same error.
-    Memory: the table has 8 bytes for each segment, sweep (257 / S^2 at most) and sixteenth of a bin: 33 kB a sample at most.
+    In parts, one for each node between S segments of the samples, S + 1 (one without segments), whose weights fall linearly to
+    the next nodes: what is known at the nodes is a line between them. reach: bins, within which it is known
+    Model: p^2 = 2 c p - c^2 + (p - c)^2 about a node c: it sees a tone c sweep bins nearer, whose sweep bends it by the square of
+    the length of its part less. So S segments need steps (S / 2)^2 as wide for the same error.
+    Memory: the table has 8 bytes for each node, sweep (257 / (S / 2)^2) and sixteenth of a bin: 33 kB a sample at most without
+    segments, or with 5 and more.
     """
 
     def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
         samples = samples_of(window, n)
         self._n = n
-        self._step = SWEEP_STEP * segments ** 2
+        self._step = SWEEP_STEP * (1.0 if segments == 1 else 0.5 * segments) ** 2
         self._largest = min(largest_sweep, MAX_SWEEP)
         self._middle = int(np.ceil(self._largest / self._step - 0.5))
         self._envelope = _envelope(samples)
         self.reach = min(_reach(self._envelope) + 0.5 * self._largest, 0.5 * n)
         self._half = int((min(self.reach + 0.5 * self._largest, 0.5 * n) + 1.0) * STEPS_PER_BIN)
         place = (np.arange(n) - 0.5 * (n - 1)) / n
-        parts = np.array_split(np.arange(n), segments)
-        self.centres = np.array([place[part].mean() for part in parts])  # [segments], -1/2 to 1/2
-        self._table = np.stack([self._transform(samples / samples.sum(), place - centre, part)
-                                for centre, part in zip(self.centres, parts)])
+        self.nodes = np.array([0.5 * (n - 1)]) if segments == 1 else np.linspace(0.0, n - 1.0, segments + 1)  # in samples
+        self.centres = (self.nodes - 0.5 * (n - 1)) / n  # [nodes], -1/2 to 1/2
+        self.shares = np.stack([np.interp(np.arange(n), self.nodes, node) for node in np.eye(len(self.nodes))])  # [nodes, n]
+        self._table = np.stack([self._transform(share * samples / samples.sum(), place - centre)
+                                for centre, share in zip(self.centres, self.shares)])
 
     def __call__(self, y, sweep=0.0):
-        """y: bins [N], folded into the axis, or [rows, N] for one segment; sweep: bins [N] or one.
+        """y: bins [N], folded into the axis, or [rows, N] for one node; sweep: bins [N] or one.
 
-        Returns complex64 [segments or rows, N].
+        Returns complex64 [nodes or rows, N].
         """
         sweep, centre = np.clip(sweep, -self._largest, self._largest), self.centres[:, None]
         y = y - centre * sweep
@@ -65,11 +68,10 @@ class Response:
         step = np.clip((far * STEPS_PER_BIN).astype(int), 0, len(self._envelope) - 1)
         return np.maximum(self._envelope.take(step), 10.0 ** (-FLOOR_DB / 20.0))
 
-    def _transform(self, samples, place, part):
-        """Of the samples of a segment, places counted from its centre, at the steps of the table, [sweeps, steps]."""
+    def _transform(self, samples, place):
+        """Of the samples of a node, places counted from it, at the steps of the table, [sweeps, steps]."""
         sweeps = self._step * np.arange(-self._middle, self._middle + 1)
-        rows = np.zeros((len(sweeps), self._n), complex)
-        rows[:, part] = samples[part] * np.exp(1j * np.pi * np.outer(sweeps, place[part] ** 2))
+        rows = samples * np.exp(1j * np.pi * np.outer(sweeps, place ** 2))
         steps = np.arange(-self._half, self._half + 1)
         values = np.fft.fft(rows, self._n * STEPS_PER_BIN)[:, steps % (self._n * STEPS_PER_BIN)]
         return (values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)).astype(np.complex64)

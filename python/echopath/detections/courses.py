@@ -50,10 +50,12 @@ def courses_of(paths) -> Courses:
         courses.strongest[some] = size.max(axis=0)
         courses.swing[some] = np.ptp(size, axis=0) / np.maximum(courses.strongest[some], np.finfo(float).tiny)
         courses.away[some] = np.abs(lengths[:count] - lengths[1]).max(axis=0)
-        courses.is_parabola[some] = _off_parabola(lengths[:count], fractions) <= UNSTEADY * waveform.wavelength
+        off = _off_parabola(lengths[:count], fractions) / waveform.wavelength
         if waveform.num_chirps > 2:
-            turning = turning_of(*around_last, waveform) - turning_of(*around_first, waveform)
-            courses.speed_change[some] = _speed_change(lengths, turning, last - first, waveform)
+            turning = np.array([turning_of(*pair, waveform) for pair in (around_first, around_last)])
+            courses.speed_change[some] = _speed_change(lengths, turning[1] - turning[0], last - first, waveform)
+            off += _amplitudes_off_parabola(fields, turning * (last - first), fractions)
+        courses.is_parabola[some] = off <= UNSTEADY
     return courses
 
 
@@ -63,6 +65,17 @@ def _off_parabola(lengths, fractions) -> np.ndarray:
     place = (2.0 * fractions - 1.0)[:, None]
     parabola = middle + 0.5 * place * (after - before) + place ** 2 * (0.5 * (after + before) - middle)
     return np.abs(lengths - parabola).max(axis=0)
+
+
+def _amplitudes_off_parabola(fields, turning, fractions) -> np.ndarray:
+    """Turns, [N]: by how much the phases of amplitudes [T, N] at fractions [T] of the frame leave the parabola through that in
+    the middle which turns as they do at the ends, [2, N] turns a frame; of weak amplitudes less."""
+    place = fractions[:, None] - 0.5
+    parabola = 0.5 * place * turning.sum(axis=0) + 0.5 * place ** 2 * (turning[1] - turning[0])
+    turned = fields * np.conj(fields[1]) * np.exp(2j * np.pi * parabola)
+    size = np.abs(fields)
+    share = size / np.maximum(size.max(axis=0), np.finfo(float).tiny)
+    return np.max(share * np.abs(np.angle(turned)), axis=0) / (2.0 * np.pi)
 
 
 def _speed_change(lengths, turning, duration: float, waveform) -> np.ndarray:

@@ -309,6 +309,28 @@ def test_faces_that_flash_beside_the_middle_of_the_frame_make_the_cells_of_their
     assert len(found) > 5 and set(found.object) == {"box"} and not found.is_noise.any()
 
 
+def test_points_of_reflection_that_swing_make_the_cells_of_their_signal():
+    """A chest that breathes under an unmarked roof: both ways lead over the roof, where the ways of the record hardly change, and
+    the phase of the amplitude has what its points of reflection slide by."""
+    times, wavelength = np.arange(-0.5, 12.0, 0.05), ep.speed_of_light / 60e9
+    chirps = ep.ChirpSequence(start_frequency=60e9, bandwidth=4e9, num_samples=128, sampling_rate=2e6, num_chirps=200,
+                              chirp_interval=0.05)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.5 * wavelength, 0))], transmit_power=0.01,
+                     position=(0.3, 0, 1.25), pitch=np.pi / 3)
+    scene = ep.Scene()
+    scene.add(ep.actors.ellipsoid((0.08, 0.11, 0.2)), name="torso", material="metal", smooth=True, position=(0.62, 0.4, 0.66),
+              motion=ep.KeyframeMotion(times, 0.5e-3 * np.sin(0.8 * np.pi * times)[:, None] * (1, 0, 0)))
+    scene.add(ep.actors.box((2.6, 1.5, 0.1)), name="roof", material="metal", position=(0.5, 0, 1.35))
+    paths = ep.trace(scene, radar, num_rays=10_000, max_bounces=3).select("T 'roof' 'torso' 'roof' R")
+    spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar)
+    power = np.abs(spectrum.values[0, 0]) ** 2
+    cells, fields = np.argwhere(power > 1e-4 * power.max()), fields_of(paths, spectrum)
+    fields.evaluate(cells)
+    made = np.array([np.abs(fields.fields(cell)[1].sum(axis=1)[0]) ** 2 for cell in cells])
+    assert paths.num_paths and len(cells) > 20
+    assert np.abs(10.0 * np.log10(made / power[tuple(cells.T)])).max() < 1.0
+
+
 def test_detections_of_blades_are_no_noise(rotor):
     radar, paths, cube = rotor
     noisy = ep.range_doppler(ep.add_noise(cube, radar, seed=4), radar)

@@ -64,6 +64,7 @@ def _faulty():
 @pytest.mark.hard
 def test_a_worker_tells_errors_crashes_and_hangs_and_goes_on(monkeypatch):
     monkeypatch.setattr(worker, "HANG", 0.5)
+    monkeypatch.setattr(worker, "STARVED", 4.0)
     count, findings = worker.run("faulty", range(6), make=_faulty)
     assert count == 6
     assert [finding.number for finding in findings] == [1, 2, 3]

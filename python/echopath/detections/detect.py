@@ -80,8 +80,10 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     window, directions by `estimate_angles`, without the phase that transmit slots (TDM) add at that velocity between the cells.
     A detection has the part of the largest power in its cell without noise, and its object or ghost by the rule of labels
     (ObjectLabel.cells); it is "noise" where echoes hold less than half of its power: those of the parts or labels in all
-    channels, of paths alone by a model of their fields in at most 8 channels, compared with the power in those. Errors of
-    chains, filters and imbalance of `radar.receiver` count; images and skirts that it makes of echoes elsewhere are noise.
+    channels, of paths alone by a model of their fields in at most 8 channels, compared with the power in those, which follows
+    the sidelobes of an echo down to 60 dB below it, so that those farther down are noise unless there are parts or labels.
+    Errors of chains, filters and imbalance of `radar.receiver` count; images and skirts that it makes of echoes elsewhere are
+    noise.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;

@@ -17,16 +17,19 @@ class EchoGains:
     """By how much a receiver makes the amplitudes of echoes larger, by channels and by the cells of range of a map.
 
     Model: errors of the chains, of the receivers as the root of their mean square over the frame; the filters at the beat
-    frequency of the range; the share that the imbalance leaves where it was. Coupling, phase noise and compression count for
-    nothing.
+    frequency of the range, in the first cell at half a bin, because an echo that shows there need not beat at 0, where
+    high-passes let nothing through; the share that the imbalance leaves where it was. Coupling, phase noise and compression
+    count for nothing.
     radar: that has the receiver; ranges: [R] m, of the map; start_time: s, of the frame
-    of_filters: [R], also that of noise
+    of_filters: [R], in the middle of the cells, as that of noise
     """
 
     def __init__(self, radar, ranges, start_time: float = 0.0):
         receiver = Receiver() if radar.receiver is None else radar.receiver
         require_channels(receiver, radar)
         self.of_filters = _filter_gains(receiver, radar.waveform, ranges)
+        half_bin = 0.5 * radar.waveform.range_resolution
+        self._of_echoes = _filter_gains(receiver, radar.waveform, np.maximum(ranges, half_bin))
         self._of_receivers = _kept(receiver, radar.waveform) * _mean_of_receivers(receiver, radar, start_time)
         self._of_transmitters = _sizes(transmitter_factors(receiver, radar), len(radar.transmitters))
 
@@ -35,7 +38,7 @@ class EchoGains:
 
         tx, rx, distance: indices of antennas and of cells of range, of shapes that broadcast to that of the result
         """
-        gains = self._of_receivers[rx] * self.of_filters[distance]
+        gains = self._of_receivers[rx] * self._of_echoes[distance]
         return gains * (1.0 if part in _WITHOUT_TRANSMITTERS else self._of_transmitters[tx])
 
 

@@ -59,6 +59,19 @@ def test_labels_tell_noise_behind_the_receiver_too(spheres):
     assert not found.is_noise.any() and set(found.object) == set(TARGETS)
 
 
+@pytest.mark.parametrize("labels", [False, True])
+def test_leakage_in_the_first_cell_behind_a_high_pass_is_no_noise(labels):
+    """It beats at 0.4 bins, in the cell of frequency 0, where the filter lets nothing through."""
+    receiver = ep.Receiver(leakage_db=[[-40.0]], leakage_delay=0.4 / 4e9, high_pass=[50e3])  # of a bandwidth of 4 GHz
+    radar = build_radar(start_frequency=78e9, bandwidth=4e9, num_samples=1024, sampling_rate=4e6, num_chirps=32,
+                        chirp_interval=0.3e-3, transmit_power=1e-3, receiver=receiver)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.1), name="ball", material="metal", smooth=True, position=(5, 0, 0))
+    found = ep.simulate(scene, radar, num_rays=2000, guard=False, detections=True, labels=labels).detections
+    first = found.range < radar.waveform.range_resolution
+    assert first.any() and np.all(found.snr_db[first] > 40.0) and set(found.part[first]) == {"leakage"}
+
+
 def test_parts_and_labels_without_paths_are_told_when_the_frame_begins(spheres):
     """By then gains have drifted by 30 dB: echoes as they were at time 0 hold a thousandth of their power."""
     radar, paths, _ = spheres

@@ -114,12 +114,13 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
 
 
 def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=None, labels=None, beside=None, objects=None,
-             known: FamilyPowers | None = None, noise_margin_db=None, start_time=None, signals: Signals | None = None,
-             progress=None) -> Detections:
+             known: FamilyPowers | None = None, without_noise=None, noise_margin_db=None, start_time=None,
+             signals: Signals | None = None, progress=None) -> Detections:
     """As `detect`, of arguments that are right.
 
-    rules: keywords of `cfar`; known: of paths and objects, where there are some already; signals: with paths, of a frame whose
-        records are renewed: those of all its families, which tell objects and ghosts in place of the paths
+    rules: keywords of `cfar`; known: of paths and objects, where there are some already; without_noise: RangeDoppler of the
+        signal of the paths, which tells noise from echoes in place of the model of their fields; signals: with paths, of a frame
+        whose records are renewed: those of all its families, which tell objects and ghosts in place of the paths
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
@@ -138,7 +139,7 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
-    makers = _Makers(paths, signals, parts, labels, beside, objects, known, floor, gains, peaks["beam_weights"])
+    makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, gains, peaks["beam_weights"])
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
@@ -150,6 +151,7 @@ class _Makers(NamedTuple):
 
     paths: _core.Paths | None
     signals: Signals | None
+    without_noise: _core.RangeDoppler | None
     parts: dict | None
     labels: Labels | None
     beside: dict
@@ -173,7 +175,7 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 
 def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; echoes: with paths; progress: as in `detect`."""
-    paths, signals, parts, labels, beside, objects, known, noise_floor, gains, beams = makers
+    paths, signals, without_noise, parts, labels, beside, objects, known, noise_floor, gains, beams = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         known = known or family_powers(paths, objects, progress)
@@ -186,6 +188,8 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
         families, whole = labelling.families_of_cells(sorted_by, fields, len(cells), source.peak_of, noise_floor=noise_floor,
                                                        progress=progress)
         measured = source.measured(cells) if beams is None else power
+        if without_noise is not None:
+            whole, measured = labelling.part_powers({"": without_noise}, cells, gains, beams)[2], power
         found.take_families(families, whole, measured, known.resolved)
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)

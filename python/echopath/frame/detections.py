@@ -30,22 +30,24 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
         transmitters 1 tries those a turn of the map faster and slower, too. Without it, what is too fast for the map has a
         wrong azimuth as well
     progress: callable (stage, fraction), True for bars, or None
-    Objects and ghosts are told apart above the noise margin of the frame's labels, 10 dB where it has none. Of frames whose
-    records are renewed (`retrace`) they are those of all records, which takes a synthesis of its own, and the paths behind them
-    those of mid-frame.
+    Noise is what the signal without noise holds less than half of. Objects and ghosts are told apart above the noise margin of
+    the frame's labels, 10 dB where it has none, by paths that hold the cell; sidelobes more than 60 dB below an echo are of none.
+    Of frames whose records are renewed (`retrace`) they are those of all records, which takes a synthesis of its own, and the
+    paths behind them those of mid-frame.
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
     signals, KeyboardInterrupt on Ctrl-C.
     """
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to detect echoes in, got a record of paths alone")
     parts = next(iter(frame.part_spectra.values()), None)
+    whole = None if parts else _core.range_doppler(frame.cube, frame.radar, **frame.spectrum_settings)
     require_folds(frame.radar, folds)
     settings = {"max_peaks": max_peaks, "folds": folds} if len(_core.virtual_array(frame.radar).elements) > 1 else None
     rules = {"method": method, "false_alarm_rate": false_alarm_rate, "guard_velocity": guard_velocity, "guard_range": guard_range,
              "training_velocity": training_velocity, "training_range": training_range, "rank": rank, "beams": beams}
     found = detected(frame.spectrum, frame.radar, rules, paths=frame.paths, parts=parts, beside=frame.beside_spectra or None,
-                     angles=settings, known=frame._powers_of(objects, progress), noise_margin_db=_noise_margin_db(frame),
-                     signals=_signals_of_families(frame, progress), progress=progress)
+                     angles=settings, known=frame._powers_of(objects, progress), without_noise=whole,
+                     noise_margin_db=_noise_margin_db(frame), signals=_signals_of_families(frame, progress), progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)
 
 

@@ -145,3 +145,24 @@ def test_families_of_renewed_frames_are_made_for_some_receivers_at_a_time(beams,
 def test_nothing_found_is_a_well_shaped_result(beams, retrace):
     frame = ep.simulate(ep.Scene(), radar(3), num_rays=100, noise_seed=1, retrace=retrace, detections={"beams": beams})
     assert len(frame.detections) == 0 and frame.detections.object.shape == (0,)
+
+
+@pytest.mark.parametrize("beams", [False, True])
+def test_noise_of_a_frame_is_what_its_signal_holds_less_than_half_of(beams):
+    """In all channels, or in the beam that found the cell: of 48 channels a few have others on this side or that."""
+    scene, rate = ep.Scene(), 0.2
+    for k, place in enumerate([(9.0, 1.0, -1.0), (6.0, -3.0, -1.0), (4.0, 2.0, -1.0)]):
+        scene.add(ep.actors.pedestrian(phase=0.3 * k), name=f"person {k}", position=place)
+    for seed, place in ((1, (14.0, 3.0, -1.0)), (2, (18.0, -4.0, -1.0))):
+        scene.add(ep.actors.tree(seed=seed), name=f"tree {seed}", position=place)
+    sender = radar(3, num_chirps=128).replace(transmit_power=0.03)
+    frame = ep.simulate(scene, sender, num_rays=2000, max_bounces=1, noise_seed=1)
+    found = ep.detect_frame(frame, beams=beams, false_alarm_rate=rate)
+    clean, noisy = (one.values[:, :, *found.cells.T] for one in (ep.range_doppler(frame.cube, sender), frame.spectrum))
+    if beams:
+        cells = ep.cfar(frame.spectrum, sender, beams=True, false_alarm_rate=rate)
+        weights = _core.find_peaks(frame.spectrum, sender, cells)["beam_weights"]
+        clean, noisy = (np.einsum("ntr,trn->n", weights, one)[None, None] for one in (clean, noisy))
+    echoes, power = (np.mean(np.abs(one) ** 2, axis=(0, 1)) for one in (clean, noisy))
+    assert np.array_equal(found.is_noise, echoes < 0.5 * power)
+    assert 10 < found.is_noise.sum() < len(found) - 10

@@ -161,8 +161,8 @@ py::tuple echoes_together(const Paths& paths, Arg<"times", VectorOf<double>> tim
                           Arg<"begin", Index> begin, Arg<"end", Index> end) {
   const Antenna transmitter = paths.radar.transmitters[antenna_index(*tx, "tx", paths.radar.transmitters.size())];
   const Antenna receiver = paths.radar.receivers[antenna_index(*rx, "rx", paths.radar.receivers.size())];
-  require(*begin >= 0 && *begin <= *end && *end <= paths.num_paths(), "begin", "must lie in 0 to end, and end in the paths",
-          *begin);
+  require(*end >= 0 && *end <= paths.num_paths(), "end", "must lie in 0 to the number of paths", *end);
+  require(*begin >= 0 && *begin <= *end, "begin", "must lie in 0 to end", *begin);
   std::vector<int64_t> indices(*end - *begin);
   std::iota(indices.begin(), indices.end(), *begin);
   std::vector<double> lengths((*times).size() * indices.size());

@@ -55,7 +55,7 @@ def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName], name
     of_root = {name: paths[name] for name in found if name in paths}
     found |= of_root
     for name, globs in named:
-        if name not in of_root:
+        if name not in of_root or tuple(globs) != (name,):
             found[name] = _chosen_class(chosen, name, *globs) or _class_below(paths, globs)
     return found
 

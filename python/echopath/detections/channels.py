@@ -27,16 +27,17 @@ class Channels:
         """{transmitter: its channels, [K] ascending}."""
         return {int(tx): np.flatnonzero(self.indices[:, 0] == tx) for tx in np.unique(self.indices[:, 0])}
 
-    @property
+    @cached_property
     def largest_shift(self) -> float:
         """Bins of range by which the length of a path may differ from that of the first channel, at most."""
-        return float(self._apart[0].max())
+        return float(self._apart(0).max())
 
     @cached_property
     def neighbours(self) -> list:
         """Lists of channels between which no path goes farther than SAME_LINE."""
         groups = []
-        for channel, apart in enumerate(self._apart):
+        for channel in range(len(self.indices)):
+            apart = self._apart(channel)
             near = next((group for group in groups if apart[group].max() <= SAME_LINE), None)
             if near is None:
                 groups.append([channel])
@@ -44,13 +45,16 @@ class Channels:
                 near.append(channel)
         return groups
 
-    @cached_property
-    def _apart(self) -> np.ndarray:
-        """Bins of range by which the length of a path may differ between two channels, at most, [C, C]."""
-        tx, rx = (np.array([antennas[index].position for index in indices]) for antennas, indices in zip(
-            (self._radar.transmitters, self._radar.receivers), self.indices.T))
-        apart = sum(0.5 * np.linalg.norm(places[:, None] - places, axis=-1) for places in (tx, rx))
+    def _apart(self, channel: int) -> np.ndarray:
+        """Bins of range by which the length of a path may differ between a channel and each one, at most, [C]."""
+        apart = sum(0.5 * np.linalg.norm(places - places[channel], axis=-1) for places in self._places)
         return apart / self._radar.waveform.range_resolution
+
+    @cached_property
+    def _places(self) -> list:
+        """[C, 3] m of the transmitters and of the receivers."""
+        antennas = self._radar.transmitters, self._radar.receivers
+        return [np.array([some[index].position for index in indices]) for some, indices in zip(antennas, self.indices.T)]
 
 
 def by_channel(beams):

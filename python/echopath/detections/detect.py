@@ -88,8 +88,9 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;
         in beams power and noise are those of the beam in which a cell is strongest, and what made a detection is told in that
-        beam: of two echoes in one cell it is the one that the beam found. Labels keep powers of all channels alone: with
-        `labels` the part is that of the stronger echo, and without paths no objects are known below the noise of a channel
+        beam: of two echoes in one cell it is the one that the beam found, while `Detections.paths` are those of the whole cell.
+        Labels keep powers of all channels alone: with `labels` the part is that of the stronger echo, and without paths no
+        objects are known below the noise of a channel
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
     paths: of `trace` with that radar, whatever receiver and noise figure it had: objects, ghosts and the paths behind each
         detection
@@ -195,7 +196,10 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
         found.families = labelling.families_of_labels(labels, cells)
         found.resolved = labelling.resolved_labels(labels)
     if labels is not None:
-        found.take_parts(*labelling.label_powers(spectrum, labels, cells, gains), power)
+        names, powers, whole = labelling.label_powers(spectrum, labels, cells, gains)
+        found.take_part_names(names, powers)
+        if paths is None or beams is None:  # those of paths in a beam are what the power in it compares with
+            found.take_echoes(whole, power)
     elif parts is not None:
         found.take_parts(*labelling.part_powers(parts | beside, cells, gains, beams), power)
     elif beside:

@@ -23,6 +23,7 @@ MIN_SEGMENTS = 5       # where any does
 MAX_SEGMENTS = 64
 STAYING = 1e-3         # bins, up to which an echo stays in its bin of range
 BYTES_PER_FIELD = 12   # place and field of a path in a channel
+BYTES_TOGETHER = 48    # of these, while fields in a cell are made of them
 HELD = 0.9999          # of the power of single paths, by the paths that are named
 MAX_CHANNELS = 8       # whose fields are made: an echo fades in one antenna, hardly ever in eight
 MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
@@ -48,6 +49,9 @@ class EchoFields:
     def __init__(self, paths, spectrum):
         self._paths, self._spectrum = paths, spectrum
         self._echoes_of_cell = {}  # {(velocity, range): (echoes with those of the channels, places [N] of its own in them)}
+
+    def __reduce__(self):
+        return type(self), (self._paths, self._spectrum)  # all else follows from these
 
     @cached_property
     def _all(self) -> Channels:
@@ -78,24 +82,27 @@ class EchoFields:
             return
         weights = by_channel(beams)
         behind = weights * gains.of("", *self._all.indices.T[:, :, None], cells[:, 1]).T
-        for weight, gained, (index, field) in zip(weights, behind, self._in_all_channels(cells, progress)):
-            yield index, (weight @ field)[None], np.abs(gained @ field.sum(axis=1)) ** 2
-
-    def _in_all_channels(self, cells, progress):
-        """Yields (indices i64 [K], fields complex [C, K] in sqrt(W)) of the paths that hold each of cells [N, 2], in all
-        channels. Cells are made together as far as MAX_MEMORY holds their paths."""
         keys = [_key(cell) for cell in cells]
         self._follow(keys)
-        room = MAX_MEMORY // (BYTES_PER_FIELD * len(self._all.indices))
         held = [self._holding(cell) for cell in with_progress(keys, len(keys), progress, "paths of cells")]
-        turns = np.cumsum([len(some) for some in held]) // max(room, 1)
+        fields, whole = [np.zeros(len(some), complex) for some in held], np.zeros(len(held), complex)
+        for i, row, of_channels in self._in_all_channels(keys, held):
+            fields[i][row], whole[i] = weights[i] @ of_channels, whole[i] + behind[i] @ of_channels.sum(axis=1)
+        for some, field, power in zip(held, fields, np.abs(whole) ** 2):
+            yield self._echoes["index"][some], field[None], power
+
+    def _in_all_channels(self, cells, held):
+        """Yields (index of a cell, slice of the places [K] of the echoes that hold it, their fields [C, N] in sqrt(W)) in all
+        channels, of all cells. Echoes are made together as far as MAX_MEMORY holds them."""
+        room = max(MAX_MEMORY // (BYTES_TOGETHER * len(self._all.indices)), 1)
+        pieces = [(i, slice(begin, begin + room)) for i, some in enumerate(held) for begin in range(0, len(some), room)]
+        turns = np.cumsum([len(held[i][row]) for i, row in pieces]) // room
         for turn in np.unique(turns):
-            members = np.flatnonzero(turns == turn)
-            keep = _all_of([held[i] for i in members], len(self._power))
+            members = [pieces[k] for k in np.flatnonzero(turns == turn)]
+            keep = _all_of([held[i][row] for i, row in members], len(self._power))
             echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()}, self._all)
-            for i in members:
-                some = np.searchsorted(keep, held[i])
-                yield echoes["index"][some], self._fields(echoes, some, keys[i], self._all)
+            for i, row in members:
+                yield i, row, self._fields(echoes, np.searchsorted(keep, held[i][row]), cells[i], self._all)
 
     def peak_of(self, keep) -> float:
         """Power in W of the strongest cell of the map of the paths where `keep` [P] is true, mean over all channels."""

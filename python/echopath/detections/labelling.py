@@ -138,12 +138,21 @@ class CellLabels:
         self._echoes, self._measured = None, None
 
     def take_families(self, families, echoes, measured, resolved) -> None:
-        """families: [N]; echoes, measured: [N] W, power of all echoes as one field and that of the map, of the same channels"""
-        self.families, self.resolved, self._echoes, self._measured = families, resolved, echoes, measured
+        """families: [N]; echoes, measured: as of `take_echoes`; resolved: set of those whose power the rays know"""
+        self.families, self.resolved = families, resolved
+        self.take_echoes(echoes, measured)
 
     def take_parts(self, names, powers, whole, measured) -> None:
         """names: [K] of parts; powers: [K, N] W; whole: [N] W, of their sum as fields; measured: [N] W, of the map."""
+        self.take_part_names(names, powers)
+        self.take_echoes(whole, measured)
+
+    def take_part_names(self, names, powers) -> None:
+        """names: [K] of parts; powers: [K, N] W"""
         self._part, self._share = _strongest_part(names, powers)
+
+    def take_echoes(self, whole, measured) -> None:
+        """whole, measured: [N] W, power of all echoes as one field and that of the map, of the same channels or beams"""
         self._echoes, self._measured = whole, measured
 
     def take_beside(self, names, powers, measured) -> None:

@@ -92,12 +92,12 @@ def cells_of(paths: _core.Paths, spectrum: _core.RangeDoppler, tx: int = 0, rx: 
     """The PathCells of `path_cells` where all chirps are alike; chirp: that waveform without steps, None: the radar's without
     its steps."""
     waveform, middle = paths.radar.waveform, chirp_times(paths, tx)[1]
-    half = 0.5 * waveform.chirp_duration
+    half, of_chirp = 0.5 * waveform.chirp_duration, waveform if chirp is None else chirp
     cells = PathCells(*(np.empty(paths.num_paths, kind) for kind in (float, float, float, np.int32, np.int32)))
     for some, lengths, amplitudes in echoes_at(paths, [middle - half, middle, middle + half, *around(middle, waveform)], tx, rx):
         cells.length[some] = lengths[1]
         turning = turning_of(*amplitudes[3:], waveform)
-        places = _places(lengths[1], lengths[2] - lengths[0], turning, chirp or waveform, paths.radar, spectrum)
+        places = _places(lengths[1], lengths[2] - lengths[0], turning, of_chirp, paths.radar, spectrum)
         for name, values in zip(_PLACES, places, strict=True):
             getattr(cells, name)[some] = values
     return cells

@@ -52,11 +52,12 @@ def _in_radar(boxes, radar, time: float) -> dict:
 
 def _cross_sections(found: FamilyPowers, radar, centres, time: float) -> dict:
     """Received power of the direct echoes and the cross section that it means."""
-    direct = {family.object: power for family, power in zip(*found) if not family.is_ghost}
+    direct = {family.object: power for family, power in zip(found.families, found.powers) if not family.is_ghost}
     powers = [direct.get(name) for name in found.families.objects]
     unit = isotropic_power(radar, centres, time)
     unit = np.where(unit > 0.0, unit, np.nan)
-    received, low, high = (np.array([getattr(one, name, 0.0) for one in powers], float) for name in ("power", "low", "high"))
+    received, low, high = (np.array([0.0 if one is None else getattr(one, name) for one in powers])
+                           for name in ("power", "low", "high"))
     return {"received": received, "rcs": received / unit, "rcs_low": low / unit, "rcs_high": high / unit}
 
 

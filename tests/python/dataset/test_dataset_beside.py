@@ -32,12 +32,14 @@ def test_interference_is_clutter_that_does_not_exist_in_osi(frame):
     assert told == {("interference", 0.0, 3), ("", 1.0, 1)}  # CLASSIFICATION_CLUTTER and CLASSIFICATION_OTHER
 
 
-def test_what_leaks_from_antenna_to_antenna_has_no_cross_section(frame):
-    """It is within some micrometres of 0 m, and beside the antennas: it had anything from -80 to 330 dBsm."""
+@pytest.mark.parametrize("waveform, leakage_db", [(WAVEFORM, -80.0), (ep.ChirpSequence(
+    start_frequency=76e9, bandwidth=200e6, num_samples=128, sampling_rate=10e6, num_chirps=32), -110.0)])
+def test_what_leaks_from_antenna_to_antenna_has_no_cross_section(frame, waveform, leakage_db):
+    """It is within micrometres of 0 m where it is strong, and beside the antennas: it had anything from -130 to 330 dBsm."""
     antennas = [ep.Antenna((0, 0.0019 * k, 0), pattern=ep.CosinePower(2.0)) for k in range(3)]
     for turn, seed in ((0.0, 1), (0.3, 2), (-2.0, 3), (1.3, 4)):
-        radar = ep.Radar(WAVEFORM, transmitters=antennas[:1], receivers=antennas[1:], yaw=turn, position=(3.0, -7.0, 1.0),
-                         receiver=ep.Receiver(leakage_db=[[-80.0, -80.0]]))
+        radar = ep.Radar(waveform, transmitters=antennas[:1], receivers=antennas[1:], yaw=turn, position=(3.0, -7.0, 1.0),
+                         receiver=ep.Receiver(leakage_db=[[leakage_db, leakage_db]]))
         found = ep.simulate(ep.Scene(frame.scene), radar, num_rays=100, noise_seed=seed, detections=True).detections
         leaked = found.part == "leakage"
         assert leaked.any() and np.isnan(cross_sections_dbsm(found, radar, 0.0)[leaked]).all()

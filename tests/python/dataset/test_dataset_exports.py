@@ -170,6 +170,8 @@ def test_what_an_object_carries_leaves_others_of_its_name_their_class():
     bag = {"name": "rider", "actor": "box", "parent": "sledge"}
     for objects in ([rider, sledge, bag], [sledge, bag, rider]):
         assert classes_of(objects, {}) == {"rider": "pedestrian", "sledge": "static"}
+        for glob, expected in (("sledge/rider", "static"), ("rider", "pedestrian")):  # what labels call so
+            assert classes_of(objects, {}, [("rider", (glob,))])["rider"] == expected
 
 
 def test_labels_of_what_one_object_carries_have_its_class_whatever_another_carries():

@@ -114,6 +114,29 @@ material = "{material}"
         dataset.Template(path).scene_file(0)
 
 
+@pytest.mark.parametrize("first, second, places", [
+    ('name = "lid"\ncount = 2\nparent = "first"', 'name = "lid_1"\nparent = "second"', ["lid_1", "second/lid_1"]),
+    ('name = "lid_1"\nparent = "first"', 'name = "lid"\ncount = 2\nparent = "second"', ["lid_1", "second/lid_1"]),
+    ('name = "lid"\ncount = 2', 'name = "lid_1"\nparent = "second"', ["lid_1", "second/lid_1"]),
+    ('name = "lid"\nparent = "first"', 'name = "lid"\nparent = {choice = ["second", "second"]}', ["lid", "objects[{}]/lid"])])
+def test_copies_and_drawn_carriers_have_draws_of_their_own_too(tmp_path, first, second, places):
+    carriers = "".join(f'[[objects]]\nname = "{name}"\ngroup = true\n' for name in ("first", "second"))
+    lids = "".join(f"""[[objects]]
+{own}
+actor = "plate"
+parameters = {{width = 0.1, height = {{uniform = [0.0, 1.0]}}}}
+material = "metal"
+""" for own in (first, second))
+    text = HEAD + SCENE.replace("[trace]", carriers + lids + "[trace]")
+    last = text.count("[[objects]]") - 1
+    drawn = dataset.Template(written(tmp_path, text)).draw(0)
+    keys = [f"objects.{place}.parameters.height" if "[" not in place else f"{place.format(last)}.parameters.height"
+            for place in places]
+    assert drawn.values[keys[0]] != drawn.values[keys[1]]
+    heights = {one["parameters"]["height"] for one in drawn.table["objects"] if one["name"].startswith("lid")}
+    assert {drawn.values[key] for key in keys} <= heights
+
+
 def require_apart(template, num_scenes: int) -> None:
     """All but the wall have middles 1 m apart or more at time 0, and in some scene not much more."""
     near = 0

@@ -318,7 +318,7 @@ def test_the_cross_polarised_receiver_gets_its_share(share, slant_deg):
     total = ep.trace(scene, radar, num_rays=1 << 14, max_bounces=1, polarization="scalar").power
     time = [paths.frame.trace_time]
     powers = [np.abs(paths.amplitudes(time, 0, receiver)[0]) ** 2 for receiver in (0, 1)]
-    np.testing.assert_allclose(powers[0] + powers[1], total, rtol=RIGHT_ANGLE_TOLERANCE, atol=0)  # of every hit
+    np.testing.assert_allclose(powers[0] + powers[1], total, rtol=RIGHT_ANGLE_TOLERANCE, atol=0, equal_nan=False)
     assert powers[0].sum() / total.sum() == pytest.approx(1 - share, abs=SPLIT_TOLERANCE)
     assert powers[1].sum() / total.sum() == pytest.approx(share, abs=SPLIT_TOLERANCE)
 
@@ -335,7 +335,8 @@ def test_no_chain_of_rough_and_mirroring_bounces_gains_or_loses_power(share):
     launched_vertically = np.linalg.norm(paths.jones[:, :, 1], axis=1)
     diffuse = paths.diffuse != 0
     expected = np.abs(scalar.weight)[diffuse]
-    np.testing.assert_allclose(np.abs(paths.weight * launched_vertically)[diffuse], expected, rtol=WEIGHTS, atol=0)
+    np.testing.assert_allclose(np.abs(paths.weight * launched_vertically)[diffuse], expected, rtol=WEIGHTS, atol=0,
+                               equal_nan=False)
 
 
 def matrices_by_hit(paths, hit):
@@ -359,7 +360,7 @@ def test_both_orders_of_a_ghost_carry_the_same_in_exchanged_polarisations(mirror
     opposite = np.array([[1, -1], [-1, 1]])  # the horizontal of the way back points the other way
     found = np.array([back[hit] for hit in common])
     expected = np.array([there[hit] for hit in common]).swapaxes(1, 2) * opposite
-    np.testing.assert_allclose(found, expected, rtol=0, atol=MATRIX_TOLERANCE)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=MATRIX_TOLERANCE, equal_nan=False)
 
 
 def test_the_split_stays_with_the_hit_while_it_moves():

@@ -87,7 +87,7 @@ def guard_rail(*, length: float | None = None, spacing: float = 2.0, edge: float
         length = LENGTH if length is None else length
         places = _post_places(length, spacing) - length / 2
         posts = [_post(x, POST_FRONT, RAIL_TOP - 0.03) for x in places]
-        rail = _rail(length, max(1, int(np.ceil(length / edge))))
+        rail = _rail(length, np.linspace(0.0, 1.0, int(np.ceil(length / edge)) + 1))
     elif length is not None:
         raise ValueError(f"length: cannot be given beside points, which say how long the rail is, got {length:g}")
     else:
@@ -102,24 +102,27 @@ def _post_places(length, spacing):
 
 def _checked_line(points) -> Path:
     line = checked_path(checked_points("points", points), None)
-    if not line.length <= LONGEST_ROW or _bend_of(line) * SMALLEST_RADIUS > 1.0:
+    bend = np.linalg.norm(line.at(line.fine_places(BENDS))[2], axis=1).max()
+    if not line.length <= LONGEST_ROW or bend * SMALLEST_RADIUS > 1.0:
         raise refused(ValueError, "points", f"those of a line of at most {LONGEST_ROW:g} m that nowhere bends with a radius "
                       f"below {SMALLEST_RADIUS:g} m", points)
     return line
 
 
-def _bend_of(line: Path) -> float:
-    """The largest curvature of a line in 1/m."""
-    return float(np.linalg.norm(line.at(line.fine_places(BENDS))[2], axis=1).max())
-
-
 def _along(line: Path, spacing, edge):
     """(rail, [post, ...]), surfaces along a line."""
     posts = [_bent(line, _post(0.0, POST_FRONT, RAIL_TOP - 0.03), at) for at in _post_places(line.length, spacing)]
-    bend = _bend_of(line)
-    sides = min(edge, np.sqrt(8.0 * STRAY / bend) if bend > 0.0 else edge)
-    vertices, triangles = _rail(line.length, max(1, int(np.ceil(line.length / sides))))
-    return (_bent(line, (vertices, triangles))[0], triangles), posts
+    return _bent(line, _rail(line.length, _cuts_along(line, edge))), posts
+
+
+def _cuts_along(line: Path, edge):
+    """Shares [N + 1] of a line, from 0 to 1, between which sides stray little from it and are no longer than `edge` m."""
+    places = np.unique(np.concatenate([line.fine_places(BENDS), np.linspace(0.0, line.length, BENDS)]))
+    bend = np.linalg.norm(line.at(places)[2], axis=1)
+    sides = np.minimum(edge, np.sqrt(8.0 * STRAY / np.maximum(bend, np.finfo(float).tiny)))
+    steps = np.diff(places) / np.minimum(sides[:-1], sides[1:])
+    count = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.interp(np.linspace(0.0, count[-1], int(np.ceil(count[-1])) + 1), count, places) / line.length
 
 
 def _bent(line: Path, surface, at=None):
@@ -151,8 +154,8 @@ def _post(x, y, height):
     return outward((vertices, np.concatenate([sides, cap[:, ::-1], cap + 12])))
 
 
-def _rail(length, pieces):
-    """So many pieces of the rail one behind the other, without walls between them."""
+def _rail(length, cuts):
+    """Pieces of the rail one behind the other, without walls between them; cuts: shares [N + 1] of the length, from 0 to 1."""
     line = np.array(RAIL_LINE)
     dense = np.interp(np.linspace(0, 1, 49), np.linspace(0, 1, len(line)), np.arange(len(line)))
     z = np.interp(dense, np.arange(len(line)), line[:, 0])
@@ -162,7 +165,7 @@ def _rail(length, pieces):
     normal = np.column_stack([slope[:, 1], -slope[:, 0]]) / np.linalg.norm(slope, axis=1)[:, None]
     outline = np.concatenate([front, (front + RAIL_THICKNESS * normal)[::-1]])
     vertices, triangles = extruded(outline, length)
-    return _cut_along_x(vertices, triangles, len(outline), pieces)
+    return _cut_along_x(vertices, triangles, len(outline), cuts)
 
 
 def _smoothed(values):
@@ -172,10 +175,10 @@ def _smoothed(values):
     return values
 
 
-def _cut_along_x(vertices, triangles, count, pieces):
-    """The extruded surface with its long sides in `pieces` pieces; its first 2 `count` triangles are those sides."""
-    first, last = vertices[:count], vertices[count:]
-    rings = np.concatenate([first + (last - first) * share for share in np.linspace(0.0, 1.0, pieces + 1)])
+def _cut_along_x(vertices, triangles, count, cuts):
+    """The extruded surface with its long sides cut at shares [N + 1] of them; its first 2 `count` triangles are those sides."""
+    first, last, pieces = vertices[:count], vertices[count:], len(cuts) - 1
+    rings = np.concatenate([first + (last - first) * share for share in cuts])
     sides, caps = triangles[:2 * count], triangles[2 * count:]
     along = np.concatenate([sides + step * count for step in range(pieces)])
     return rings, np.concatenate([along, np.where(caps >= count, caps + (pieces - 1) * count, caps)])

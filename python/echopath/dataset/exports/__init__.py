@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..._core import Radar
 from ...arguments import part_names
 from ...arguments.checks import refused
+from ...arguments.part_names import LEAKAGE
 from ...base.storage.files import folder_written_whole, require_writable
 from ...detections.detections import Detections
 from ...frame.detections import detect_frame
@@ -59,10 +60,10 @@ def detections_of(dataset: Dataset, one: DatasetFrame) -> Detections:
 def cross_sections_dbsm(found: Detections, radar: Radar, time: float) -> NDArray[np.float64]:
     """[D] dB re 1 m^2 of detections whose directions are known, by the radar equation with the gains of the first antennas.
 
-    Nearer than a wavelength, where what leaks from antenna to antenna is, it does not hold: NaN.
+    It does not hold of what leaks from antenna to antenna, nor nearer than a wavelength: NaN.
     radar: that the detections are of, as it stands at `time` in s
     """
     world = radar.world_from_radar(time)
     places = found.points @ world[:3, :3].T + world[:3, 3]
-    is_far = found.range >= radar.waveform.wavelength
-    return np.where(is_far, cross_section_dbsm(found.power, radar, places, time), np.nan)
+    holds = (found.range >= radar.waveform.wavelength) & (found.part != LEAKAGE)
+    return np.where(holds, cross_section_dbsm(found.power, radar, places, time), np.nan)

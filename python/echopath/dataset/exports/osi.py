@@ -39,10 +39,10 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     feature_data.radar_sensor: one, with measurement_time in the middle of the frame, cycle_counter the place of the frame, and
         detections: position (distance m, azimuth and elevation rad, left and up positive, in the sensor's frame),
         radial_velocity (m/s, as measured, approaching positive, as OSI has it), rcs (dBsm, by the radar equation with the gains
-        of the first antennas, NaN nearer than a wavelength), snr (dB), object_id (of a road user of the ground truth, the same
-        in all frames of a scene; 2^64 - 1: the surroundings or noise), existence_probability 0 of noise and of what comes in
-        beside the echoes (interference, rain, leakage, residue), 1 of echoes; classification OTHER of real echoes, INVALID of
-        ghosts, CLUTTER of what has probability 0. number_of_valid_detections: those that are not INVALID
+        of the first antennas, NaN of leakage and nearer than a wavelength), snr (dB), object_id (of a road user of the ground
+        truth, the same in all frames of a scene; 2^64 - 1: the surroundings or noise), existence_probability 0 of noise and of
+        what comes in beside the echoes (interference, rain, leakage, residue), 1 of echoes; classification OTHER of real
+        echoes, INVALID of ghosts, CLUTTER of what has probability 0. number_of_valid_detections: those that are not INVALID
     sensor_view.global_ground_truth: the host vehicle (host_vehicle_id; place, angles and their rates in the world, a point)
         and all road users of the scene: id (place in `Dataset.classes`), type and vehicle_classification by their classes,
         source_reference.identifier with the name of the object, and where the template has [truth], base with the box, its

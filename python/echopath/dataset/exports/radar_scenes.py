@@ -71,11 +71,11 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
         points that no moving road user makes; "omit": they are left out. `write_osi` has them as CLUTTER of
         existence_probability 0
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
-    the radar equation with the gains of the first antennas, NaN nearer than a wavelength), vr and vr_compensated (m/s, receding
-    positive; the second without the radar's own motion, the smallest of those that look the same, with `folds` in [detections]
-    to the transmitters in turns; 0 of frames of one chirp, to which all do), x_cc, y_cc (m, car frame), x_seq, y_seq (m,
-    world), uuid, track_id ("" of what is static or clutter), label_id; and behind them ghost_label, the label of the Radar
-    Ghost Dataset (Kraus et al. 2021): 1000 times its class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the
+    the radar equation with the gains of the first antennas, NaN of leakage and nearer than a wavelength), vr and vr_compensated
+    (m/s, receding positive; the second without the radar's own motion, the smallest of those that look the same, with `folds`
+    in [detections] to the transmitters in turns; 0 of frames of one chirp, to which all do), x_cc, y_cc (m, car frame), x_seq,
+    y_seq (m, world), uuid, track_id ("" of what is static or clutter), label_id; and behind them ghost_label, the label of the
+    Radar Ghost Dataset (Kraus et al. 2021): 1000 times its class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the
     background. A ghost has the track and the label_id of its object.
     Ranges and azimuths count from where sensors.json has the sensor in the car: between transmitters and receivers
     (`Detections.centre`). odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame, and

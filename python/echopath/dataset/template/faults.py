@@ -10,7 +10,7 @@ from typing import Any
 from ... import _core
 from ...scene_file.lines import key_lines, line_of, with_table
 from .distributions import with_kinds
-from .references import places_of
+from .references import copies_of, places_of
 
 _PLACE = re.compile(r"objects\[(\d+)\]")  # of an object among those that were drawn
 
@@ -20,8 +20,8 @@ class Faults:
 
     def __init__(self, path: Path, table: dict[str, Any]):
         self._path = path
-        objects = table.get("objects")
-        self._places = places_of(objects) if isinstance(objects, list) else []
+        objects = table.get("objects") if isinstance(table.get("objects"), list) else []
+        self._copies = [copies_of(place, entry) if place else "" for place, entry in zip(places_of(objects), objects)]
         self._lines = key_lines(path.read_text(encoding="utf-8-sig"))
 
     @contextmanager
@@ -64,7 +64,7 @@ class Faults:
 
     def _written(self, key: str) -> str:
         """The key as the template has it: objects.car_2.yaw stands at objects[1].yaw, if the second entry is that of cars."""
-        for index, place in enumerate(self._places):
-            if place and (found := re.match(rf"{re.escape(place)}(_\d+)?(?=\.|$)", key)):
+        for index, copies in enumerate(self._copies):
+            if copies and (found := re.match(rf"{copies}(?=\.|$)", key)):
                 return f"objects[{index}]{key[found.end():]}"
         return f"dataset.{key}" if key in ("frames", "interval") else key

@@ -50,17 +50,31 @@ class Step(NamedTuple):
 def places_of(entries: list[Any]) -> list[str]:
     """The dotted path of each entry of a template's objects, "" of one without a name.
 
-    It has the name of the entry, and of one whose name another has at the root, or before it, also that of what carries it.
+    It has the name of the entry. Where an entry at the root or an earlier one may have copies of that name, it is that of what
+    carries it, too; or the number of the entry in its place, where that is drawn or has such copies as well.
     """
     named = [one if isinstance(one, dict) and isinstance(one.get("name"), str) else {} for one in entries]
-    places = {f"objects.{one['name']}" for one in named if one and not one.get("parent")}
+    taken = [(f"objects.{one['name']}", one) for one in named if one and not one.get("parent")]
     found = []
-    for one in named:
-        own, carrier = f"objects.{one['name']}" if one else "", one.get("parent")
-        is_again = own in places and carrier and isinstance(carrier, str)
-        found.append(f"objects.{carrier}/{one['name']}" if is_again else own)
-        places.add(own)
+    for index, one in enumerate(named):
+        name, carrier = one.get("name", ""), one.get("parent")
+        ways = [f"objects.{name}", f"objects.{carrier}/{name}" if isinstance(carrier, str) else "", f"objects[{index}]/{name}"]
+        place = "" if not one else ways[0] if not carrier else next(
+            way for way in ways if way and not any(_meet(way, one, *other) for other in taken))
+        found.append(place)
+        taken.append((place, one))
     return found
+
+
+def copies_of(place: str, entry: dict[str, Any]) -> str:
+    """A regular expression for the dotted paths of the objects of an entry."""
+    return re.escape(place) + (r"_[1-9]\d*" if "count" in entry else "")
+
+
+def _meet(place: str, entry: dict[str, Any], other_place: str, other: dict[str, Any]) -> bool:
+    """Whether objects of two entries may have one path."""
+    return bool(place == other_place or re.fullmatch(copies_of(place, entry), other_place)
+                or re.fullmatch(copies_of(other_place, other), place))
 
 
 class Source:
@@ -80,8 +94,7 @@ class Source:
     def _begin(self, path: str) -> tuple[Any, str]:
         """The table in which a path begins, an object by its name or all the rest, and the path of that table."""
         for place, entry in self._entries:
-            copies = r"_[1-9]\d*" if "count" in entry else ""
-            if found := re.match(re.escape(place) + copies + r"(?=\.)", path):
+            if found := re.match(copies_of(place, entry) + r"(?=\.)", path):
                 return entry, found[0]
         if path.startswith("objects"):
             raise KeyError(path)

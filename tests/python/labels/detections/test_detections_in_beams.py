@@ -55,6 +55,20 @@ def test_an_echo_is_told_from_stronger_ones_of_other_directions(retrace, speed):
     assert in_all.object[same_cell] == in_all.part[same_cell] == "clutter"
 
 
+def test_labels_tell_the_part_and_paths_the_object_in_the_beam():
+    """Labels have the powers of all channels: noise is told by the paths in the beam, whose power the map has there."""
+    sender = radar(3)
+    paths = ep.trace(arc(), sender, num_rays=5000, max_bounces=1)
+    parts = ep.decompose(paths, sender, {name: f"T '{mesh}' R" for name, mesh in OBJECTS.items()})
+    spectrum = ep.range_doppler(ep.add_noise(sum(parts.values()), sender, seed=1), sender)
+    labels = ep.annotate(paths, parts, sender, objects=OBJECTS)
+    asked = {"beams": True, "false_alarm_rate": 1e-3, "paths": paths, "objects": OBJECTS}
+    found, by_paths = ep.detect(spectrum, sender, labels=labels, **asked), ep.detect(spectrum, sender, **asked)
+    assert (found.object[of_target(found)], found.part[of_target(found)]) == ("target", "clutter")
+    assert np.array_equal(found.is_noise, by_paths.is_noise) and np.array_equal(found.object, by_paths.object)
+    assert found.is_noise.any()
+
+
 def test_parts_have_the_power_of_the_sum_of_channels_toward_the_beam():
     """Of transmitters at one place: the phase that motion adds between their turns is that of the cell's velocity."""
     sender = radar(2)

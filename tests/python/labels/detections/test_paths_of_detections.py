@@ -1,6 +1,8 @@
 """The paths behind a detection, against the signal that they make by themselves."""
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,19 @@ def test_the_paths_behind_a_detection_make_its_cell_and_the_others_do_not(sphere
     for number, name in enumerate(TARGETS):
         index = expect_paths_hold(found, paths, radar, spectrum, nearest(found, name))
         assert set(mesh[index]) == {number}
+
+
+def test_a_pickle_holds_what_the_paths_of_cells_follow_from_and_no_more(spheres):
+    """What is kept beside it has names that change from version to version."""
+    radar, paths, spectrum = spheres
+    found = ep.detect(spectrum, radar, paths=paths)
+    before = pickle.dumps(found)
+    told = [found.paths(i) for i in range(len(found))]
+    assert len(pickle.dumps(found)) == len(before)
+    again = pickle.loads(before)
+    for i, (index, share) in enumerate(told):
+        np.testing.assert_array_equal(again.paths(i)[0], index)
+        np.testing.assert_array_equal(again.paths(i)[1], share)
 
 
 @pytest.fixture(scope="module")

@@ -74,7 +74,10 @@ std::string slide_warning(const Validity& report) {
   return lead + parts_of_frame(report);
 }
 
-std::string advice(const Validity& report) { return "Trace " + (is_by_array(report) ? kTooWide : parts_of_frame(report)); }
+std::string advice(const Validity& report) {
+  if (is_by_array(report)) return std::string("Trace ") + kTooWide;
+  return "Trace " + parts_of_frame(report) + (report.has_array ? " What is at rest wants parts of the array instead." : "");
+}
 
 std::string missing_warning(const ObjectValidity& object, const Validity& report) {
   const std::string margin = with_digits(2, 10.0 * std::log10(object.seen_power / report.cell_noise));
@@ -102,7 +105,8 @@ std::string object_concerns(const ObjectValidity& object, const Validity& report
     text += (text.empty() ? "" : ", ") + percent(object.*share) + " " + words;
   };
   add(&ValidityShares::new_surface, "of what is seen of it appears");
-  add(&ValidityShares::blocked, "of its power is blocked at some time");
+  add(&ValidityShares::blocked, report.has_array ? "of its power is blocked at some time or for some antennas"
+                                                 : "of its power is blocked at some time");
   add(&ValidityShares::left, "leaves its surface");
   add(&ValidityShares::slid, "slides");
   add(&ValidityShares::turned, "turns to or away from the rays");

@@ -262,7 +262,7 @@ def _planes(case: Case):
         return True, "planes that cover their Fresnel zones where they mirror, for all rays over them; a trace tells which"
     count, meshes = imaged_planes(case.paths)
     if count == 0:
-        return False, "no plane covers its Fresnel zone where it would mirror"
+        return False, "no plane that is not marked covers its Fresnel zone where it would mirror"
     corners = f"; orders of over {MOST_AT_CORNER} bounces about one corner may count twice"
     return True, (f"{counted(count, 'plane')} of {case.named(meshes)}; their Fresnel zones are covered"
                   f"{corners if case.settings.max_bounces > MOST_AT_CORNER else ''}")

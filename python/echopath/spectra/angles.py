@@ -183,8 +183,9 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     peak_range_db: dB below the strongest of the cell, within which others count
     folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
         tell apart ("tdm"); less than half the number of transmitters. Those that stand in even steps, in the order of their
-        turns, where receivers have no extent, as a column beside a row of receivers, tell none: a fold looks like another
-        elevation, unless one is given here; another order of the transmitters tells them
+        turns, where receivers have no extent, as a column beside a row of receivers, or so many of which along their line that
+        a turn of the map is a beam of the array, tell none: a fold looks like another direction, unless one is given here;
+        another order of the transmitters tells them
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
         beams, as in `beamform`
     progress: callable (stage, fraction), True for bars, or None
@@ -206,5 +207,5 @@ def require_told_folds(radar: _core.Radar, folds: int) -> None:
     in_turns = radar.multiplexing == "tdm" and 0 < 2 * folds < len(radar.transmitters)
     if in_turns and turns_look_like_directions(radar):
         raise refused(ValueError, "folds", "0 where transmitters stand in even steps in the order of their turns, across the "
-                      "line of the receivers: a fold looks like another direction, and another order of the transmitters tells "
-                      "them apart", folds)
+                      "line of the receivers or many of them along it: a fold looks like another direction, and another order "
+                      "of the transmitters tells them apart", folds)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -268,6 +269,8 @@ def test_a_run_takes_the_files_of_an_earlier_one_along(scene_path, tmp_path):
     scene_path.write_text(SCENE + "[labels]\n[detections]\n")
     assert call("run", scene_path, "--out", out, "--rays", "500", "--truth", "--part", "strong=power > 1e-30").returncode == 0
     assert {"choice.png", "detections.csv", "truth.csv", "labels_choice.png", "label_maps"} <= {one.name for one in out.iterdir()}
+    told = call("info", out / "frame.h5").stdout
+    assert "cells labelled, choice" in told and re.search(r"^\d+ detections?$", told, re.MULTILINE) and "objects " in told
     (out / "notes.txt").write_text("mine")
     scene_path.write_text(SCENE)
     for folder in (out, fresh):

@@ -284,7 +284,7 @@ def test_planes_that_image_themselves_are_counted_and_named():
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.1, 0.1), name="small", material=SPECULAR, position=(8, 0, 0))
     assert effect_of_planes(scene) == rules.Effect("large planes by images", False,
-                                                   "no plane covers its Fresnel zone where it would mirror")
+                                                   "no plane that is not marked covers its Fresnel zone where it would mirror")
     square = np.array([[-20, -20, 0], [20, -20, 0], [20, 20, 0], [-20, 20, 0.0]])
     for name, corners in (("floor", square + [0, 0, -2]), ("wall", square[:, [0, 2, 1]] + [0, 5, 0])):
         scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name=name, material=SPECULAR)

@@ -32,7 +32,8 @@ def folded(velocities: NDArray[np.float64], ambiguity: float) -> NDArray[np.floa
 def turns_look_like_directions(radar: Any) -> bool:
     """Whether transmitters in turns have the phases of one fold of velocity for another direction, too, at the same receivers.
 
-    So those have that stand in even steps, in the order of their turns, where the receivers have no extent.
+    So those have that stand in even steps, in the order of their turns, where the receivers have no extent, or so little of it
+    beside the transmitters' that the phases of a fold, one beam of the array aside, differ by less than _ALIKE along it.
     """
     ends = radar.transmitters, radar.receivers
     sending, hearing = (np.array([antenna.position for antenna in antennas]) for antennas in ends)

@@ -32,6 +32,7 @@ from ..sequence.folder import NAME as SEQUENCE_FILE
 from ..signals.measures import with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
+from .labels import LABELS_NAME
 from .lists import more_line
 from .model_info import describe_model
 from .run import FRAME_NAME
@@ -39,15 +40,14 @@ from .run import FRAME_NAME
 
 def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     """Lines that say what is in a scene file or a template (TOML), a frame file (HDF5), a mesh file or a foreign scene
-    (load_model), and in a folder of a frame, of frames in time or of a dataset.
+    (load_model), and in a folder of a frame, of its labels, of frames in time or of a dataset.
 
     selections: of paths, also to be told of; of frame files
     unit, up: of foreign files, as of load_model; None: as the file says
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
     """
     path = Path(path)
-    if os.path.exists(path / FRAME_NAME):
-        path = path / FRAME_NAME
+    path = next((path / name for name in (FRAME_NAME, LABELS_NAME) if os.path.exists(path / name)), path)
     suffix = file_and_group(path)[0].suffix.lower()
     selections = [ep.Selection(selection) for selection in selections]
     if selections and suffix not in FRAME_SUFFIXES:

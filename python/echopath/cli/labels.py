@@ -14,6 +14,8 @@ from .run import DETECTIONS_NAME, chosen_partition
 from .typed_names import told_as
 from .warned import pictures_warned
 
+LABELS_NAME = "labels.h5"
+
 
 def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, progress=None) -> list[str]:
     """Labels the map of a frame file, writes labels.h5, detections.csv, maps and pictures, and says what is in them.
@@ -35,7 +37,7 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
         frame.detections.to_csv(folder / DETECTIONS_NAME)
         detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"),
                                        file=DETECTIONS_NAME)
-    written = [folder / "labels.h5"]
+    written = [folder / LABELS_NAME]
     save_labels(frame.labels, written[0])
     with pictures_warned("the labels are written, but not all of their pictures"):
         written.extend(write_labels(frame, folder, frame.selections | chosen))

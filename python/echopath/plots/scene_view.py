@@ -29,6 +29,7 @@ WIDE = 2.2                              # width of the view in perspective over 
 FILLED, MOST_ZOOM = 0.72, 1.75          # share of the height that a scene fills; the rest is for the labels of the axes
 NEARER = 0.35                           # how much larger the perspective draws the near end of a scene that is all depth
 RADAR_LABEL = "radar"
+MIDDLE = 0.1                            # of the longer side of an object, to either side of its middle: what has its name above
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
 MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
@@ -164,7 +165,8 @@ def _small_mirrors(scene, time: float, low, high):
 
 
 def _places_of(scene, names, time: float) -> dict:
-    """(lowest, highest) corner [3] of each object, {name: corners}; {} of too many. names: of the objects of meshes, or None"""
+    """(lowest, highest) corner [3] of the middle of each object, {name: corners}; {} of too many. names: of the objects of
+    meshes, or None"""
     objects = {}
     for mesh_id, name in enumerate(names):
         if name is not None:
@@ -172,7 +174,17 @@ def _places_of(scene, names, time: float) -> dict:
     if len(objects) > MOST_NAMES:
         return {}
     vertices = {name: np.concatenate(parts) for name, parts in objects.items()}
-    return {name: (points.min(axis=0), points.max(axis=0)) for name, points in vertices.items()}
+    return {name: _middle_of(points) for name, points in vertices.items()}
+
+
+def _middle_of(points) -> tuple:
+    """(lowest, highest) corner [3] of the points [N, 3] of an object in the middle of its longer side: what is bent, as a rail
+    along a curve, is not where its box is."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    longer = int(np.argmax((high - low)[:2]))
+    away = np.abs(points[:, longer] - 0.5 * (low + high)[longer])
+    some = points[away <= max(away.min(), MIDDLE * (high - low)[longer])]
+    return np.append(some[:, :2].min(axis=0), low[2]), np.append(some[:, :2].max(axis=0), high[2])
 
 
 def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:

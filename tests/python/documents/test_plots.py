@@ -148,6 +148,15 @@ def test_parts_are_cropped_to_what_moves_and_the_whole_is_not(spectrum):
     assert upper.get_images()[0].get_clim() == lower.get_images()[0].get_clim()
 
 
+@pytest.mark.parametrize("above_db, is_shown", [(9.0, False), (11.0, True)])
+def test_what_is_far_stronger_than_all_that_moves_in_a_part_is_shown(spectrum, above_db, is_shown):
+    """As a rail before which a ghost of it moves: the power above the panel is that of the rail."""
+    values = with_clutter(spectrum).values
+    values[0, 0, 32, 110] *= 10.0 ** (above_db / 20.0)
+    left, right = plot_partition({"all of it": with_values(spectrum, values)}).axes[0].get_xlim()
+    assert left < 6.0 and (right > 16.5) == is_shown
+
+
 def test_parts_are_shown_whole_to_a_radar_that_moves(spectrum):
     """To it what stands has a velocity, too: none tells what moves."""
     part, whole = with_clutter(spectrum), with_clutter(spectrum)
@@ -350,6 +359,17 @@ def test_a_radar_that_stands_far_from_the_origin_leaves_room_for_the_pictures(tm
     scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(20.0, 500.0, 1.0))
     radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=2, chirp_interval=1e-4, position=(-3.0, 500.0, 1.0))
     save_png(plot_scene(scene, ep.trace(scene, radar, num_rays=500)), tmp_path / "scene.png")
+
+
+def test_the_name_of_a_bent_object_stands_at_the_object():
+    """In its box that of a rail along a curve would be as far beside it as the curve is deep, 8 m here."""
+    scene = ep.Scene()
+    scene.add(ep.actors.guard_rail(points=[(5.0, 0.0), (15.0, 1.0), (25.0, 8.0), (30.0, 16.0)]), name="rail")
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    from_above = plot_scene(scene, ep.trace(scene, radar, num_rays=500)).axes[1]
+    (name,) = (text for text in from_above.texts if text.get_text() == "rail")
+    x, y = name.xy if hasattr(name, "xy") else name.get_position()
+    assert 16.0 < x < 19.0 and 1.0 < y < 4.0
 
 
 def test_a_body_of_mirrors_is_shown_whole_and_a_road_as_far_as_the_rest_goes():

@@ -38,6 +38,7 @@ def test_labels_of_a_frame_file_are_the_same_bits(frame, labels, saved):
 def test_info_tells_of_a_file_of_labels_alone(frame, tmp_path):
     ep.save_labels(frame.labels, tmp_path / "labels.h5")
     told = "\n".join(describe_file(tmp_path / "labels.h5"))
+    assert "\n".join(describe_file(tmp_path)) == told  # the folder that they were written to
     cells = {name: np.count_nonzero(of.mask) for name, of in frame.labels.items()}
     assert "labels of a frame, without its map and paths" in told
     assert all(f"{count:,} of" in told and f"labelled, {name}" in told for name, count in cells.items())

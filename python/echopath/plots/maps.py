@@ -27,7 +27,6 @@ NOISE_CELLS = 1e7            # of maps: the highest of as many cells of noise is
 RANGE_MARGIN = 0.8           # m, shown around the signal at least
 VELOCITY_MARGIN = 0.5        # m/s, likewise
 CELLS_OF_MARGIN = 1.5        # likewise: the cell of the signal whole, and one beyond it
-FAR_ABOVE_DB = 10.0          # what moves: a part whose strongest cell stands so far above it is shown with that
 MAP_SIZE = 9.0, 4.4          # inches, of one map
 LEVEL = optional(real(-1e4, 1e4, "dBm"))
 _DRAWN = "values", "velocity"  # attributes that tell a map
@@ -133,9 +132,8 @@ def draw_range_doppler(spectrum: _core.RangeDoppler, *, ax: Axes | None = None, 
 def plot_partition(spectra: Mapping[str, _core.RangeDoppler], *, title: str = "", vmin: float | None = None,
                    vmax: float | None = None, whole: _core.RangeDoppler | None = None,
                    powers: Mapping[str, _core.ReceivedPower] | None = None, note: str = "", radar_moves: bool = False) -> Figure:
-    """The maps of the parts of a partition side by side, cropped together to what moves in any part, to all of a part in which
-    nothing does, and to cells 10 dB above all that moves in it, with one colour scale for all; to all of each part where the
-    radar itself moves.
+    """The maps of the parts of a partition side by side, cropped together to what moves in any part, and to all of a part
+    in which nothing does, with one colour scale for all; to all of each part where the radar itself moves.
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
@@ -264,9 +262,8 @@ def half_step(axis) -> float:
 def extent_of_parts(spectra: dict, floor: float, radar_moves: bool = False):
     """Box (range, velocity) around the signal of parts {name: spectrum} above `floor` in dBm, or None where there is none.
 
-    By range around what moves in each part, and its strongest cell where that is far above it, around all of a part in which
-    nothing does, and not around all the rest. To a radar that moves itself what stands has a velocity, and none tells what moves:
-    around all of each part.
+    By range around what moves in each part, around all of a part in which nothing does, and not around all the rest. To a radar
+    that moves itself what stands has a velocity, and none tells what moves: around all of each part.
     """
     asked = [name for name in spectra if name != REST] or list(spectra)
     boxes = {name: signal_extent([spectrum], floor, is_moving_meant=name in asked and not radar_moves)
@@ -282,15 +279,13 @@ def extent_of_parts(spectra: dict, floor: float, radar_moves: bool = False):
 def signal_extent(spectra, floor: float, is_moving_meant: bool = False):
     """Box (range, velocity) around the cells above `floor` in dBm, or None when there are none.
 
-    is_moving_meant: by range only around the cells that move, where some do, and the strongest one where that is far above
-        them. The spectra have one axis of velocity.
+    is_moving_meant: by range only around the cells that move, where some do. The spectra have one axis of velocity.
     """
     cells = [_cells(spectrum, floor) for spectrum in spectra]
     margins = [margin_of(spectra[0].range, RANGE_MARGIN), margin_of(spectra[0].velocity, VELOCITY_MARGIN)]
-    distance, velocity, level = (np.concatenate(values) for values in zip(*cells))
+    distance, velocity = (np.concatenate(values) for values in zip(*cells))
     is_moving = np.abs(velocity) > static_speed(spectra[0].velocity, spectra[0].window, spectra[0].zero_pad)
     if is_moving_meant and is_moving.any():
-        is_moving[level.argmax()] |= level.max() > level[is_moving].max() + FAR_ABOVE_DB
         distance = distance[is_moving]
     if not len(distance):
         return None
@@ -304,11 +299,11 @@ def margin_of(axis, least: float) -> float:
 
 
 def _cells(spectrum, floor: float):
-    """Range, velocity and level of the cells that stand out of the noise and of the floor of the colour scale, [N] each."""
+    """Range and velocity of the cells that stand out of the noise and of the floor of the colour scale, [N] each."""
     level = power_dbm(spectrum)
     noise_peak = np.median(level) + noise_peak_db(math.prod(spectrum.values.shape[:2]))
     velocity, distance = np.nonzero(level > max(floor + 3.0, noise_peak))
-    return spectrum.range[distance], spectrum.velocity[velocity], level[velocity, distance]
+    return spectrum.range[distance], spectrum.velocity[velocity]
 
 
 def _crop(panels, extent) -> None:

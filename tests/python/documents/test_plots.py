@@ -148,15 +148,6 @@ def test_parts_are_cropped_to_what_moves_and_the_whole_is_not(spectrum):
     assert upper.get_images()[0].get_clim() == lower.get_images()[0].get_clim()
 
 
-@pytest.mark.parametrize("above_db, is_shown", [(9.0, False), (11.0, True)])
-def test_what_is_far_stronger_than_all_that_moves_in_a_part_is_shown(spectrum, above_db, is_shown):
-    """As a rail before which a ghost of it moves: the power above the panel is that of the rail."""
-    values = with_clutter(spectrum).values
-    values[0, 0, 32, 110] *= 10.0 ** (above_db / 20.0)
-    left, right = plot_partition({"all of it": with_values(spectrum, values)}).axes[0].get_xlim()
-    assert left < 6.0 and (right > 16.5) == is_shown
-
-
 def test_parts_are_shown_whole_to_a_radar_that_moves(spectrum):
     """To it what stands has a velocity, too: none tells what moves."""
     part, whole = with_clutter(spectrum), with_clutter(spectrum)

@@ -75,13 +75,12 @@ class EchoFields:
         """
         if beams is None:
             self.evaluate(cells, progress)
-            of_channels = gains.of("", *self._few.indices.T[:, :, None], cells[:, 1]).T
-            for cell, gain in zip(cells, of_channels):
+            for cell, gain in zip(cells, self._few.gains_in(cells, gains)):
                 index, field = self.fields(cell)
                 yield index, field, np.mean(np.abs(gain * field.sum(axis=1)) ** 2)
             return
         weights = by_channel(beams)
-        behind = weights * gains.of("", *self._all.indices.T[:, :, None], cells[:, 1]).T
+        behind = weights * self._all.gains_in(cells, gains)
         keys = [_key(cell) for cell in cells]
         self._follow(keys)
         held = [self._holding(cell) for cell in with_progress(keys, len(keys), progress, "paths of cells")]

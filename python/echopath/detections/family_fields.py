@@ -10,7 +10,7 @@ from ..base.process.progress import with_progress
 from ..labels.planes import with_receivers
 from ..labels.powers import receiver_sets
 from ..paths.families import Families
-from .channels import by_channel
+from .channels import Channels, by_channel
 
 # Gives for families and a radar, which may have some of the receivers, {Family: cube [tx, rx, chirp, sample] in sqrt(W)} without
 # noise of all these families.
@@ -27,19 +27,20 @@ class FamilyFields:
     def __init__(self, families: Families, signals: Signals, radar, spectrum, cells, gains, beams=None, progress=None):
         """Makes the maps of all, one at a time and of as many receivers as memory holds the signals of, and keeps of each what it
         has in the cells. families: of mid-frame; radar, spectrum: of the map; cells, gains, beams, progress: as of EchoFields"""
-        indices = np.argwhere(np.ones(spectrum.values.shape[:2], bool))
+        all_channels = Channels(radar)
+        num_channels = len(all_channels.indices)
         self._spectrum, self._weights = spectrum, None if beams is None else by_channel(beams)
-        self._gains = gains.of("", *indices.T[:, :, None], cells[:, 1]).T
-        self._shape = len(cells), len(indices) if beams is None else 1
+        self._gains = all_channels.gains_in(cells, gains)
+        self._shape = len(cells), num_channels if beams is None else 1
         self._behind = np.zeros(self._shape, complex)  # of all, behind the receiver
         self._fields, self._powers = {}, {}
-        channels = np.arange(len(indices)).reshape(spectrum.values.shape[:2])
+        channels = np.arange(num_channels).reshape(spectrum.values.shape[:2])
         for which in receiver_sets(radar, len(families)):
             some, columns = with_receivers(radar, which), channels[:, which].ravel()
             cubes = signals(families, some)
             for family, cube in with_progress(cubes.items(), len(cubes), progress, "maps of families"):
                 found = _core.range_doppler(cube, some, spectrum.window, spectrum.zero_pad)
-                share = len(columns) / len(indices)
+                share = len(columns) / num_channels
                 self._powers[family] = self._powers.get(family, 0.0) + share * _core.mean_power(found).astype(np.float32)
                 self._add(family, columns, _values_in(found, cells))
         self.families, self.family_of_path = list(self._fields), np.arange(len(self._fields))

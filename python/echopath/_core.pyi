@@ -1574,7 +1574,7 @@ class RangeDoppler:
     @property
     def window(self) -> str | tuple[str, float] | tuple[str | tuple[str, float], str | tuple[str, float]]:
         """
-        as range_doppler takes it: a name or ("chebyshev" or "taylor", sidelobe level in dB) of both axes, or those of (range, velocity)
+        as range_doppler takes it: a name or ("chebyshev", "taylor" or "kaiser", sidelobe level in dB) of both axes, or those of (range, velocity)
         """
     @property
     def zero_pad(self) -> int:
@@ -3663,7 +3663,7 @@ def warn_of_turns(yaw: float) -> None:
     """
 def window(name: str, n: int, sidelobe_db: float | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Samples [n] of a window: cosines periodic; "chebyshev" and "taylor" symmetric, sidelobes `sidelobe_db` dB down (80 and 35 if not given).
+    Samples [n] of a window: cosines periodic; "chebyshev", "taylor" and "kaiser" symmetric, sidelobes `sidelobe_db` dB down (80, 35 and 60 if not given).
     """
 DEFAULT_MAX_RAYS: int = 16777216
 HIGHEST_FREQUENCY: float = 100000000000000.0

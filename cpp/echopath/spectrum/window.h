@@ -8,19 +8,21 @@
 
 namespace echopath {
 
-enum class WindowKind { kRect, kHann, kHamming, kBlackmanHarris, kChebyshev, kTaylor };
+enum class WindowKind { kRect, kHann, kHamming, kBlackman, kBlackmanHarris, kChebyshev, kTaylor, kKaiser };
 
 struct Window {
   WindowKind kind = WindowKind::kHann;
-  // dB, positive, below the main lobe: of kChebyshev the level of all sidelobes, of kTaylor that of the nearest ones, beyond
-  // which they fall with their number. Fewer samples than it has dB may miss Taylor's level by up to 5 dB, fewer than a
-  // third as many by much more. Not given, it is 80 for kChebyshev and 35 for kTaylor.
+  // dB, positive, below the main lobe: of kChebyshev the level of all sidelobes, of kTaylor that of the nearest ones, of
+  // kKaiser that of the first one; beyond these they fall with their number. Fewer samples than it has dB may miss Taylor's
+  // level by up to 5 dB, fewer than a third as many by much more. Not given, it is 80 for kChebyshev, 35 for kTaylor and 60
+  // for kKaiser.
   std::optional<double> sidelobe_db = {};
 
-  // Takes "rect", "hann", "hamming", "blackman_harris", "chebyshev" or "taylor"; raises invalid_argument naming the nearest.
+  // Takes "rect", "hann", "hamming", "blackman", "blackman_harris", "chebyshev", "taylor" or "kaiser"; raises
+  // invalid_argument naming the nearest.
   static Window named(const std::string& name, std::optional<double> sidelobe_db = {});
   double level() const;  // dB, of windows that have one
-  bool has_level() const { return kind == WindowKind::kChebyshev || kind == WindowKind::kTaylor; }
+  bool has_level() const { return kind >= WindowKind::kChebyshev; }
   std::string name() const;
   bool operator==(const Window& other) const { return kind == other.kind && (!has_level() || level() == other.level()); }
 };
@@ -36,7 +38,7 @@ struct MapWindows {
 };
 
 // Returns the samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin
-// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev and Taylor are symmetric (w[i] = w[n - 1 - i]), which
+// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev, Taylor and Kaiser are symmetric (w[i] = w[n - 1 - i]), which
 // their sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
 std::vector<double> window_samples(const Window& window, int n);
 

@@ -50,8 +50,9 @@ void bind_spectrum(py::module_& m) {
                              "[tx, rx, velocity, range] complex in sqrt(W), read-only")
       .def_property_readonly(
           "window", [](const RangeDoppler& self) { return map_windows_value(self.window); },
-          "as range_doppler takes it: a name or (\"chebyshev\" or \"taylor\", sidelobe level in dB) of both axes, or those "
-          "of (range, velocity)")
+          "as range_doppler takes it: a name or (\"chebyshev\", \"taylor\" or \"kaiser\", sidelobe level in dB) of both "
+          "axes, "
+          "or those of (range, velocity)")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
   define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_doppler_array"),
          R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
@@ -84,8 +85,8 @@ ValueError naming the argument.)");
         return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
       },
       py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = py::none(),
-      "Samples [n] of a window: cosines periodic; \"chebyshev\" and \"taylor\" symmetric, sidelobes `sidelobe_db` dB "
-      "down (80 and 35 if not given).");
+      "Samples [n] of a window: cosines periodic; \"chebyshev\", \"taylor\" and \"kaiser\" symmetric, sidelobes "
+      "`sidelobe_db` dB down (80, 35 and 60 if not given).");
   m.def(
       "main_lobe_half_width",
       [](const py::object& samples) { return main_lobe_half_width(as_vector<double>(samples, "samples")); },

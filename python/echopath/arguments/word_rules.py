@@ -11,8 +11,8 @@ from .folder_kinds import folder_hint
 from .number_rules import Rule, is_number
 from .shown import refused, writable
 
-WindowName = Literal["rect", "hann", "hamming", "blackman_harris", "chebyshev", "taylor"]
-LevelWindow = Literal["chebyshev", "taylor"]                       # of 80 and 35 dB where nothing is said
+WindowName = Literal["rect", "hann", "hamming", "blackman", "blackman_harris", "chebyshev", "taylor", "kaiser"]
+LevelWindow = Literal["chebyshev", "taylor", "kaiser"]             # of 80, 35 and 60 dB where nothing is said
 Window = WindowName | tuple[LevelWindow, float]                    # a name, or with its sidelobe level in dB
 MapWindow = Window | tuple[Window, Window]                         # of both axes of a map, or those of (range, velocity)
 
@@ -105,13 +105,13 @@ def file(argument: str, value) -> str:
 
 
 def window(argument: str, value, or_else: str = ""):
-    """A window by its name, or ("chebyshev" or "taylor", sidelobe level in dB).
+    """A window by its name, or ("chebyshev", "taylor" or "kaiser", sidelobe level in dB).
 
     or_else: what refusals of anything but a name tell that it may be, too
     """
     names, with_level = get_args(WindowName), get_args(LevelWindow)
     rule = (", ".join(f"'{name}'" for name in names)
-            + f" or ({' or '.join(map(repr, with_level))}, sidelobe level in dB, 20 to 300)")
+            + f" or ({', '.join(map(repr, with_level[:-1]))} or {with_level[-1]!r}, sidelobe level in dB, 20 to 300)")
     if isinstance(value, str):
         if value not in names:
             nearest = _core.meant_name(writable(value), names) or _core.nearest_names(writable(value), names, 1)[0]

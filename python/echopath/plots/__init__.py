@@ -23,10 +23,11 @@ from .style import save_png, show
 from .time_maps import draw_spectrogram_labels, draw_time_map
 from .top_view import draw_range_azimuth, plot_range_azimuth
 from .tracks import draw_tracks
+from .truth import draw_truth
 
 __all__ = ["Drive", "Driving", "colour_limits", "draw_angle_spectrum", "draw_detections", "draw_frame", "draw_labels",
            "draw_range_azimuth", "draw_range_doppler", "draw_spectrogram_labels", "draw_time_map", "draw_tracks",
-           "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers", "plot_partition",
+           "draw_truth", "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers", "plot_partition",
            "plot_range_azimuth", "plot_range_doppler", "plot_scene", "power_dbm", "save_png", "show"]
 
 

@@ -40,10 +40,10 @@ def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = Signa
 
     cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
     radar: that of the cube
-    window: "rect", "hann", "hamming", "blackman_harris", "chebyshev", "taylor", the last two also with their sidelobe level in
-        dB, ("taylor", 30), 80 and 35 if not given, on both axes; or a pair of these, that of range and that of velocity, such
-        as ("hann", ("chebyshev", 60)). Fewer samples than it has dB may miss Taylor's level by up to 5 dB, fewer than a third
-        as many by much more
+    window: "rect", "hann", "hamming", "blackman", "blackman_harris", "chebyshev", "taylor", "kaiser", the last three also with
+        their sidelobe level in dB, ("taylor", 30), which is 80, 35 and 60 if not given, on both axes; or a pair of these, that
+        of range and that of velocity, such as ("hann", ("chebyshev", 60)). Fewer samples than it has dB may miss Taylor's
+        level by up to 5 dB, fewer than a third as many by much more; that of Kaiser's first sidelobe is met to a dB
     zero_pad: 1 to 64, transforms of so many times the samples and chirps
     Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
     Raises TypeError or ValueError naming the argument, also where a sample is no finite number.
@@ -74,10 +74,10 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
     right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
     channels whose noise is independent. That of transmitters whose codes correlate ("cdm") is not: eight of random phases in 64
-    chirps have 4 times the false alarms asked for at 1e-3, 7 times at 1e-4. Nor is that of "ddm" in maps of the windows "rect"
-    and "taylor", which have the ends of the frame: 50 and 4 times. Behind the filters of `radar.receiver` cells compare
-    by their power over that of the noise at their range, which follows from the filters, the imbalance of the branches and, for
-    what the converter adds, the quietest ranges of the map.
+    chirps have 4 times the false alarms asked for at 1e-3, 7 times at 1e-4. Nor is that of "ddm" in maps of windows
+    that have the ends of the frame: 50 times with "rect", 4 times with "taylor". Behind the filters of `radar.receiver` cells
+    compare by their power over that of the noise at their range, which follows from the filters, the imbalance of the branches
+    and, for what the converter adds, the quietest ranges of the map.
     Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar, as its receiver gives it
     radar: that of the spectrum

@@ -22,5 +22,5 @@ def of_velocity(window):
 
 
 def samples_of(window, count: int) -> np.ndarray:
-    """Samples [count] of one window: a name, or ("chebyshev" or "taylor", sidelobe level in dB)."""
+    """Samples [count] of one window: a name, or ("chebyshev", "taylor" or "kaiser", sidelobe level in dB)."""
     return _core.window(window, count) if isinstance(window, str) else _core.window(window[0], count, window[1])

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ..presentation.tables import make_table, write_csv
 from .fields import FIELDS, UNITS
 
 if TYPE_CHECKING:
-    from ..base.classes.foreign_types import DataFrame, Dataset
+    from ..base.classes.foreign_types import Axes, DataFrame, Dataset
 
 _SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
@@ -143,6 +143,18 @@ class Truth:
         from .arrays import truth_dataset
 
         return truth_dataset(self)
+
+    def plot(self, view: Literal["radar", "world"] = "radar", *, ax: Axes | None = None, title: str = "") -> Axes:
+        """Draws the box of each object from above, dashed where the radar sees nothing of it, and an arrow along its way of a
+        second over ground.
+
+        view: in the axes of the "radar", as `frame.detections.plot("above")` is, or of the "world"
+        ax: Matplotlib axes to draw in, None: new ones; title: "": that of axes with a title, else how many objects
+        Returns the axes: metres to the left across, left positive, and ahead up. Raises ValueError for another view.
+        """
+        from ..plots import draw_truth
+
+        return draw_truth(self, view=view, ax=ax, title=title)
 
     def to_records(self) -> np.ndarray:
         """The rows as a structured array [N] whose fields are those of this class, names as UTF-8 of a fixed number of bytes:

@@ -106,8 +106,8 @@ TEST(AngleFft, EveryWindowKeepsThePowerOfAPoint) {
   const Radar radar = testing::line_radar(8);
   RangeDoppler map = testing::empty_map(radar);
   testing::add_wave(map, radar, direction(std::asin(0.25), 0.0), 3.0, 4, 2);
-  for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
-                          WindowKind::kChebyshev, WindowKind::kTaylor}) {
+  for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackman,
+                          WindowKind::kBlackmanHarris, WindowKind::kChebyshev, WindowKind::kTaylor, WindowKind::kKaiser}) {
     const AngleSpectrum s = angle_fft(map, radar, {.window = {kind, 40.0}});
     double peak = 0.0;
     for (const Complex& field : s.values) peak = std::max(peak, std::norm(field));
@@ -116,8 +116,8 @@ TEST(AngleFft, EveryWindowKeepsThePowerOfAPoint) {
 }
 
 TEST(AngleFft, WindowsOfArraysAreSymmetricAndNowhereZero) {
-  for (const auto kind :
-       {WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris, WindowKind::kChebyshev, WindowKind::kTaylor}) {
+  for (const auto kind : {WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackman, WindowKind::kBlackmanHarris,
+                          WindowKind::kChebyshev, WindowKind::kTaylor, WindowKind::kKaiser}) {
     for (const int n : {2, 3, 8}) {
       const auto w = centred_window_samples({kind, 40.0}, n);
       for (int i = 0; i < n; ++i) {

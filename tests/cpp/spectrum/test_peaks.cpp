@@ -58,8 +58,9 @@ TEST(Peaks, ATonesPlaceAndPowerAreExactForEveryWindowAndPadding) {
   const Radar radar = radar_of();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> offset(-0.499, 0.499);
-  for (const WindowKind kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackmanHarris,
-                                WindowKind::kChebyshev, WindowKind::kTaylor}) {
+  for (const WindowKind kind :
+       {WindowKind::kRect, WindowKind::kHann, WindowKind::kHamming, WindowKind::kBlackman, WindowKind::kBlackmanHarris,
+        WindowKind::kChebyshev, WindowKind::kTaylor, WindowKind::kKaiser}) {
     for (const int zero_pad : {1, 2}) {
       const double up = offset(random), away = offset(random);
       const double power = 1e-12;

@@ -141,7 +141,8 @@ def taylor_null(lobes: int, sidelobe_db: float) -> float:
 
 @pytest.mark.parametrize("window, bins", [("rect", 1.0), ("hann", 2.0), ("hamming", 2.0), ("blackman_harris", 4.0),
                                           (("chebyshev", 60.0), chebyshev_null(64, 60.0)),
-                                          (("taylor", 30.0), taylor_null(4, 30.0)), ("taylor", taylor_null(6, 35.0))])
+                                          (("taylor", 30.0), taylor_null(4, 30.0)), ("taylor", taylor_null(6, 35.0)),
+                                          ("blackman", 3.0), (("kaiser", 69.0), np.hypot(1.0, 9.366 / np.pi) * 64 / 63)])
 def test_main_lobes_end_at_the_first_null(window, bins):
     assert main_lobe_half_width(samples_of(window, 64)) == pytest.approx(bins, abs=1.0 / 64.0)
 

@@ -59,9 +59,10 @@ constexpr std::array kSynonyms = {
     Synonyms{"incidence", "direction directions angles"},
     Synonyms{"hann", "hanning von_hann"},
     Synonyms{"rect", "rectangular boxcar none uniform"},
-    Synonyms{"blackman_harris", "blackman blackmanharris blackman-harris"},
+    Synonyms{"blackman_harris", "blackmanharris blackman-harris"},
     Synonyms{"chebyshev", "cheb dolph chebwin dolph-chebyshev"},
     Synonyms{"taylor", "taylorwin"},
+    Synonyms{"kaiser", "kaiser_bessel kaiser-bessel"},
 };
 
 bool is_among(const std::vector<std::string>& words, std::string_view word) {

@@ -87,8 +87,9 @@ class ReplayTable(Table):
 
 
 class SpectrumTable(Table):
-    window: MapWindow = Field(SignalSettings.window, description="a name or [\"chebyshev\" or \"taylor\", sidelobe level "
-                                                                 "in dB] of both axes, or those of [range, velocity]")
+    window: MapWindow = Field(SignalSettings.window, description="a name or [\"chebyshev\", \"taylor\" or \"kaiser\", "
+                                                                 "sidelobe level in dB] of both axes, or those of [range, "
+                                                                 "velocity]")
     zero_pad: int = Field(SignalSettings.zero_pad, ge=1, description="length of the transforms over that of the data")
 
 

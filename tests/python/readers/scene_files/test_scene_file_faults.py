@@ -31,8 +31,9 @@ FAULTS = [
     (RADAR + "[trace]\nfaint_power = 'all'", "trace.faint_power: must be a number or 'auto', got 'all'"),
     (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
     (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),
-    (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be 'rect', 'hann', 'hamming', 'blackman_harris', "
-     "'chebyshev', 'taylor' or ('chebyshev' or 'taylor', sidelobe level in dB, 20 to 300) (nearest: hann), got 'hanning'"),
+    (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be 'rect', 'hann', 'hamming', 'blackman', "
+     "'blackman_harris', 'chebyshev', 'taylor', 'kaiser' or ('chebyshev', 'taylor' or 'kaiser', sidelobe level in dB, 20 to 300) "
+     "(nearest: hann), got 'hanning'"),
     (RADAR + "[spectrum]\nwindow = ['chebyshev', 1000]", "spectrum.window: must be 'rect', "),
     (RADAR + "[replay]\nkeyframes = 4", "replay.keyframes: needs retrace = \"invalid\" or \"always\", got 4"),
     (RADAR + "[spectrum]\nwindow = ['chebyshev', -3]", "spectrum.window: must be 'rect', "),

@@ -1,0 +1,81 @@
+"""Objects as they truly are, seen from above: their boxes, their names and their ways."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arguments.checks import choice, text
+from ..base.text.counts import counted
+from .style import axes_or_new, require_drawable, short_name
+from .top_view import AHEAD_LABEL, LEFT_LABEL
+
+if TYPE_CHECKING:
+    from ..base.classes.foreign_types import Axes
+    from ..truth import Truth
+
+VIEWS = ("radar", "world")
+SIZE = 6.6, 5.4      # inches
+COLOUR = "0.25"      # of all: their names tell them apart, also over the colours of detections
+WAY = 1.0            # s, whose way an arrow shows
+SHORTEST = 0.1       # m, of arrows: what stands has none
+MOST_NAMES = 30      # beside boxes, of those that the radar sees most of; more would hide one another
+FACES = [0, 4, 6, 2, 0], [1, 5, 7, 3, 1]  # corners around the lower and the upper face: the last axis of a box runs fastest
+LABELS = {"radar": (LEFT_LABEL, AHEAD_LABEL), "world": ("y in m (left: +)", "x in m (ahead)")}
+
+
+def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, title: str = "") -> Axes:
+    """The box of each object from above, dashed where the radar sees nothing of it, and an arrow along its way of a second.
+
+    Rows of several frames stand beside one another with a line through their centres, the last with the name of the object.
+    truth: Truth; title: above the axes, "": that of axes with a title, else how many objects
+    view: in the axes of the "radar", as `plot("above")` of detections is, or of the "world"; ax: axes to draw in, None: new ones
+    Returns the axes: metres to the left across, left positive, and ahead up, of the radar or of the world. Raises TypeError
+    naming truth or ax, ValueError for another view.
+    """
+    require_drawable("truth", "a Truth, as frame.truth is", truth, "corners_in_radar", "visible_share")
+    choice(*VIEWS)("view", view)
+    names = list(dict.fromkeys(truth.name.tolist()))
+    named = _named(truth, names)
+    with axes_or_new(ax, *SIZE) as ax:
+        for name in names:
+            _draw_object(ax, truth.of_object(name), view, short_name(name) if name in named else None)
+        ax.autoscale_view()
+        across, up = LABELS[view]
+        ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names))
+        ax.set_aspect("equal", adjustable="datalim")
+        if not ax.xaxis_inverted():
+            ax.invert_xaxis()
+        ax.grid(alpha=0.25)
+    return ax
+
+
+def _named(truth, names) -> set:
+    """The names that are written: those of which the radar sees most."""
+    share = [truth.visible_share[truth.name == name].max() for name in names]
+    return {names[place] for place in np.argsort(share, kind="stable")[::-1][:MOST_NAMES]}
+
+
+def _draw_object(ax, rows, view: str, label: str | None) -> None:
+    in_radar = view == "radar"
+    corners = rows.corners_in_radar if in_radar else rows.corners
+    centre = rows.position_in_radar if in_radar else rows.position
+    speed = np.linalg.norm(rows.velocity, axis=1, keepdims=True)
+    way = WAY * (np.nan_to_num(speed * rows.direction_in_radar) if in_radar else rows.velocity)
+    ax.plot(centre[:, 1], centre[:, 0], "-", color=COLOUR, linewidth=0.6)
+    for box, middle, along, share in zip(corners, centre, way, rows.visible_share):
+        for face in FACES:
+            ax.plot(box[face, 1], box[face, 0], "-" if share > 0.0 else "--", color=COLOUR, linewidth=1.0)
+        if np.hypot(*along[:2]) > SHORTEST:
+            ax.annotate("", middle[1::-1] + along[1::-1], middle[1::-1], annotation_clip=False,
+                        arrowprops={"arrowstyle": "->", "color": COLOUR, "shrinkA": 0.0, "shrinkB": 0.0})
+    ax.update_datalim(np.stack([centre + way, centre])[..., 1::-1].reshape(-1, 2))
+    if label is not None:
+        ax.annotate(label, centre[-1, 1::-1], xytext=(5, 5), textcoords="offset points", color="0.1", fontsize=7)
+
+
+def _title(truth, names) -> str:
+    arrows = np.any(np.hypot(*truth.velocity[:, :2].T) > SHORTEST / WAY)
+    dashes = np.any(truth.visible_share == 0.0)
+    return "; ".join([counted(len(names), "object"), *["arrows: ways of a second"] * bool(arrows),
+                      *["dashed: the radar sees nothing of it"] * bool(dashes)])

@@ -37,10 +37,10 @@ def frame():
 def results(frame) -> dict:
     return {"RangeDoppler": frame.spectrum, "RangeAzimuth": frame.range_azimuth, "Frame": frame,
             "AngleSpectrum": ep.angle_fft(frame.spectrum, frame.radar), "Labels": frame.labels["parts"],
-            "Detections": frame.detections}
+            "Detections": frame.detections, "Truth": frame.truth}
 
 
-KINDS = ("RangeDoppler", "RangeAzimuth", "Frame", "AngleSpectrum", "Labels", "Detections")
+KINDS = ("RangeDoppler", "RangeAzimuth", "Frame", "AngleSpectrum", "Labels", "Detections", "Truth")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -99,6 +99,7 @@ def test_the_picture_of_a_scene_refuses_by_name_what_is_none(frame, scene, paths
     (lambda frame: ep.plots.plot_part_powers(frame.mean_part_powers), "powers", "{"),
     (lambda frame: ep.plots.draw_detections(frame), "detections", "Frame"),
     (lambda frame: ep.plots.draw_tracks(frame), "tracks", "Frame"),
+    (lambda frame: ep.plots.draw_truth(frame.detections), "truth", "Detections"),
     (lambda frame: ep.plots.draw_frame(frame.spectrum), "frame", "RangeDoppler"),
     (lambda frame: ep.plots.draw_time_map(frame), "map", "Frame"),
     (lambda frame: ep.plots.draw_angle_spectrum(frame.spectrum), "spectrum", "RangeDoppler"),
@@ -279,6 +280,31 @@ def test_tracks_that_share_a_colour_differ_in_their_lines(ax):
     tracks.plot(ax=ax)
     looks = [(line.get_color(), line.get_linestyle()) for line in ax.lines if line.get_marker() == "."]
     assert len(looks) == count == len(set(looks))
+
+
+def test_the_truth_is_drawn_where_the_boxes_are_from_the_radar_and_in_the_world(ax):
+    """A radar at (3, 1) that looks along y; a box of 2 m by 1 m goes 4 m/s along x, 10 m ahead of it, and hides another."""
+    radar = build_radar(num_samples=64, num_chirps=4).replace(position=(3.0, 1.0, 0.0), yaw=np.pi / 2)
+    scene = ep.Scene()
+    for name, y, speed in (("near", 11.0, 4.0), ("hidden", 14.0, 0.0)):
+        scene.add(ep.actors.box((2.0, 1.0, 1.0)), name=name, position=(3.0, y, -0.5), material="metal", speed=speed)
+    truth = ep.truth(ep.trace(scene, radar, num_rays=200))
+    outlines = {"world": [[2.0, 10.5], [4.0, 11.5]], "radar": [[9.5, -1.0], [10.5, 1.0]]}  # x, y: least and largest
+    ways = {"world": [7.0, 11.0], "radar": [10.0, -4.0]}
+    for view, expected in outlines.items():
+        ax.clear()
+        truth.plot(view, ax=ax)
+        boxes = {line: [one.get_xydata()[:, ::-1] for one in ax.lines if one.get_linestyle() == line and len(one.get_xydata()) > 1]
+                 for line in ("-", "--")}
+        face = next(box for box in boxes["-"] if len(box) == 5)
+        assert np.allclose([face.min(axis=0), face.max(axis=0)], expected, atol=1e-3)
+        assert len(boxes["--"]) == 2  # the lower and the upper face of what nothing is seen of
+        arrows = [text for text in ax.texts if text.arrow_patch is not None]
+        assert [arrow.xy[::-1] for arrow in arrows] == [pytest.approx(ways[view], abs=1e-3)]
+        assert {text.get_text() for text in ax.texts} - {""} == {"near", "hidden"} and ax.xaxis_inverted()
+        assert "dashed" in ax.get_title() and "arrows" in ax.get_title()
+    with pytest.raises(ValueError, match="view: must be 'radar' or 'world', got 'map'"):
+        truth.plot("map")
 
 
 def test_the_velocity_of_one_chirp_has_no_other_tick_than_its_own(ax):

@@ -294,11 +294,11 @@ def test_the_truth_is_drawn_where_the_boxes_are_from_the_radar_and_in_the_world(
     for view, expected in outlines.items():
         ax.clear()
         truth.plot(view, ax=ax)
-        boxes = {line: [one.get_xydata()[:, ::-1] for one in ax.lines if one.get_linestyle() == line and len(one.get_xydata()) > 1]
-                 for line in ("-", "--")}
-        face = next(box for box in boxes["-"] if len(box) == 5)
+        faces = {style: [line.get_xydata()[:, ::-1] for line in ax.lines
+                         if line.get_linestyle() == style and len(line.get_xydata()) == 5] for style in ("-", "--")}
+        face = faces["-"][0]
         assert np.allclose([face.min(axis=0), face.max(axis=0)], expected, atol=1e-3)
-        assert len(boxes["--"]) == 2  # the lower and the upper face of what nothing is seen of
+        assert len(faces["--"]) == 2  # the lower and the upper face of what nothing is seen of
         arrows = [text for text in ax.texts if text.arrow_patch is not None]
         assert [arrow.xy[::-1] for arrow in arrows] == [pytest.approx(ways[view], abs=1e-3)]
         assert {text.get_text() for text in ax.texts} - {""} == {"near", "hidden"} and ax.xaxis_inverted()

@@ -176,21 +176,11 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 
 def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; echoes: with paths; progress: as in `detect`."""
-    paths, signals, without_noise, parts, labels, beside, objects, known, noise_floor, gains, beams = makers
+    parts, labels, beside, gains, beams = makers.parts, makers.labels, makers.beside, makers.gains, makers.beams
     found = labelling.CellLabels(len(cells))
-    if paths is not None:
-        known = known or family_powers(paths, objects, progress)
-        of_paths = known.families
-        if signals is None:
-            sorted_by, source, fields = of_paths, echoes, echoes.each(cells, gains, beams, progress)
-        else:
-            sorted_by = source = FamilyFields(of_paths, signals, radar, spectrum, cells, gains, beams, progress)
-            fields = source.each()
-        families, whole = labelling.families_of_cells(sorted_by, fields, len(cells), source.peak_of, noise_floor=noise_floor,
-                                                       progress=progress)
-        measured = source.measured(cells) if beams is None else power
-        if without_noise is not None:
-            whole, measured = labelling.part_powers({"": without_noise}, cells, gains, beams)[2], power
+    if makers.paths is not None:
+        known = makers.known or family_powers(makers.paths, makers.objects, progress)
+        families, whole, measured = _families_of(spectrum, radar, cells, power, makers, known.families, echoes, progress)
         found.take_families(families, whole, measured, known.resolved)
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)
@@ -198,7 +188,7 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
     if labels is not None:
         names, powers, whole = labelling.label_powers(spectrum, labels, cells, gains)
         found.take_part_names(names, powers)
-        if paths is None or beams is None:  # those of paths in a beam are what the power in it compares with
+        if makers.paths is None or beams is None:  # those of paths in a beam are what the power in it compares with
             found.take_echoes(whole, power)
     elif parts is not None:
         found.take_parts(*labelling.part_powers(parts | beside, cells, gains, beams), power)
@@ -206,6 +196,24 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
         found.take_beside(*labelling.part_powers(beside, cells, gains, beams)[:2], power)
     found.leave((*BESIDE, *beside))
     return found.columns()
+
+
+def _families_of(spectrum, radar, cells, power, makers: _Makers, families, echoes: EchoFields, progress) -> tuple:
+    """Family or None of each of cells [N, 2], and power [N] in W of all echoes and of the map, of the same channels or beams.
+
+    families: Families of the paths; all else as of `_labels_of`
+    """
+    gains, beams, count = makers.gains, makers.beams, len(cells)
+    if makers.signals is None:
+        sorted_by, source, fields = families, echoes, echoes.each(cells, gains, beams, progress)
+    else:
+        sorted_by = source = FamilyFields(families, makers.signals, radar, spectrum, cells, beams, progress)
+        fields = source.each()
+    found, whole = labelling.families_of_cells(sorted_by, fields, count, source.peak_of, noise_floor=makers.noise_floor,
+                                               progress=progress)
+    if makers.without_noise is not None:
+        return found, labelling.part_powers({"": makers.without_noise}, cells, gains, beams)[2], power
+    return found, whole, power if beams is not None else echoes.measured(cells)
 
 
 def _joined(radar, peaks: dict, power, directions: dict, columns: dict, echoes) -> Detections:

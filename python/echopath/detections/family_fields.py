@@ -10,7 +10,7 @@ from ..base.process.progress import with_progress
 from ..labels.planes import with_receivers
 from ..labels.powers import receiver_sets
 from ..paths.families import Families
-from .channels import Channels, by_channel
+from .channels import by_channel
 
 # Gives for families and a radar, which may have some of the receivers, {Family: cube [tx, rx, chirp, sample] in sqrt(W)} without
 # noise of all these families.
@@ -24,15 +24,12 @@ class FamilyFields:
     families: list [F] of Family; family_of_path: [F], each of them being one echo
     """
 
-    def __init__(self, families: Families, signals: Signals, radar, spectrum, cells, gains, beams=None, progress=None):
+    def __init__(self, families: Families, signals: Signals, radar, spectrum, cells, beams=None, progress=None):
         """Makes the maps of all, one at a time and of as many receivers as memory holds the signals of, and keeps of each what it
-        has in the cells. families: of mid-frame; radar, spectrum: of the map; cells, gains, beams, progress: as of EchoFields"""
-        all_channels = Channels(radar)
-        num_channels = len(all_channels.indices)
-        self._spectrum, self._weights = spectrum, None if beams is None else by_channel(beams)
-        self._gains = all_channels.gains_in(cells, gains)
+        has in the cells. families: of mid-frame; radar, spectrum: of the map; cells, beams, progress: as of EchoFields"""
+        num_channels = spectrum.values.shape[0] * spectrum.values.shape[1]
+        self._weights = None if beams is None else by_channel(beams)
         self._shape = len(cells), num_channels if beams is None else 1
-        self._behind = np.zeros(self._shape, complex)  # of all, behind the receiver
         self._fields, self._powers = {}, {}
         channels = np.arange(num_channels).reshape(spectrum.values.shape[:2])
         for which in receiver_sets(radar, len(families)):
@@ -47,22 +44,17 @@ class FamilyFields:
 
     def _add(self, family, columns, values) -> None:
         """Adds values [N, K] of some channels, which have columns [K], or their sums in beams."""
-        if family not in self._fields:
-            self._fields[family] = np.zeros(self._shape, complex)
-        for to, of_channels in ((self._fields[family], values), (self._behind, self._gains[:, columns] * values)):
-            if self._weights is None:
-                to[:, columns] += of_channels
-            else:
-                to[:, 0] += np.sum(self._weights[:, columns] * of_channels, axis=1)
+        of_family = self._fields.setdefault(family, np.zeros(self._shape, complex))
+        if self._weights is None:
+            of_family[:, columns] += values
+        else:
+            of_family[:, 0] += np.sum(self._weights[:, columns] * values, axis=1)
 
     def each(self):
-        """Yields of each cell what EchoFields does, of families instead of paths."""
-        for i, behind in enumerate(self._behind):
-            yield self.family_of_path, np.array([field[i] for field in self._fields.values()]).T, np.mean(np.abs(behind) ** 2)
-
-    def measured(self, cells) -> np.ndarray:
-        """Power [N] in W of the map in cells [N, 2], mean over the channels."""
-        return np.mean(np.abs(_values_in(self._spectrum, cells)) ** 2, axis=1)
+        """Yields of each cell what EchoFields does, of families instead of paths; NaN in place of the power behind the receiver,
+        which the signal of the frame tells better."""
+        for i in range(self._shape[0]):
+            yield self.family_of_path, np.array([field[i] for field in self._fields.values()]).T, np.nan
 
     def peak_of(self, keep) -> float:
         """Power in W of the strongest cell of the map of the one family where `keep` [F] is true, mean over all channels."""

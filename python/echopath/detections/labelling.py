@@ -77,8 +77,9 @@ def _mean_gain(gains) -> np.ndarray:
 def families_of_cells(families, fields, count: int, peak_of, *, noise_floor: float, progress=None) -> tuple:
     """The family that has each of N cells by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
-    families: Families of the echoes, or FamilyFields; fields: `each` of EchoFields or of FamilyFields, which yields so many;
-    peak_of: of these; noise_floor: W, from which on labels take a cell for more than noise; progress: as in `detect`
+    families: Families of the echoes, or FamilyFields; fields: `each` of EchoFields or of FamilyFields, whose power is NaN, which
+    yields so many; peak_of: of these; noise_floor: W, from which on labels take a cell for more than noise
+    progress: as in `detect`
     """
     owners = CellOwners((count,), families.families, noise_floor)
     own, joint = np.zeros((len(families), count)), np.zeros((len(owners.rivals), count))

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kAngleTolerance = 1e-6;  // rad, degrees with five written digits
 constexpr double kNothing = 1e-12;        // of the peak: what rounding leaves of a zero
+constexpr double kNearPole = 0.05;        // cosine of the elevation
 constexpr double kSeamTolerance = 1e-3;   // of the peak: samples one turn apart are the same direction
 
 void require_axis(const std::vector<double>& values, const std::string& name) {
@@ -96,6 +97,7 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
           in_words(efficiency_));
   dark_behind_ = all_cells_in_front();
   largest_field_ = most_beyond_samples() * std::sqrt(peak_gain());
+  sharpness_ = find_sharpness();
 }
 
 void GainTable::set_field() {
@@ -126,6 +128,22 @@ double GainTable::most_beyond_samples() const {
   };
   const double gap = period_ ? azimuth_.front() + kTwoPi - azimuth_.back() : 0.0;
   return (4.0 + largest_ratio(azimuth_, gap)) * (4.0 + largest_ratio(elevation_, 0.0));
+}
+
+double GainTable::find_sharpness() const {
+  const size_t columns = azimuth_.size();
+  double steepest = 0.0;
+  const auto add_slope = [&](size_t from, size_t to, double angle) {
+    steepest = std::max(steepest, std::abs(std::abs(field_[to]) - std::abs(field_[from])) / angle);
+  };
+  for (size_t i = 0; i < field_.size(); ++i) {
+    const size_t row = i / columns, column = i % columns;
+    const double shrinks = std::cos(elevation_[row]);  // near a pole, where gains hardly differ, azimuths are close together
+    if (column + 1 < columns && shrinks > kNearPole)
+      add_slope(i, i + 1, shrinks * (azimuth_[column + 1] - azimuth_[column]));
+    if (row + 1 < elevation_.size()) add_slope(i, i + columns, elevation_[row + 1] - elevation_[row]);
+  }
+  return kSlopeOfSharpness * steepest / std::sqrt(peak_gain());
 }
 
 void GainTable::close_ring() {

@@ -17,6 +17,10 @@ struct AntennaGain {
 // excess over 1 is noise of tables.
 inline constexpr double kLargestEfficiency = 1.02;
 
+// A field that falls as exp(-s^2 x^2 / 2) over the angle x has the sharpness s, in 1/rad. Its largest slope is the peak times
+// s over this number.
+inline constexpr double kSlopeOfSharpness = 1.6487212707001282;  // sqrt(e)
+
 // Holds gain over direction in the antenna's frame: boresight is +x, azimuth turns about z (left, +y, positive), and
 // elevation is taken from the xy-plane.
 //
@@ -50,6 +54,7 @@ class GainTable {
   // Returns a bound of |field| anywhere. It is the farther above the samples the less even these are: with q the largest
   // ratio of neighbouring steps, the weights along an axis add up to at most 4 + q by size.
   double largest_field() const { return largest_field_; }
+  double sharpness() const { return sharpness_; }       // 1/rad, that its steepest step tells
   double efficiency() const { return efficiency_; }     // mean gain over the sphere: its integral / 4 pi
   bool is_dark_behind() const { return dark_behind_; }  // no gain where x < 0
 
@@ -68,13 +73,14 @@ class GainTable {
   void set_field();
   void close_ring();
   double integrate() const;
+  double find_sharpness() const;
   double most_beyond_samples() const;  // the largest |field| anywhere over that of the samples, at most
   bool all_cells_in_front() const;
 
   std::vector<double> azimuth_, elevation_, gain_, phase_;
   std::vector<std::complex<double>> field_;  // [E, A]
   int period_ = 0;                           // columns of a closed ring, 0: open
-  double efficiency_ = 0.0, largest_field_ = 0.0;
+  double efficiency_ = 0.0, largest_field_ = 0.0, sharpness_ = 0.0;
   bool dark_behind_ = false;
 };
 

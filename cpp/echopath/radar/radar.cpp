@@ -184,6 +184,11 @@ double AntennaPattern::gain(double cos_boresight) const {
 
 double AntennaPattern::largest_field() const { return table ? table->largest_field() : std::sqrt(peak_gain); }
 
+double AntennaPattern::sharpness() const {
+  if (kind == Kind::kTable) return table->sharpness();
+  return kind == Kind::kIsotropic || exponent == 0.0 ? 0.0 : std::max(1.0, std::sqrt(0.5 * exponent));
+}
+
 double AntennaPattern::efficiency() const {
   if (kind == Kind::kTable) return table->efficiency();
   return kind == Kind::kIsotropic ? peak_gain : peak_gain / (2.0 * (exponent + 1.0));

@@ -64,6 +64,7 @@ struct AntennaPattern {
     return table ? table->toward(direction()) : AntennaGain{gain(cos_boresight), 0.0};
   }
   double largest_field() const;  // sqrt(gain) that no direction exceeds
+  double sharpness() const;      // 1/rad, of its field (kSlopeOfSharpness); 0 for kIsotropic
   double efficiency() const;     // integral of the gain over the sphere / 4 pi
   bool is_dark_behind() const;   // no gain where x < 0
 };

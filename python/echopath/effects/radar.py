@@ -3,12 +3,16 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .. import _core
 from ..base.radar.antennas import antennas_of, are_crossed
 from ..base.text.counts import counted
 from ..tracing.polarization import FIELD_VECTORS, need_of_field_vectors
 from .rules import Case, rule
 
+TOLD_TURN = math.radians(2.0)  # of the radar within a frame, from which on it is told
+TURN_STEPS = 65
 TOLD_LEVELS_DB = 0.5  # by which the square of the wavelength falls over the band, from which on it is told
 
 
@@ -16,7 +20,22 @@ TOLD_LEVELS_DB = 0.5  # by which the square of the wavelength falls over the ban
       "AntennaPattern.peak_gain", "AntennaPattern.exponent")
 def _patterns(case: Case):
     shaped = sorted({antenna.pattern.kind for antenna in antennas_of(case.radar)} - {"isotropic"})
-    return bool(shaped), ", ".join(shaped) or "all antennas are isotropic"
+    if not shaped:
+        return False, "all antennas are isotropic"
+    turned = _turned_within_frame(case)
+    sweep = ("" if turned < TOLD_TURN else f"; beams turn by {np.degrees(turned):.3g} degrees within the frame: rays, mean powers, "
+             "labels and truth are those of its middle")
+    return True, ", ".join(shaped) + sweep
+
+
+def _turned_within_frame(case: Case) -> float:
+    """Angle in rad by which the radar turns from the first chirp to the last, back and forth counted both ways."""
+    if case.radar.motion is None:
+        return 0.0
+    half = 0.5 * case.radar.frame_duration
+    axes = [case.radar.world_from_radar(time)[:3, :3] for time in np.linspace(case.time - half, case.time + half, TURN_STEPS)]
+    turns = np.einsum("nij,nij->n", axes[:-1], axes[1:])  # 1 + 2 cos of the angle of each step
+    return float(np.sum(np.arccos(np.clip(0.5 * (turns - 1.0), -1.0, 1.0))))
 
 
 @rule("gain tables", "AntennaPattern.table_gain")

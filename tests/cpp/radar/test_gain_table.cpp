@@ -174,6 +174,27 @@ TEST(AntennaPattern, KnowsItsEfficiency) {
 }
 
 // Samples that alternate in sign, at steps of 2 and 40 degrees: the cubic between them goes far beyond.
+// A field exp(-s^2 x^2 / 2) has its steepest slope, s / sqrt(e), at x = 1 / s. The narrower of two widths counts, on the
+// level as on a cone around the pole, and phases do not.
+TEST(AntennaPattern, KnowsItsSharpness) {
+  constexpr double kSharp = 40.0, kBlunt = 5.0, kOfSteps = 0.01;  // steps of 0.1 degrees against 1 / 40 rad
+  for (const double up : {0.0, 60.0}) {
+    const auto azimuth = axis(-20, 20, 0.1), elevation = axis(up - 5, up + 5, 0.1);
+    const auto gain_of = [&](double along, double above) {
+      const double x = along * std::cos(up * kDegree), y = above - up * kDegree;
+      return std::exp(-(kSharp * kSharp * x * x + kBlunt * kBlunt * y * y));  // of the power
+    };
+    const auto gain = sampled(gain_of, azimuth, elevation);
+    std::vector<double> phase;
+    for (size_t i = 0; i < gain.size(); ++i) phase.push_back(0.5 * static_cast<double>(i % 2));
+    EXPECT_NEAR(GainTable(azimuth, elevation, gain).sharpness(), kSharp, kOfSteps * kSharp) << up;
+    EXPECT_NEAR(GainTable(azimuth, elevation, gain, phase).sharpness(), kSharp, kOfSteps * kSharp) << up;
+  }
+  EXPECT_EQ(AntennaPattern::isotropic().sharpness(), 0.0);
+  EXPECT_EQ(AntennaPattern::cosine_power(0.0).sharpness(), 0.0);
+  EXPECT_NEAR(AntennaPattern::cosine_power(2.0 * kSharp * kSharp).sharpness(), kSharp, kRounding * kSharp);
+}
+
 TEST(GainTable, NothingIsBeyondTheSamplesByMoreThanItSays) {
   const std::vector<double> azimuth = {0.0, 2 * kDegree, 42 * kDegree, 44 * kDegree, 84 * kDegree};
   const std::vector<double> elevation = {-20 * kDegree, 0.0, 5 * kDegree, 30 * kDegree};

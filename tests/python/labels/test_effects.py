@@ -142,6 +142,14 @@ def test_an_effect_is_on_where_something_asks_for_it_and_off_where_nothing_does(
         assert not other.modelled and other.reason
 
 
+@pytest.mark.parametrize("angle_deg, words", [(0.0, "cosine_power"), (8.0, "beams turn by 8 degrees within the frame")])
+def test_a_beam_that_sweeps_within_the_frame_is_named(angle_deg, words):
+    radar = make_radar(pattern=ep.CosinePower(2.0))
+    turn = ep.LinearMotion(angular_velocity=(0.0, 0.0, np.radians(angle_deg) / radar.frame_duration))
+    effect = found(radar=radar.replace(motion=turn))["antenna patterns"]
+    assert effect.modelled and words in effect.reason and ("turn" in effect.reason) == (angle_deg > 0.0)
+
+
 @pytest.mark.parametrize("interval, words", [(60e-6, "beyond 8994 m, which meet the next chirp"), (600e-6, "m are cut off")])
 def test_echoes_that_come_after_the_next_chirp_has_begun_are_named(interval, words):
     """Half of 299 792 458 m/s times 60 us is 8994 m; 1024 samples over 2 MHz hear as far as 76.7 km, 600 us wait for 89.9 km."""

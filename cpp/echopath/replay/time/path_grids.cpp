@@ -13,6 +13,9 @@ constexpr int kNodesBeyondTurns = 2;  // nodes beyond w T / 2 from which on coef
 // Evaluating amplitudes in this many chirps costs as much as one more node, counting polynomials that are tried in vain.
 constexpr int64_t kWorthOfANode = 5;
 constexpr size_t kTriedVertices = 16;  // of a mesh, at least, where it has as many
+// Way across a beam from one node to the next, over the angle at which its field has fallen to exp(-1/2) of its peak: at a
+// node the field is at least that then, wherever it passes.
+constexpr double kStepInBeam = 2.0;
 
 // Holds vertices all over a mesh in its frame, m, at the nodes of a grid. They do not depend on which triangles paths touch,
 // as patches do.
@@ -41,6 +44,16 @@ class TriedVertices {
 
 }  // namespace
 
+// Returns the sharpness (AntennaPattern) of the two-way beam, which is sharper than that of either end.
+double sharpness_of(const Radar& radar) {
+  double largest[2] = {0.0, 0.0};
+  const std::vector<Antenna>* const ends[] = {&radar.transmitters, &radar.receivers};
+  for (int end = 0; end < 2; ++end) {
+    for (const Antenna& antenna : *ends[end]) largest[end] = std::max(largest[end], antenna.pattern.sharpness());
+  }
+  return std::hypot(largest[0], largest[1]);
+}
+
 // Holds the first and the last grid, in their order, of those that the meshes of a path need.
 struct PathGrids::Range {
   GridIndex least, most;
@@ -50,7 +63,7 @@ struct PathGrids::Range {
 PathGrids::PathGrids(const Paths& paths, const Radar& radar, TimeGrids& grids, PosedGrids& posed, double wavenumber,
                      double phase_tolerance)
     : paths_(paths), grids_(grids), wavenumber_(wavenumber), phase_tolerance_(phase_tolerance),
-      num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.is_moving()) {
+      sharpness_(sharpness_of(radar)), num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.is_moving()) {
   const TimeSpan frame{grids.start_time(), grids.start_time() + radar.frame_duration()};
   const double of_radar = turn_rate(radar, frame);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
@@ -91,17 +104,24 @@ bool PathGrids::is_quick_enough(GridIndex polynomial, double turn_rate) const {
 }
 
 // The length of a path is made of distances, so those of vertices all over a mesh from the first transmitter tell how many
-// nodes its motion needs.
+// nodes its motion needs. Where it passes a beam, or a beam sweeps over it, nodes are to see it there: with few of them it
+// may be dark at all.
 bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
   const PosedScenes& scenes = *trial.posed.scenes;
   const TriedVertices vertices(paths_.scene->node_of(mesh_id), scenes);
   std::vector<double> distance;
   for (size_t vertex = 0; vertex < vertices.size(); ++vertex) {
     distance.clear();
+    Vec3 before = Vec3::Zero();  // the direction from the transmitter in its own axes
     for (size_t node = 0; node < scenes.size(); ++node) {
       const PosedScene& scene = scenes[node];
-      const Vec3 point = scene.linear(mesh_id) * vertices.at(node, vertex) + scene.translation(mesh_id);
-      distance.push_back(2.0 * (point - scene.transmitters.front().position).norm());
+      const PosedAntenna& transmitter = scene.transmitters.front();
+      const Vec3 way = scene.linear(mesh_id) * vertices.at(node, vertex) + scene.translation(mesh_id) - transmitter.position;
+      distance.push_back(2.0 * way.norm());
+      const Vec3 direction = transmitter.antenna_from_world * way.normalized();
+      const bool is_first_of_piece = node % static_cast<size_t>(trial.nodes.order) == 0;
+      if (!is_first_of_piece && sharpness_ * (direction - before).norm() > kStepInBeam) return false;
+      before = direction;
     }
     if (wavenumber_ * tail_of(trial.nodes, distance) > phase_tolerance_) return false;
   }

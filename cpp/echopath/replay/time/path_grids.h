@@ -48,7 +48,7 @@ class PathGrids {
 
   const Paths& paths_;
   const TimeGrids& grids_;
-  double wavenumber_, phase_tolerance_;
+  double wavenumber_, phase_tolerance_, sharpness_;
   int num_chirps_;
   bool radar_moves_;
   std::vector<GridIndex> of_mesh_;  // by mesh ID: the first that follows its motion

@@ -23,9 +23,10 @@ def _patterns(case: Case):
     if not shaped:
         return False, "all antennas are isotropic"
     turned = _turned_within_frame(case)
-    sweep = ("" if turned < TOLD_TURN else f"; beams turn by {np.degrees(turned):.3g} degrees within the frame: rays, mean powers, "
-             "labels and truth are those of its middle")
-    return True, ", ".join(shaped) + sweep
+    if turned < TOLD_TURN:
+        return True, ", ".join(shaped)
+    return True, (f"{', '.join(shaped)}; beams turn by {np.degrees(turned):.3g} degrees within the frame: rays, mean powers, "
+                  "labels and truth are those of its middle")
 
 
 def _turned_within_frame(case: Case) -> float:

@@ -27,7 +27,8 @@ SCRIPTS = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent != TRAI
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
 TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "liquid_level", "foreign_scene", "car_with_speed",
                                          "trajectories", "ego_motion", "live_scene")),
-         *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr", "scanning_radar")),
+         *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr",
+                                         "scanning_radar")),
          *(f"results/{name}" for name in ("angle_map", "spectrogram", "breath_and_heartbeat", "arms_only", "rcs_over_angle",
                                           "polarimetry", "label_masks", "detections", "truth_and_tracks",
                                           "synthetic_aperture", "pictures")),

@@ -10,7 +10,8 @@ from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, optional, takes
 from ..arguments.number_rules import start_time_rule
 from ..arguments.shown import refused
-from ..base.radar.antennas import antennas_of, are_crossed, field_toward
+from ..base.numerics.rotations import matrices
+from ..base.radar.antennas import antennas_of, are_crossed
 from ..receiver.chain import transmitted_code
 from ..transmit import code_signal, is_coded, slots_radar
 from ..transmit.signals import by_kind_of_chirp, has_steps
@@ -115,28 +116,27 @@ class _Targets:
         cube = np.empty((len(radar.transmitters), len(radar.receivers), num_chirps, radar.waveform.num_samples), complex)
         for i, transmitter in enumerate(radar.transmitters):
             times = self._start_time + row_times(radar, i)
-            points = [self._places(time) for time in times]
-            out, sent = self._legs(radar, transmitter, points, times)
+            points = self._in_radar(radar, times)
+            out, sent = _legs(transmitter, points, num_chirps)
             for j, receiver in enumerate(radar.receivers):
-                back, heard = self._legs(radar, receiver, points, times)
+                back, heard = _legs(receiver, points, num_chirps)
                 fields = level * self._echoes * sent * heard / (out * back)[:num_chirps]
                 cube[i, j] = signal_of_rows(radar, (out + back) / _core.speed_of_light, fields)
         return cube
 
-    @staticmethod
-    def _legs(radar, antenna, points, times) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-        """Lengths in m of the ways from an antenna to points [N, 3] at times, [rows, N], and its pattern toward their ends in the
-        middles of the chirps, which are the first of these, [chirps, N]."""
-        lengths = np.array([_lengths(radar, antenna, places, time) for places, time in zip(points, times)])
-        middles = times[:radar.waveform.num_chirps]
-        return lengths, np.array([field_toward(radar, antenna, places, time) for places, time in zip(points, middles)])
+    def _in_radar(self, radar, times) -> NDArray[np.float64]:
+        """The targets at times in s, [rows, N, 3] in m, in the radar's frame."""
+        world_from_radar = np.array([radar.world_from_radar(time) for time in times])
+        away = np.array([self._places(time) for time in times]) - world_from_radar[:, None, :3, 3]
+        return away @ world_from_radar[:, :3, :3]
 
 
-def _lengths(radar, antenna, places, time: float) -> NDArray[np.float64]:
-    """m, [N], from an antenna to places [N, 3] at a time in s."""
-    world_from_radar = radar.world_from_radar(time)
-    antenna_place = world_from_radar[:3, :3] @ antenna.position + world_from_radar[:3, 3]
-    found = np.linalg.norm(places - antenna_place, axis=1)
-    if not np.all(found > 0.0):
+def _legs(antenna, points, num_chirps: int) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    """Lengths in m of the ways from an antenna to points [rows, N, 3] in the radar's frame, [rows, N], and its pattern toward
+    their ends in the middles of the chirps, which are the first rows, [chirps, N]."""
+    ways = points - antenna.position
+    lengths = np.linalg.norm(ways, axis=2)
+    if not np.all(lengths > 0.0):
         raise refused(ValueError, "positions", "away from the antennas", antenna)
-    return found
+    toward = ways[:num_chirps] / lengths[:num_chirps, :, None] @ matrices(antenna.orientation)
+    return lengths, antenna.pattern.field(toward.reshape(-1, 3)).reshape(lengths[:num_chirps].shape)

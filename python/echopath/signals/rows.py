@@ -30,7 +30,7 @@ def signal_of_rows(radar: _core.Radar, delays: NDArray[np.float64], fields: NDAr
     middle, start, end = np.split(delays, 3)
     # Each chirp stands between two rows, one chirp before and behind it, that give it its own change.
     onward = (end - start) * (waveform.chirp_duration / (2.0 * _half(waveform)))
-    rows = np.stack([middle + step * onward for step in (-1.0, 0.0, 1.0)], axis=1).reshape(-1, middle.shape[1])
+    rows = np.stack([middle + step * onward for step in (-1.0, 0.0, 1.0)], axis=1).reshape(3 * len(middle), -1)
     apart = waveform.replace(num_chirps=len(rows), chirp_interval=waveform.chirp_duration)
     return _core.synthesize_echoes(apart, np.maximum(rows, 0.0), np.repeat(fields, 3, axis=0))[1::3]
 

@@ -1,4 +1,6 @@
 """Ideal point targets: against the phase of every sample by the definition of the IF signal, and against traced spheres."""
+import sys
+
 import numpy as np
 import pytest
 
@@ -125,6 +127,30 @@ def test_ways_change_within_chirps_that_are_alone_or_unevenly_apart(timing):
 def test_what_is_beyond_the_axis_of_range_is_not_heard():
     radar = ep.Radar(WAVEFORM, **FANS)
     np.testing.assert_array_equal(ep.point_targets(radar, [[30.0, 0.0, 0.0]], 1.0), 0.0)
+
+
+@pytest.mark.parametrize("timing", [{"num_chirps": 24}, {"num_chirps": 1}, {"extra_idle": (0.0, 2e-6)}])
+def test_no_targets_are_silent_in_every_train_of_chirps(timing):
+    radar = ep.Radar(WAVEFORM.replace(**timing), **FANS)
+    cube = ep.point_targets(radar, np.zeros((0, 3)), 1.0)
+    np.testing.assert_array_equal(cube, np.zeros((2, 3, radar.waveform.num_chirps, 64)))
+
+
+def calls_of(radar):
+    """How many functions a point target calls."""
+    kinds = []
+    sys.setprofile(lambda frame, kind, argument: kinds.append(kind))
+    try:
+        ep.point_targets(radar, [[8.0, 3.0, 0.5]], 1.0, velocities=(5, 0, 0))
+    finally:
+        sys.setprofile(None)
+    return sum(kind in ("call", "c_call") for kind in kinds)
+
+
+def test_further_receivers_call_nothing_for_each_chirp():
+    receivers = [ep.Antenna((0, 0.002 * k, 0)) for k in range(12)]
+    radar = ep.Radar(WAVEFORM.replace(num_chirps=256), transmitters=[ep.Antenna()], receivers=receivers[:2])
+    assert calls_of(radar.replace(receivers=receivers)) - calls_of(radar) < 10 * radar.waveform.num_chirps
 
 
 def test_a_point_target_is_as_loud_as_a_sphere_of_its_cross_section():

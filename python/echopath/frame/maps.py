@@ -14,6 +14,9 @@ from ..labels.labels import Labels
 from ..truth import Truth
 from .frame import Frame
 
+if TYPE_CHECKING:
+    from ..base.classes.foreign_types import Axes
+
 # Fields of Labels that small files keep for cells of the mask alone.
 _OF_THE_MASK = ("power", "whole", "mean_power", "mean_share", "power_error", "share_error")
 
@@ -56,6 +59,19 @@ class FrameMaps:
         if self.kept_truth is None:
             raise refused(ValueError, "frame", "of a run with truth=True", self)
         return self.kept_truth
+
+    def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
+             title: str | None = None) -> Axes:
+        """Draws the range-Doppler map with its noise, and the detections in it, as `Frame.plot`.
+
+        ax: Matplotlib axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm
+        title: above the map, None: what it shows, with noise or without
+        Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises ValueError for frames of
+        keep="labels", which have no map.
+        """
+        from ..plots import draw_frame
+
+        return draw_frame(self, ax=ax, vmin=vmin, vmax=vmax, title=title)
 
     if not TYPE_CHECKING:  # to checkers of types all names would be attributes
         def __getattr__(self, name: str):

@@ -284,9 +284,9 @@ def signal_extent(spectra, floor: float, is_moving_meant: bool = False):
     cells = [_cells(spectrum, floor) for spectrum in spectra]
     margins = [margin_of(spectra[0].range, RANGE_MARGIN), margin_of(spectra[0].velocity, VELOCITY_MARGIN)]
     distance, velocity = (np.concatenate(values) for values in zip(*cells))
-    is_moving = np.abs(velocity) > static_speed(spectra[0].velocity, spectra[0].window, spectra[0].zero_pad)
-    if is_moving_meant and is_moving.any():
-        distance = distance[is_moving]
+    if is_moving_meant:
+        is_moving = np.abs(velocity) > static_speed(spectra[0].velocity, spectra[0].window, spectra[0].zero_pad)
+        distance = distance[is_moving] if is_moving.any() else distance
     if not len(distance):
         return None
     return (distance.min() - margins[0], distance.max() + margins[0],

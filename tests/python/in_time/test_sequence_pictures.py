@@ -40,6 +40,18 @@ def test_a_picture_has_maps_and_range_and_velocity_over_time(stored, num_frames,
     assert [ax.get_title() for ax in read.subfigs[0].axes][:len(places)] == [f"{stored.times[place]:.3f} s" for place in places]
 
 
+def test_a_frame_of_a_small_file_is_drawn_as_the_whole_frame_is(stored, tmp_path):
+    made, read = make_sequence()[1].plot(), stored[1].plot()
+    for of_axes in (lambda ax: ax.get_images()[0].get_array(), lambda ax: ax.get_images()[0].get_clim(),
+                    lambda ax: [*ax.get_xlim(), *ax.get_ylim()], lambda ax: ax.collections[0].get_offsets()):
+        np.testing.assert_allclose(of_axes(read), of_axes(made), rtol=0.0, atol=1e-3)
+    assert read.get_title() == made.get_title() == "Everything that the radar receives, with its noise"
+    assert read.get_xlim()[0] < DISTANCE < read.get_xlim()[1] and read.get_ylim()[0] < SPEED < read.get_ylim()[1]
+    without_map = make_sequence(frames=1).save(tmp_path / "labels", keep="labels")[0]
+    with pytest.raises(ValueError, match="^frame: must be one with a map to draw, as files of keep='maps' and 'all' have, got"):
+        without_map.plot()
+
+
 def test_what_moves_is_not_the_main_lobe_of_what_stands(tmp_path):
     """The lobe of Hann's window reaches two cells of 1.2 m/s: in it the corner that stands is the stronger one."""
     scene, aside = ep.Scene(), np.array([np.cos(0.3), np.sin(0.3), 0.0])

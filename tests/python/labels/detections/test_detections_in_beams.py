@@ -69,6 +69,19 @@ def test_labels_tell_the_part_and_paths_the_object_in_the_beam():
     assert found.is_noise.any()
 
 
+def test_what_is_weaker_than_the_noise_of_each_channel_is_told_in_beams_alone():
+    """It holds less than half of the power that all channels have in its cell, and nearly all of that of its beam."""
+    array = radar().replace(receivers=[ep.Antenna((0.0, 0.5 * WAVELENGTH * k, 0.0)) for k in range(64)])
+    echo = ep.point_targets(array, [(DISTANCE, 0.0, 0.0)], 1.0)
+    strongest = np.max(np.mean(np.abs(ep.range_doppler(echo, array).values) ** 2, axis=(0, 1)))
+    weak = echo * np.sqrt(0.7 * ep.noise_power(array) / strongest)
+    noisy, parts = ep.range_doppler(ep.add_noise(weak, array, seed=3), array), {"echo": ep.range_doppler(weak, array)}
+    for beams in (False, True):
+        found = ep.detect(noisy, array, parts=parts, beams=beams, false_alarm_rate=1e-3)
+        (i,) = np.flatnonzero(np.hypot(found.range - DISTANCE, found.velocity) < array.waveform.range_resolution)
+        assert found.is_noise[i] != beams and found.part[i] == ("echo" if beams else "noise")
+
+
 def test_parts_have_the_power_of_the_sum_of_channels_toward_the_beam():
     """Of transmitters at one place: the phase that motion adds between their turns is that of the cell's velocity."""
     sender = radar(2)

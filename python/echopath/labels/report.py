@@ -7,6 +7,8 @@ from ..base.numerics.decibels import in_dbm
 from ..base.text.counts import counted, named
 from ..paths.visibility import occluder_words
 
+LEAST_POWER = 1e-33  # W: what is weaker, as what rounding leaves of an echo, is told as that
+
 
 def text_of(labels) -> str:
     """A table of the parts, objects and ghosts of Labels, with the cells that each has and its peak."""
@@ -25,8 +27,10 @@ def _left_out(left_out) -> list[str]:
     several = left_out.families > 1
     words = "families can own no cell and have no signals of their own" if several else (
         "family can own no cell and has no signal of its own")
-    return [f"{left_out.families} {words}: {in_dbm(left_out.power):.0f} dBm{' together' if several else ''}, at most "
-            f"{in_dbm(left_out.bound):.0f} dBm in a cell"]
+    below = "" if left_out.power >= LEAST_POWER else "below "
+    level, bound = in_dbm(left_out.power, LEAST_POWER), in_dbm(left_out.bound, LEAST_POWER)
+    return [f"{left_out.families} {words}: {below}{level:.0f} dBm{' together' if several else ''}, at most {bound:.0f} dBm "
+            "in a cell"]
 
 
 def _header(labels) -> str:

@@ -163,6 +163,8 @@ def test_families_without_power_are_not_left_out(radar):
     assert one.endswith("\n1 family can own no cell and has no signal of its own: -150 dBm, at most -160 dBm in a cell")
     assert two.endswith("\n2 families can own no cell and have no signals of their own: -150 dBm together, at most -160 dBm in a "
                         "cell")
+    rounding = str(dataclasses.replace(labels, left_out=LeftOut(1, 1e-266, 0.0)))
+    assert rounding.endswith(": below -300 dBm, at most -300 dBm in a cell")
 
 
 @pytest.mark.parametrize("shown", [0.0, 1e-9, 1e-1, 1e12])

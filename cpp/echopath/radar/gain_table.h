@@ -17,8 +17,8 @@ struct AntennaGain {
 // excess over 1 is noise of tables.
 inline constexpr double kLargestEfficiency = 1.02;
 
-// A field that falls as exp(-s^2 x^2 / 2) over the angle x has the sharpness s, in 1/rad. Its largest slope is the peak times
-// s over this number.
+// A field that falls as exp(-s^2 x^2 / 2) over the angle x has the sharpness s, in 1/rad. Its largest slope is the peak
+// times s over this number.
 inline constexpr double kSlopeOfSharpness = 1.6487212707001282;  // sqrt(e)
 
 // Holds gain over direction in the antenna's frame: boresight is +x, azimuth turns about z (left, +y, positive), and

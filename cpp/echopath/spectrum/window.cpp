@@ -76,8 +76,8 @@ std::vector<double> taylor_window(int n, double sidelobe_db) {
   return cosine_window(n, 0.5, coefficients);
 }
 
-// Kaiser and Schafer, "On the use of the I0-sinh window for spectrum analysis", 1980: the samples are I0(beta sqrt(1 - x^2)),
-// and their fit of beta to the level of the first sidelobe is good to half a dB from 20 to 120 dB.
+// Kaiser and Schafer, "On the use of the I0-sinh window for spectrum analysis", 1980: the samples are
+// I0(beta sqrt(1 - x^2)), and their fit of beta to the level of the first sidelobe is good to half a dB from 20 to 120 dB.
 std::vector<double> kaiser_window(int n, double sidelobe_db) {
   const double above_rect = sidelobe_db - 13.26;
   const double beta =

@@ -38,8 +38,8 @@ struct MapWindows {
 };
 
 // Returns the samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin
-// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev, Taylor and Kaiser are symmetric (w[i] = w[n - 1 - i]), which
-// their sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
+// grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev, Taylor and Kaiser are symmetric
+// (w[i] = w[n - 1 - i]), which their sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.
 std::vector<double> window_samples(const Window& window, int n);
 
 // Returns samples for few points in space: cosine windows are sampled at i + 1/2 instead of i, hence symmetric and nowhere

@@ -109,7 +109,8 @@ TEST(Window, TaylorOfShortArraysMissesItsLevelByTwoDecibels) {
   }
 }
 
-// A published fit, good to half a decibel, gives the shape parameter for a level of the first sidelobe, which is the largest.
+// A published fit, good to half a decibel, gives the shape parameter for a level of the first sidelobe, which is the
+// largest.
 TEST(Window, KaisersFirstSidelobeIsAsAskedForAndTheOthersFall) {
   for (const int n : {65, 256}) {
     for (const double level : {20.0, 35.0, 60.0, 90.0, 120.0}) {

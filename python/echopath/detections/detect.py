@@ -27,7 +27,7 @@ from .detections import Detections
 from .directions import directions_of
 from .echo_fields import EchoFields
 from .family_fields import FamilyFields, Signals
-from .noise import warn_of_missing_noise
+from .noise import mean_noise, warn_of_missing_noise
 from .uneven_fields import echo_fields
 
 
@@ -79,11 +79,11 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
     window, directions by `estimate_angles`, without the phase that transmit slots (TDM) add at that velocity between the cells.
     A detection has the part of the largest power in its cell without noise, and its object or ghost by the rule of labels
-    (ObjectLabel.cells); it is "noise" where echoes hold less than half of its power: those of the parts or labels in all
-    channels, of paths alone by a model of their fields in at most 8 channels, compared with the power in those, which follows
-    the sidelobes of an echo down to 60 dB below it, so that those farther down are noise unless there are parts or labels.
-    Errors of chains, filters and imbalance of `radar.receiver` count; images and skirts that it makes of echoes elsewhere are
-    noise.
+    (ObjectLabel.cells); it is "noise" where echoes hold less than half of its power above the mean of thermal noise: those of
+    the parts or labels in all channels, of paths alone by a model of their fields in at most 8 channels, compared with the power
+    in those, which follows the sidelobes of an echo down to 60 dB below it, so that those farther down are noise unless there
+    are parts or labels. Errors of chains, filters and imbalance of `radar.receiver` count; images and skirts that it makes of
+    echoes elsewhere are noise.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;
@@ -177,7 +177,7 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; echoes: with paths; progress: as in `detect`."""
     parts, labels, beside, gains, beams = makers.parts, makers.labels, makers.beside, makers.gains, makers.beams
-    found = labelling.CellLabels(len(cells))
+    found = labelling.CellLabels(mean_noise(radar, spectrum.window, cells, gains, beams))
     if makers.paths is not None:
         known = makers.known or family_powers(makers.paths, makers.objects, progress)
         families, whole, measured = _families_of(spectrum, radar, cells, power, makers, known.families, echoes, progress)

@@ -38,8 +38,8 @@ class Detections:
     part: [D] text, of the largest power in the cell; "noise" where is_noise; "" where nobody asked. In frames also what no path
         makes: "interference", "rain", "leakage"; and "residue", of other transmitters' echoes behind a code of "cdm", or of
         "ddm" or "bpm" whose chirps differ
-    is_noise: bool [D], echoes and other signals hold less than half of the power of its cell: noise alone made it, or made an
-        echo larger by more than 3 dB, or many channels found, without beams, an echo below the noise of each of them
+    is_noise: bool [D], echoes and other signals hold less than half of what its cell has above the mean of thermal noise: noise
+        alone made it, or made an echo larger by more than 3 dB and that mean
     is_resolved: bool [D], the rays know the mean received power of the object or ghost that made it to 0.3 dB (`ep.unresolved`);
         False where nobody knows
     share: [D] of that part in the sum of the powers of all parts, NaN without one

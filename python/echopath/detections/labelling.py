@@ -9,7 +9,7 @@ from ..base.process.progress import with_progress
 from ..labels.cell_owners import CellOwners
 from .detections import NOISE
 
-HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
+HALF = 0.5  # of a cell's power above the mean noise: what echoes without noise hold less of was made by noise
 
 
 def part_powers(maps: dict, cells, gains, beams=None) -> tuple:
@@ -133,8 +133,10 @@ class CellLabels:
     families: list [N] of Family or None; resolved: set of the families whose power the rays know
     """
 
-    def __init__(self, count: int):
-        self.families, self.resolved = [None] * count, set()
+    def __init__(self, noise):
+        """noise: [N] W, mean power of thermal noise in the cells"""
+        count = len(noise)
+        self._noise, self.families, self.resolved = noise, [None] * count, set()
         self._part, self._share = np.full(count, "", dtype=str), np.full(count, np.nan)
         self._echoes, self._measured = None, None
 
@@ -169,8 +171,11 @@ class CellLabels:
         self.families = [None if part in names else family for part, family in zip(self._part, self.families)]
 
     def columns(self) -> dict:
-        """{name of a field of Detections: [N]}; cells of which echoes hold less than half are of noise."""
-        is_noise = np.zeros(len(self.families), bool) if self._echoes is None else self._echoes < HALF * self._measured
+        """{name of a field of Detections: [N]}; cells are of noise where echoes hold less than half of what stands above the mean
+        of thermal noise."""
+        is_noise = np.zeros(len(self.families), bool)
+        if self._echoes is not None:
+            is_noise = (self._echoes == 0.0) | (self._echoes < HALF * (self._measured - self._noise))
         is_resolved = np.array([family in self.resolved for family in self.families], bool) & ~is_noise
         return {"part": np.where(is_noise, NOISE, self._part), "share": np.where(is_noise, np.nan, self._share),
                 "is_noise": is_noise, "is_resolved": is_resolved} | _as_columns(self.families, is_noise)

@@ -1,4 +1,4 @@
-"""Whether a map holds the noise that detections are held against."""
+"""The noise that detections are held against, and whether a map holds it."""
 from __future__ import annotations
 
 import numpy as np
@@ -21,6 +21,15 @@ def warn_of_missing_noise(radar, power, of_filters) -> None:
     if np.mean(power < _LEAST_SHARE * noise * of_filters ** 2) > _QUANTILE:
         warn_user(f"spectrum: holds no noise of the radar ({in_dbm(noise):.0f} dBm in a cell), so that "
                   f"detections are sidelobes and rounding; {_way_out(radar.receiver)}")
+
+
+def mean_noise(radar, window, cells, gains, beams=None) -> np.ndarray:
+    """Mean power [N] of thermal noise in W in cells [N, 2] of a map, of a channel or in a beam.
+
+    window: of the map; gains: EchoGains; beams: weights [N, tx, rx] of the beams of the cells, None: none
+    """
+    of_channel = _core.cell_noise_power(radar, window) * gains.of_filters[cells[:, 1]] ** 2
+    return of_channel if beams is None else of_channel * np.sum(np.abs(beams) ** 2, axis=(1, 2))
 
 
 def _way_out(receiver) -> str:

@@ -30,10 +30,10 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
         transmitters 1 tries those a turn of the map faster and slower, too. Without it, what is too fast for the map has a
         wrong azimuth as well
     progress: callable (stage, fraction), True for bars, or None
-    Noise is what the signal without noise holds less than half of. Objects and ghosts are told apart above the noise margin of
-    the frame's labels, 10 dB where it has none, by paths that hold the cell; sidelobes more than 60 dB below an echo are of none.
-    Of frames whose records are renewed (`retrace`) they are those of all records, which takes a synthesis of its own, and the
-    paths behind them those of mid-frame.
+    Noise is a cell of which, above the mean of thermal noise, the signal without noise holds less than half. Objects and ghosts
+    are told apart above the noise margin of the frame's labels, 10 dB where it has none, by paths that hold the cell; sidelobes
+    more than 60 dB below an echo are of none. Of frames whose records are renewed (`retrace`) they are those of all records,
+    which takes a synthesis of its own, and the paths behind them those of mid-frame.
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
     signals, KeyboardInterrupt on Ctrl-C.
     """

@@ -45,7 +45,8 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
                   labels=None, truth=None, progress=None) -> Frame:
     """The frame that a scene file describes.
 
-    num_rays, seed, batches, labels, truth: instead of those of the file; labels, truth as in `ep.simulate`
+    num_rays, seed, batches, labels: instead of those of the file; labels as in `ep.simulate`
+    truth: True: also where the file does not ask for it, whose own [truth] says of which objects
     extra_parts: {partition: {part: selection}} beside those of the file.
     """
     keywords = keywords_of(scene_file, num_rays=num_rays, seed=seed, batches=batches, truth=truth, extra_parts=extra_parts)
@@ -55,7 +56,7 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
 
 def keywords_of(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, truth=None, extra_parts=None) -> dict:
     """Keywords of `ep.simulate` and `ep.Sequence`; arguments as in `simulate_file`."""
-    instead = {"num_rays": num_rays, "seed": seed, "batches": batches, "truth": truth}
+    instead = {"num_rays": num_rays, "seed": seed, "batches": batches, "truth": truth if scene_file.truth is None else None}
     keywords = scene_file.keywords() | {name: value for name, value in instead.items() if value is not None}
     return keywords | {"parts": keywords["parts"] | (extra_parts or {})}
 

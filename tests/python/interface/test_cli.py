@@ -279,6 +279,18 @@ def test_a_run_takes_the_files_of_an_earlier_one_along(scene_path, tmp_path):
     assert left == {path.name for path in fresh.iterdir()} | {"notes.txt"}
 
 
+def test_asking_for_truth_keeps_the_objects_that_the_scene_file_names(scene_path, tmp_path):
+    scene_path.write_text(SCENE + '[truth]\nobjects = {sheet = "plate"}\n')
+    tables = []
+    for options in ((), ("--truth",)):
+        out = tmp_path / f"out{len(tables)}"
+        done = call("run", scene_path, "--out", out, "--rays", "200", "--frames", "1", "--interval", "0.1", "--keep", "labels",
+                    *options)
+        assert done.returncode == 0, done.stderr
+        tables.append((out / "truth.csv").read_text())
+    assert "sheet" in tables[0] and tables[1] == tables[0]
+
+
 @pytest.mark.usefixtures("blank_pictures")
 def test_a_picture_that_fails_is_a_warning_beside_the_report(scene_path, tmp_path, monkeypatch):
     def fail(*_, **__):

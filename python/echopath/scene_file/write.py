@@ -101,8 +101,12 @@ def _settings(unit: float | None, up: str | None) -> str:
 
 
 def _relative(path: Path, folder: Path) -> str:
+    """The way from a folder to a path, which `..` goes through what links lead to."""
     try:
-        return Path(os.path.relpath(path, folder)).as_posix()
+        way = os.path.relpath(path, folder)
+        if os.path.realpath(folder / way) != os.path.realpath(path):
+            way = os.path.relpath(Path(os.path.realpath(path.parent), path.name), os.path.realpath(folder))
+        return Path(way).as_posix()
     except ValueError:  # on another drive
         return path.absolute().as_posix()
 

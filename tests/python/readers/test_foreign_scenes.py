@@ -297,6 +297,26 @@ def test_things_of_a_street_are_told_apart_in_the_scene_that_is_written_for_it(t
     assert all(f"\n  {name} " in told for name in ("van", "trailer", "pole", "bin")) and "\n  street " not in told
 
 
+@pytest.mark.parametrize("path, out", [("in/a.obj", "results/a.toml"), ("results/../../../in/a.obj", "a.toml")])
+def test_a_scene_file_finds_its_model_where_links_lead_to_other_folders(tmp_path, monkeypatch, path, out):
+    """results is a link to deep/er/est, so that results/.. is deep/er."""
+    monkeypatch.chdir(tmp_path)
+    for folder in ("in", "deep/er/est"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "results").symlink_to("deep/er/est")
+    (tmp_path / "in/a.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    assert main(["scene", path, "--out", out]) == 0
+    assert len(ep.load_scene(out).scene.meshes) == 1
+
+
+def test_a_scene_file_names_a_model_below_it_by_the_link_that_its_user_takes(tmp_path):
+    (tmp_path / "in").mkdir()
+    (tmp_path / "models").symlink_to("in")
+    (tmp_path / "in/a.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    assert main(["scene", str(tmp_path / "models/a.obj"), "--out", str(tmp_path / "a.toml")]) == 0
+    assert 'model = "models/a.obj"' in (tmp_path / "a.toml").read_text()
+
+
 def test_commands_that_are_told_can_be_pasted(tmp_path, capsys):
     """Names with spaces stand in quotes of the shell."""
     (tmp_path / "a b.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")

@@ -48,12 +48,13 @@ def run(options) -> None:
     from ..scene_file.lines import settings_told
     from . import report
     from .resumable import print_resumable
-    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
+    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, require_raw_name, simulate_file, write_outputs
     from .run_sequence import is_sequence, require_no_others, run_sequence
 
     out = Path(options.out)
     require_writable(out.parent if out.is_file() else out, "--out")
     if options.raw is not None:
+        require_raw_name(options.raw)
         require_writable(Path(file("--raw", options.raw)).parent, "--raw")
     with told_as(path="SCENE.toml"):
         scene_file = load_scene(options.scene)

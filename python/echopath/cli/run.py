@@ -17,7 +17,7 @@ from ..frame.frame import Frame
 from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame
 from ..frame_file.frame import partition_names
-from ..frame_file.opening import reading
+from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES, reading
 from ..paths.families import families
 from ..paths.resolution import RESOLVED_DB
 from ..plots.frames import limits_of_frame, noise_words, title_of
@@ -29,6 +29,7 @@ from .label_outputs import MAPS_FOLDER, file_names, label_maps_of, label_names, 
 from .warned import pictures_warned
 
 FRAME_NAME, TRUTH_NAME, DETECTIONS_NAME = "frame.h5", "truth.csv", "detections.csv"
+_NOT_RAW = (*FRAME_SUFFIXES, ".toml", ".csv", ".png", ".json", ".gif")
 _PICTURES = ("scene", "map", "overview", "range_azimuth", "objects_and_ghosts")  # beside those of partitions
 
 
@@ -131,6 +132,14 @@ def _remove(files: list[Path], folder: Path) -> None:
         path.unlink(missing_ok=True)
     with suppress(OSError):
         folder.rmdir()
+
+
+def require_raw_name(path) -> None:
+    """Raises ValueError where raw data would be written to a file of a kind that the run reads or writes, in whose place it would
+    be."""
+    if Path(path).suffix.lower() in _NOT_RAW:
+        raise ValueError(f"--raw: must be a file of raw data (.bin), of no kind that a run reads or writes ({', '.join(_NOT_RAW)})"
+                         f", got '{path}'")
 
 
 def raw_line(path, num_bytes: int) -> str:

@@ -279,6 +279,15 @@ def test_a_run_takes_the_files_of_an_earlier_one_along(scene_path, tmp_path):
     assert left == {path.name for path in fresh.iterdir()} | {"notes.txt"}
 
 
+@pytest.mark.parametrize("raw", ["out/frame.h5", "plate.toml", "out/MAP.PNG"])
+def test_raw_data_takes_the_place_of_no_file_of_its_run(scene_path, tmp_path, monkeypatch, capsys, raw):
+    monkeypatch.setattr(ep._core, "trace", None)  # no work begins
+    text = scene_path.read_text()
+    assert main(["run", str(scene_path), "--out", str(tmp_path / "out"), "--raw", str(tmp_path / raw)]) == 2
+    assert capsys.readouterr().err.startswith("echopath: --raw: must be a file of raw data (.bin), of no kind that a run reads ")
+    assert scene_path.read_text() == text and not (tmp_path / "out").exists()
+
+
 def test_asking_for_truth_keeps_the_objects_that_the_scene_file_names(scene_path, tmp_path):
     scene_path.write_text(SCENE + '[truth]\nobjects = {sheet = "plate"}\n')
     tables = []

@@ -138,8 +138,8 @@ def require_raw_name(path) -> None:
     """Raises ValueError where raw data would be written to a file of a kind that the run reads or writes, in whose place it would
     be."""
     if Path(path).suffix.lower() in _NOT_RAW:
-        raise ValueError(f"--raw: must be a file of raw data (.bin), of no kind that a run reads or writes ({', '.join(_NOT_RAW)})"
-                         f", got '{path}'")
+        kinds = ", ".join(_NOT_RAW)
+        raise ValueError(f"--raw: must be a file of raw data (.bin), of no kind that a run reads or writes ({kinds}), got '{path}'")
 
 
 def raw_line(path, num_bytes: int) -> str:

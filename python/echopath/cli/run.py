@@ -139,7 +139,8 @@ def require_raw_name(path) -> None:
     be."""
     if Path(path).suffix.lower() in _NOT_RAW:
         kinds = ", ".join(_NOT_RAW)
-        raise ValueError(f"--raw: must be a file of raw data (.bin), of no kind that a run reads or writes ({kinds}), got '{path}'")
+        rule = f"must be a file of raw data (.bin), of no kind that a run reads or writes ({kinds})"
+        raise ValueError(f"--raw: {rule}, got '{path}'")
 
 
 def raw_line(path, num_bytes: int) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from ..base.process.libraries import needed_module
 from ..base.process.threads import set_num_threads
 from .address import Address, is_address
-from .folder import RECORD, SceneRecord, record_text, scene_folder, scene_name
+from .folder import RECORD, SceneRecord, absolute, record_text, scene_folder, scene_name
 from .scene_work import make_scene
 from .template import Template
 from .workers import Done, in_this_process
@@ -36,7 +36,7 @@ def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run:
     where = folder if is_address(folder) else str(Path(folder).resolve())
     lost = (distributed.client.FutureCancelledError, distributed.comm.CommClosedError)
     try:
-        yield from _as_they_come(distributed, client, str(path.resolve()), where, iter(scenes), run)
+        yield from _as_they_come(distributed, client, str(absolute(path)), where, iter(scenes), run)
     except lost as error:
         raise _unreached(scheduler, error) from None
     finally:

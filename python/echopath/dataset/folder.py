@@ -117,7 +117,12 @@ def prepare_folder(folder: Path, template: Template) -> None:
     if is_new:
         write_texts(folder, {TEMPLATE: template.path.read_text(encoding="utf-8-sig")})
     if (is_new or not (folder / ORIGIN).exists()) and template.path.resolve() != kept.resolve():
-        write_texts(folder, {ORIGIN: json.dumps({"template": template.path.resolve().as_posix()}) + "\n"})
+        write_texts(folder, {ORIGIN: json.dumps({"template": absolute(template.path).as_posix()}) + "\n"})
+
+
+def absolute(path: Path) -> Path:
+    """Of a template, from wherever it is seen; a link stays one, since files that a template names are beside that."""
+    return path.parent.resolve() / path.name
 
 
 def _folder_of_files(folder: Path) -> Path:

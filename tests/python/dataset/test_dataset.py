@@ -34,6 +34,24 @@ def test_frames_are_read_in_any_working_folder(small_dataset, tmp_path, monkeypa
     assert opened[1].frame.labels == dataset.open(folder)[1].frame.labels
 
 
+def test_files_of_a_template_that_is_a_link_are_beside_the_link(tmp_path, monkeypatch):
+    """When the dataset is made and when its frames are made again, wherever that is."""
+    for folder in ("shared", "project"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "project/plate.obj").write_text("v 3 -1 0\nv 3 1 0\nv 3 0 2\nf 1 3 2\n")
+    objects = SCENE[SCENE.index("[[objects]]"):SCENE.index("[trace]")]
+    plate = '[[objects]]\nname = "plate"\nmesh = "plate.obj"\nmaterial = "metal"\n'
+    template = written(tmp_path / "shared", HEAD.replace("scenes = 6", "scenes = 1") + SCENE.replace(objects, plate))
+    link = tmp_path / "project" / template.name
+    link.symlink_to(template)
+    monkeypatch.chdir(tmp_path / "project")
+    assert [one.record.state for one in make(Path(link.name), tmp_path / "out")] == ["done"]
+    monkeypatch.chdir(tmp_path)
+    opened = dataset.open(tmp_path / "out")
+    again, kept = (one[0].frame.labels["parts"].objects for one in (opened.remade(), opened))
+    assert [one.power for one in again] == [one.power for one in kept] != []
+
+
 def test_info_tells_what_a_folder_holds(small_dataset):
     told = "\n".join(describe_file(small_dataset[1]))
     assert "6, 6 done" in told and "12, 2 of each scene" in told and "labels" in told

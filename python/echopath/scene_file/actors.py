@@ -11,7 +11,9 @@ from pydantic import create_model
 
 from .. import actors
 from .errors import blamed, validated
-from .tables.actor_keywords import actor_names, parameters_of
+from .models import material_of
+from .tables.actor_keywords import actor_names, material_keywords, parameters_of
+from .tables.object_tables import MaterialValue
 from .tables.table import Table, nearest_key
 
 
@@ -25,7 +27,12 @@ def named_actor(name: str, parameters: dict, folder: Path, key: str, **own):
 def actor_maker(name: str, parameters: dict, folder: Path, key: str) -> Callable[..., Any]:
     """What makes that actor of further keywords. Raises ValueError for parameters that it does not have."""
     factory = _actor_factory(name, f"{key}.actor")
-    known = validated(_parameter_table(name), parameters, (key, "parameters")).model_dump(exclude_unset=True)
+    table = validated(_parameter_table(name), parameters, (key, "parameters"))
+    known = table.model_dump(exclude_unset=True)
+    for keyword in material_keywords(name) & known.keys():
+        value = getattr(table, keyword)
+        material = material_of(value, f"{key}.parameters.{keyword}")
+        known[keyword] = value if isinstance(value, str) else material  # a name is told in what is made of it
     if "path" in known:
         known["path"] = folder / known["path"]  # of a motion capture, relative to the scene file
     return functools.partial(factory, **known)
@@ -46,6 +53,7 @@ def _actor_factory(name: str, key: str):
 @functools.cache
 def _parameter_table(name: str) -> type[Table]:
     """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
-    fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
+    fields = {parameter.name: (MaterialValue if parameter.name in material_keywords(name) else typing.Any,
+                               ... if parameter.default is parameter.empty else parameter.default)
               for parameter in parameters_of(name).values() if parameter.name not in ("material", "trajectory")}
     return create_model(f"{name}_parameters", __base__=Table, **fields)

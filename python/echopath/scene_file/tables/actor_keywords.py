@@ -18,6 +18,12 @@ def parameters_of(name: str) -> dict[str, inspect.Parameter]:
     return dict(inspect.signature(getattr(actors, name)).parameters)
 
 
+@functools.cache
+def material_keywords(name: str) -> frozenset[str]:
+    """Those keywords of a ready-made object that are materials of its parts, such as "clothing"."""
+    return frozenset(keyword for keyword, parameter in parameters_of(name).items() if "Material" in str(parameter.annotation))
+
+
 def has_parameter(name: object, keyword: str) -> bool:
     """Whether an actor of that name is known and has that keyword."""
     return isinstance(name, str) and name in actor_names() and keyword in parameters_of(name)

@@ -95,6 +95,18 @@ def test_mesh_files_are_found_beside_the_scene_file_and_placed(write):
     assert scene.meshes[0].material.permittivity == ep.materials["concrete"].permittivity
 
 
+def test_materials_among_the_parameters_of_an_actor_are_told_as_others_are(write):
+    text = ('[[objects]]\nname = "walker"\nactor = "standing_person"\nparameters = {edge = 0.08, skin = "rubber", '
+            'clothing = {base = "leather", permittivity = 2.0}}\n')
+    found = ep.load_scene(write(text.replace("leather", "plastic"))).scene
+    person = ep.actors.standing_person(edge=0.08, skin="rubber", clothing=ep.materials["plastic"].replace(permittivity=2.0))
+    expected = ep.Scene()
+    expected.add(person, name="walker")
+    assert [(mesh.material, mesh.material_name) for mesh in found.meshes] == [
+        (mesh.material, mesh.material_name) for mesh in expected.meshes]
+    assert "objects[0].parameters.clothing: unknown material 'leather'" in fault_of(write(text))
+
+
 def test_groups_of_a_mesh_file_are_meshes_of_their_own(write, tmp_path):
     (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng floor\nf 1 2 3\ng wall\nf 1 2 4\n")
     scene = ep.load_scene(write(mesh_object('material = "metal"'))).scene

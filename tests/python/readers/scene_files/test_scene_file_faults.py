@@ -66,6 +66,8 @@ FAULTS = [
      "parts.a: path expression: expected a glob that takes a mesh, got 'wal'; nearest names: "),
     (RADAR + "[parts]\nother = 'T . R'", "parts.other: must not use the name of the rest, got other"),
     (RADAR + mesh_object("material = 'concret'"), "objects[0].material: unknown material 'concret'"),
+    (RADAR + '[[objects]]\nname = "a"\nactor = "runner"\nparameters = {skin = "jeans"}\n',
+     "objects[0].parameters.skin: unknown material 'jeans'"),
     (RADAR + mesh_object("material = {scatering = 0.3}"),
      "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),
     (RADAR + mesh_object("material = {scattering = 1.3}"), "objects[0].material.scattering: must be at most 1"),

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import copy
 import warnings
+from collections.abc import Mapping, Set
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from .angles import range_azimuth
 
 DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
 
+_ARRAYS = ("azimuth", "elevation", "velocity_gate")
 _KEYWORDS = keywords("range_azimuth", parameters_of(range_azimuth)[2:])  # all but spectrum and radar
 
 
@@ -55,8 +57,17 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
 
 
 def _kept(settings: dict) -> dict:
-    """Settings that later changes of the caller's arrays and lists do not reach."""
-    return {name: copy.copy(value) if isinstance(value, (np.ndarray, list)) else value for name, value in settings.items()}
+    """Settings that later changes of the caller's arrays and lists do not reach, and that files can tell."""
+    return {name: _kept_array(value) if name in _ARRAYS else copy.copy(value) if isinstance(value, list) else value
+            for name, value in settings.items()}
+
+
+def _kept_array(value):
+    """What else than lists and tuples holds numbers, as a range or a coordinate of xarray, becomes an array."""
+    if isinstance(value, (np.ndarray, list)):
+        return copy.copy(value)
+    is_told = value is None or np.isscalar(value) or isinstance(value, (tuple, Mapping, Set))
+    return value if is_told else np.array(value)
 
 
 def _with_one_sample(radar):

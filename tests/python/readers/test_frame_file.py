@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import re
+from array import array
 
 import h5py
 import numpy as np
@@ -31,6 +32,16 @@ def test_every_keyword_of_a_map_from_above_is_read_again(tmp_path):
     ep.save_frame(made, tmp_path / "frame.h5")
     found = ep.load_frame(tmp_path / "frame.h5")
     assert found.angle_settings | {"velocity_gate": (-2.0, 2.0)} == angles
+    assert_same_bits(found.range_azimuth.power, made.range_azimuth.power)
+
+
+@pytest.mark.parametrize("azimuths", [range(-1, 2), array("d", [-0.5, 0.0, 0.5])], ids=["range", "array of Python"])
+def test_azimuths_of_a_map_from_above_are_read_again_whatever_holds_them(tmp_path, azimuths):
+    radar = build_radar(receivers=tuple((0, 0.002 * n, 0) for n in range(4)), num_chirps=4)
+    made = ep.simulate(curved_scene(), radar, num_rays=100, angles={"azimuth": azimuths}, guard=False)
+    ep.save_frame(made, tmp_path / "frame.h5")
+    found = ep.load_frame(tmp_path / "frame.h5")
+    assert found.range_azimuth.azimuth.tolist() == list(azimuths)
     assert_same_bits(found.range_azimuth.power, made.range_azimuth.power)
 
 

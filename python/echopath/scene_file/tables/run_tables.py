@@ -124,6 +124,8 @@ class AngleTable(Table):
     window: Window = Field("rect", description="over the array, of bartlett; others than rect for grids of equal steps")
     diagonal_loading: Annotated[float, Field(ge=1e-9, le=1e3)] = Field(
         0.01, description="of capon, relative to the mean power of the elements")
+    velocity_neighbours: Annotated[int, Field(ge=0, le=MOST_NEIGHBOURS)] | None = Field(
+        None, description="of capon, cells of velocity on each side in the covariance; none: 1")
     range_neighbours: int = Field(2, ge=0, le=MOST_NEIGHBOURS, description="of capon, cells on each side in the covariance")
     forward_backward: bool = Field(False, description="of capon, for arrays symmetric about their centre")
 

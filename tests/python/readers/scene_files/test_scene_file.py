@@ -191,6 +191,12 @@ def test_the_guard_is_on_unless_the_file_turns_it_off(write):
         assert bool(frame.checks) == is_on
 
 
+def test_all_cells_of_the_covariance_of_capon_may_be_chosen(write):
+    settings = ep.load_scene(write('[angle]\nmethod = "capon"\nvelocity_neighbours = 3\nrange_neighbours = 0\n')).angle_settings()
+    assert settings["velocity_neighbours"] == 3 and settings["range_neighbours"] == 0
+    assert "angle.velocity_neighbours: must be at most 64, got 65" in fault_of(write("[angle]\nvelocity_neighbours = 65\n"))
+
+
 def test_angles_are_keywords_of_range_azimuth_in_radians(write):
     assert ep.load_scene(write("")).angle_settings() == {
         "method": "bartlett", "combine": "peak", "window": "rect", "elevation": 0.0, "diagonal_loading": 0.01,

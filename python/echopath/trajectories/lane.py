@@ -14,6 +14,7 @@ from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
 
 WIDEST = 1e4          # m
 STEP = 1e-4            # m, of differences that give the second derivative
+INSIDE = 1e-6          # of a step: how far from a knot the ends of differences stay, behind which the centre line bends otherwise
 
 
 class Offsets:
@@ -55,7 +56,9 @@ class OffsetPath(Path):
 
     def jets(self, u):
         k = np.clip(np.searchsorted(self.knots, u, side="right") - 1, 0, len(self.knots) - 2)
-        low, high = np.maximum(u - STEP, self.knots[k]), np.minimum(u + STEP, self.knots[k + 1])
+        begin, end = self.knots[k], self.knots[k + 1]
+        inside = INSIDE * np.minimum(STEP, end - begin)
+        low, high = np.maximum(u - STEP, begin + inside), np.minimum(u + STEP, end - inside)
         point, first = self._jet(u)
         second = (self._jet(high)[1] - self._jet(low)[1]) / (high - low)[:, None]
         return point, first, second

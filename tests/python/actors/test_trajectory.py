@@ -278,6 +278,17 @@ def test_a_change_of_lanes_is_a_quintic():
     assert np.abs(one.acceleration(times)[:, 1]).max() == pytest.approx(most, rel=0.02)
 
 
+def test_rates_beside_arcs_are_those_of_the_own_side_up_to_their_ends():
+    """Of the velocity and the yaw over time, micrometres before and behind the places at which arcs and changes begin and end."""
+    lane = ep.Lane([(0, 0), (50, 0), (50, 50), (100, 50)], turn_radius=20.0)
+    one, step = lane.trajectory(speed=10.0, changes=[(20, 60, 3.0)]), 1e-7
+    times = np.add.outer(one._track.junctions()[1:-1], [-1e-5, -1e-6, 1e-6, 1e-5]).ravel()
+    change = (one.velocity(times + step) - one.velocity(times - step)) / (2 * step)
+    np.testing.assert_allclose(one.acceleration(times), change, atol=0.01)
+    np.testing.assert_allclose(one.yaw_rate(times), (one.yaw(times + step) - one.yaw(times - step)) / (2 * step), atol=0.001)
+    assert np.linalg.norm(one.acceleration(np.linspace(one.begin, one.end, 999)), axis=1).max() < 10.0**2 / (20.0 - 3.0)
+
+
 def test_copies_are_equal_and_change():
     for one in MOVES.values():
         assert pickle.loads(pickle.dumps(one)) == one

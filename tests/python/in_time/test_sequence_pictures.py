@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.base.storage.film import write_film
 from echopath.plots import drive, save_png
 from echopath.plots.maps import limits_of_level
 from echopath.sequence.movers import movers_at, own_speed
@@ -164,6 +165,16 @@ def test_a_film_has_a_picture_of_each_frame_in_real_time(stored, tmp_path):
     stored[1::-1].film(tmp_path / "back.gif", frames_per_second=5)
     with image.open(tmp_path / "back.gif") as film:
         assert film.info["duration"] == 200
+
+
+@pytest.mark.parametrize("frames_per_second", [1.0 / 0.066, 30.0, 60.0])
+def test_a_film_takes_its_time_though_gif_counts_hundredths_of_a_second(frames_per_second, tmp_path):
+    image, count = pytest.importorskip("PIL.Image"), 30
+    write_film(tmp_path / "film.gif", (np.full((4, 6, 3), 8 * place, np.uint8) for place in range(count)), frames_per_second)
+    with image.open(tmp_path / "film.gif") as film:
+        shown = [film.info["duration"] for place in range(film.n_frames) if film.seek(place) is None]
+    assert len(shown) == count and np.ptp(shown) <= 10
+    assert abs(1e-3 * sum(shown) - count / frames_per_second) <= 0.005
 
 
 def test_pictures_of_many_frames_hold_two_bytes_a_cell_and_one_frame():

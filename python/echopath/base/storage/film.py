@@ -41,8 +41,18 @@ def _write_gif(path, first, others, frames_per_second: float) -> None:
     from PIL import Image
 
     images = (Image.fromarray(picture).quantize(256) for picture in itertools.chain([first], others))
+    timed = _with_durations(images, frames_per_second)
     with open(path, "wb") as file:
-        next(images).save(file, "GIF", save_all=True, append_images=images, duration=round(1e3 / frames_per_second), loop=0)
+        next(timed).save(file, "GIF", save_all=True, append_images=timed, loop=0)
+
+
+def _with_durations(images, frames_per_second: float):
+    """The images, each shown for whole hundredths of a second, as GIF has them, so that all together take their time."""
+    shown = 0
+    for count, image in enumerate(images, 1):
+        end = max(shown + 1, round(100.0 * count / frames_per_second))
+        image.info["duration"], shown = 10 * (end - shown), end
+        yield image
 
 
 def _write_mp4(ffmpeg, path, first, others, frames_per_second: float) -> None:

@@ -13,6 +13,9 @@ from .track import Track
 from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
 
 WIDEST = 1e4          # m
+PARTS = 16            # of each interval between knots of a centre line, at first, among which hairpins are looked for
+MOST_TURN = 0.2       # rad, from place to place in a hairpin
+NARROWEST = 1e-9      # m, of a hairpin; in less way a line turns back on itself
 STEP = 1e-4            # m, of differences that give the second derivative
 INSIDE = 1e-6          # of a step: how far from a knot the ends of differences stay, behind which the centre line bends otherwise
 
@@ -30,6 +33,11 @@ class Offsets:
         self._first = first
         self.knots = np.concatenate([self._begins, self._begins + self._lengths])
 
+    @property
+    def largest(self) -> float:
+        """m, to either side."""
+        return float(np.abs(np.append(self._after, self._first)).max())
+
     def at(self, distances):
         """(offset in m, its change in m/m), each [N]."""
         offset, slope = np.full(len(distances), self._first), np.zeros(len(distances))
@@ -40,14 +48,36 @@ class Offsets:
         return offset, slope
 
 
+def _hairpins(center: Path, offset: float) -> np.ndarray:
+    """Distances [N] in m along a line, close to each other where it turns within so little way that a way beside it, so many m
+    away, swings farther than that. Raises ValueError where it turns back on itself, beside which no way leads on."""
+    shares = np.linspace(0.0, 1.0, PARTS, endpoint=False)
+    places = np.append((center.knots[:-1, None] + np.diff(center.knots)[:, None] * shares).ravel(), center.knots[-1])
+    found: list[np.ndarray] = []
+    while True:
+        slopes, distances = center.slopes_at(places), center.distances(places)
+        turns, ways = np.abs(np.diff(np.unwrap(np.arctan2(slopes[:, 1], slopes[:, 0])))), np.diff(distances)
+        is_sharp = (turns > MOST_TURN) & (turns * offset > ways)
+        if not is_sharp.any():
+            return np.concatenate([[], *found])
+        if np.any(ways[is_sharp] < NARROWEST):
+            place = distances[:-1][is_sharp & (ways < NARROWEST)][0]
+            raise ValueError(f"offset: must be 0 where the lane turns back on itself, as it does at {place:g} m, got up to "
+                             f"{offset:g} m to a side")
+        middles = 0.5 * (places[:-1] + places[1:])[is_sharp]
+        found.append(center.distances(middles))
+        places = np.sort(np.append(places, middles))
+
+
 class OffsetPath(Path):
     """A path beside another one; u is the distance along that one."""
 
     def __init__(self, center: Path, offsets: Offsets):
         self._center, self._offsets = center, offsets
-        knots = np.concatenate([center.junctions, offsets.knots[(offsets.knots > 0.0) & (offsets.knots < center.length)]])
-        self.knots = np.unique(knots)
+        junctions = np.concatenate([center.junctions, offsets.knots[(offsets.knots > 0.0) & (offsets.knots < center.length)]])
+        self.knots = np.unique(np.concatenate([junctions, _hairpins(center, offsets.largest)]))
         super().__init__(self.knots)
+        self.junctions = self.distances(np.unique(junctions))
         sideways = np.sum(self.jets(self._u)[1] * center.at(self._u)[1], axis=-1)
         if np.any(sideways <= 0.0):
             place = float(self._u[int(np.argmin(sideways))])

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-PIECES = 4, 128        # of each interval between knots, for the integral of the length: at first and at most
+PIECES = 4             # of each interval between knots, for the integral of the length, at first
+MOST_HALVINGS = 24     # of a piece: those that a hairpin needs lie in it alone
 FINE_PARTS = 256       # of each interval between knots, of even u: |p'| is small where a spline bends within little way
 DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance, and by which distances may lie beyond the end
 TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
@@ -77,16 +78,18 @@ class Path:
 
     def _divide(self) -> None:
         """Chooses the pieces, and the quintics of u over the distance in each."""
-        most, count = 2 * PIECES[1], PIECES[0]
-        while True:
-            parts = np.linspace(0.0, 1.0, count, endpoint=False)
-            self._u = np.append((self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts).ravel(), self.knots[-1])
+        parts = np.linspace(0.0, 1.0, PIECES, endpoint=False)
+        self._u = np.append((self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts).ravel(), self.knots[-1])
+        for _ in range(MOST_HALVINGS + 1):
             self._s = np.concatenate([[0.0], np.cumsum(self._integral(self._u[:-1], self._u[1:]))])
             self._quintics = self._made_quintics()
-            self._is_met = self._error() < DISTANCE_TOLERANCE
-            count *= 2
-            if self._is_met or count == most:
+            is_off = self._errors() >= DISTANCE_TOLERANCE
+            self._is_met = not is_off.any()
+            if self._is_met:
                 return
+            middles = 0.5 * (self._u[:-1] + self._u[1:])[is_off]
+            last, self._u = self._u, np.insert(self._u, 1 + np.flatnonzero(is_off), middles)
+        self._u = last
 
     def _made_quintics(self):
         """[K, 6] of the powers of the share of the distance within each piece."""
@@ -102,10 +105,10 @@ class Path:
         return np.stack([self._u[:-1], d0, 0.5 * b0, 10.0 * value - 4.0 * slope + 0.5 * bend,
                          -15.0 * value + 7.0 * slope - bend, 6.0 * value - 3.0 * slope + 0.5 * bend], axis=-1)
 
-    def _error(self) -> float:
-        """m, of the quintics in the middle of their pieces."""
+    def _errors(self):
+        """m [K], of the quintics in the middle of their pieces."""
         u = np.clip(self._quintics @ 0.5 ** np.arange(6), self._u[:-1], self._u[1:])
-        return float(np.abs(self._integral(self._u[:-1], u) - 0.5 * np.diff(self._s)).max())
+        return np.abs(self._integral(self._u[:-1], u) - 0.5 * np.diff(self._s))
 
     def _parameters(self, distances):
         """Parameters [N] at distances [N] within the path."""

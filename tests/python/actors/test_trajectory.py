@@ -9,6 +9,7 @@ import pytest
 
 import echopath as ep
 from echopath.trajectories.knots import curve_through
+from echopath.trajectories.lane import OffsetPath, Offsets
 from echopath.trajectories.path import SplinePath
 from echopath.trajectories.profile import Profile, hermite_coefficients, slopes_of
 from support.odd_values import is_named, refusals
@@ -495,6 +496,24 @@ def test_offsets_beyond_the_middle_of_a_curve_are_refused():
         ep.Lane([(0, 0), (40, 0), (40, 40)], turn_radius=5.0).trajectory(speed=5.0, offset=6.0)
 
 
+@pytest.mark.parametrize("points", [[(0, 0), (50, 0), (0, 1)], [(0, 0), (30, 0), (31, 0.3), (0, 5)], [(0, 0), (40, 0), (40, 40)]])
+def test_a_way_outside_of_a_turn_is_longer_by_the_turn_times_its_offset(points):
+    """That of a centre line which turns to one side only, also within millimetres; and no step of it is longer than the way."""
+    lane = ep.Lane(points)
+    center, offset = lane._path, 0.5
+    turn = np.ptp(center.bearings(np.array([0.0, center.length]))[0])
+    outside = OffsetPath(center, Offsets(-offset, np.zeros((0, 3))))
+    assert outside.length == pytest.approx(lane.length + turn * offset, abs=1e-5)
+    places = outside.points(np.linspace(0.0, outside.length, 3001))
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).max() < 1.00001 * outside.length / 3000
+
+
+@pytest.mark.parametrize("aside", [0.0, 1e-6])
+def test_beside_a_lane_that_turns_back_on_itself_no_way_leads_on(aside):
+    with pytest.raises(ValueError, match="offset: must be 0 where the lane turns back on itself, as it does at 50 m, got"):
+        ep.Lane([(0, 0), (50, 0), (0, aside)]).trajectory(speed=5.0, offset=2.0)
+
+
 # --- cost ---
 
 def test_places_on_a_spline_are_found_without_search_or_by_it(monkeypatch):
@@ -504,7 +523,7 @@ def test_places_on_a_spline_are_found_without_search_or_by_it(monkeypatch):
     table = SplinePath(points)
     distances = np.linspace(0.0, table.length, 5001)
     assert table._is_met and np.abs(table.distances(table._parameters(distances)) - distances).max() < 1e-9
-    monkeypatch.setattr("echopath.trajectories.path.PIECES", (4, 4))
+    monkeypatch.setattr("echopath.trajectories.path.MOST_HALVINGS", 0)
     coarse = SplinePath(points)
     assert not coarse._is_met
     assert np.abs(coarse.points(distances) - table.points(distances)).max() < 2e-9

@@ -181,7 +181,7 @@ TEST(AntennaPattern, KnowsItsSharpness) {
   for (const double up : {0.0, 60.0}) {
     const auto azimuth = axis(-20, 20, 0.1), elevation = axis(up - 5, up + 5, 0.1);
     const auto gain_of = [&](double along, double above) {
-      const double x = along * std::cos(up * kDegree), y = above - up * kDegree;
+      const double x = along * std::cos(above), y = above - up * kDegree;
       return std::exp(-(kSharp * kSharp * x * x + kBlunt * kBlunt * y * y));  // of the power
     };
     const auto gain = sampled(gain_of, azimuth, elevation);

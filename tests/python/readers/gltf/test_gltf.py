@@ -1,4 +1,5 @@
 """glTF files: their nodes, meshes and materials as a scene has them, and what is said of bad ones."""
+import re
 
 import numpy as np
 import pytest
@@ -205,6 +206,26 @@ def test_bytes_may_stand_in_the_file_or_beside_it_but_nowhere_else(tmp_path):
         (inner / "box.gltf").write_text(box_file().gltf(uri))
         with pytest.raises(ep.FileError, match=r"buffers\[0\].uri: must be the name of a file in the folder of this one"):
             ep.load_model(inner / "box.gltf")
+
+
+def test_model_and_bytes_may_be_links_into_a_store(tmp_path):
+    """As caches of large files keep them: names that tell nothing in one folder, links to them in another."""
+    store, model = tmp_path / "store", tmp_path / "model"
+    for folder in (store, model):
+        folder.mkdir()
+    (store / "0af3").write_text(box_file().gltf("box.bin"))
+    (store / "91c7").write_bytes(box_file().bytes)
+    (model / "box.gltf").symlink_to("../store/0af3")
+    (model / "box.bin").symlink_to("../store/91c7")
+    assert np.array_equal(world(ep.load_model(model / "box.gltf"))["box"], world(loaded(tmp_path, box_file()))["box"])
+
+
+@pytest.mark.parametrize("uri", ["gone.bin", "a" * 300, "box.gltf/box.bin", "loop", "."])
+def test_bytes_that_cannot_be_read_are_named(tmp_path, uri):
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "box.gltf").write_text(box_file().gltf(uri))
+    with pytest.raises(ep.FileError, match=re.escape(str(tmp_path))):
+        ep.load_model(tmp_path / "box.gltf")
 
 
 @pytest.mark.parametrize("extension, ahead", [("VRM", -1), ("VRMC_vrm", 1)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import os
 import posixpath
 import urllib.parse
 from collections.abc import Callable
@@ -126,7 +127,7 @@ def _refuse_constant(word: str):
 
 def _bytes_of(path: Path, file: str, place: str = "", most: int = -1) -> bytes:
     """The first bytes of a file, all of them without `most`."""
-    if not path.is_file():
+    if not os.path.isfile(path):  # of any name
         raise _core.FileError(f"{file}: {place}{path.name} is no file that is there")
     try:
         with path.open("rb") as stream:

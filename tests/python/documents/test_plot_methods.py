@@ -100,6 +100,8 @@ def test_the_picture_of_a_scene_refuses_by_name_what_is_none(frame, scene, paths
     (lambda frame: ep.plots.draw_detections(frame), "detections", "Frame"),
     (lambda frame: ep.plots.draw_tracks(frame), "tracks", "Frame"),
     (lambda frame: ep.plots.draw_truth(frame.detections), "truth", "Detections"),
+    (lambda frame: ep.plots.draw_pattern(frame.radar.transmitters[0]), "pattern", "Antenna"),
+    (lambda frame: ep.plots.draw_array(frame.scene), "radar", "Scene"),
     (lambda frame: ep.plots.draw_frame(frame.spectrum), "frame", "RangeDoppler"),
     (lambda frame: ep.plots.draw_time_map(frame), "map", "Frame"),
     (lambda frame: ep.plots.draw_angle_spectrum(frame.spectrum), "spectrum", "RangeDoppler"),
@@ -305,6 +307,37 @@ def test_the_truth_is_drawn_where_the_boxes_are_from_the_radar_and_in_the_world(
         assert "dashed" in ax.get_title() and "arrows" in ax.get_title()
     with pytest.raises(ValueError, match="view: must be 'radar' or 'world', got 'map'"):
         truth.plot("map")
+
+
+def test_the_cuts_of_a_pattern_are_those_of_its_law(ax):
+    """The gain of a lossless cos^4 is 10, of a narrow fan 16 ln 2 over the product of its widths, a half at half of each."""
+    assert ep.plots.draw_pattern(ep.CosinePower(4.0), ax=ax) is ax and "10.0 dBi" in ax.get_title()
+    for line in ax.lines:
+        angle, gain = line.get_data()
+        ahead = np.abs(angle) < 80.0
+        assert gain[ahead] == pytest.approx(10.0 + 40.0 * np.log10(np.cos(np.radians(angle[ahead]))), abs=1e-6)
+        assert gain[np.abs(angle) > 95.0].max() < ax.get_ylim()[0]
+    ax.clear()
+    ep.plots.draw_pattern(ep.GaussianBeam(azimuth=np.radians(20.0), elevation=np.radians(5.0)), ax=ax)
+    peak = 10.0 * np.log10(16.0 * np.log(2.0) / np.prod(np.radians([20.0, 5.0])))
+    for line, width in zip(ax.lines, (20.0, 5.0)):
+        angle, gain = line.get_data()
+        assert gain.max() == pytest.approx(peak, abs=0.05)
+        assert np.interp(0.5 * width, angle, gain) - gain.max() == pytest.approx(10.0 * np.log10(0.5), abs=0.02)
+
+
+def test_an_array_is_drawn_in_wavelengths_with_the_elements_that_it_makes(ax):
+    """Three transmitters two wavelengths apart and four receivers half a one make a row of twelve, half a wavelength apart."""
+    half = 0.5 * build_radar(num_samples=64, num_chirps=4).waveform.wavelength
+    radar = build_radar([ep.Antenna((0.0, 4.0 * k * half, 1.0)) for k in range(3)],
+                        [ep.Antenna((0.0, k * half, 1.0 - 4.0 * half)) for k in range(4)], num_samples=64, num_chirps=4)
+    ep.plots.draw_array(radar, ax=ax, title="Mine")
+    places = {one.get_label(): np.asarray(one.get_offsets()) for one in ax.collections}
+    assert list(places) == ["transmitters: 3", "receivers: 4", "virtual elements: 12"] and ax.get_title() == "Mine"
+    transmitters, receivers, virtual = places.values()
+    assert np.sort(transmitters[:, 0]) == pytest.approx([-2.0, 0.0, 2.0]) and np.ptp(receivers[:, 0]) == pytest.approx(1.5)
+    assert transmitters[0, 1] - receivers[0, 1] == pytest.approx(2.0)
+    assert np.sort(virtual[:, 0]) == pytest.approx(0.5 * np.arange(12) - 2.75) and np.ptp(virtual[:, 1]) == pytest.approx(0.0)
 
 
 def test_the_velocity_of_one_chirp_has_no_other_tick_than_its_own(ax):

@@ -70,7 +70,7 @@ def _draw(ax, spectrum, level) -> None:
     angles, label = (elevation[up], ELEVATION_LABEL) if is_upright else (azimuth[across], AZIMUTH_LABEL)
     ax.plot(angles, level.ravel(), color="#0072b2", linewidth=1.4, marker="o" if len(angles) == 1 else None)
     ax.set_ylim(highest - SHOWN_DB, highest + 3.0)
-    if not is_upright and len(angles) > 1:
+    if not is_upright and len(angles) > 1 and not ax.xaxis_inverted():
         ax.invert_xaxis()  # left is left, as seen from the radar
     ax.set_xlabel(label)
     ax.set_ylabel(POWER_LABEL)

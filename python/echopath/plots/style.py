@@ -77,6 +77,15 @@ def axes_or_new(ax, width: float, height: float):
         yield ax
 
 
+def look_from_above(ax) -> None:
+    """Gives axes one scale for both directions and left on the left. Those that are so already, with a map from above or other
+    points in them, keep their frame: turned around once more they would show what is left on the right."""
+    if ax.get_aspect() != 1.0:
+        ax.set_aspect("equal", adjustable="datalim")
+    if not ax.xaxis_inverted():
+        ax.invert_xaxis()
+
+
 def short_name(name: str) -> str:
     """The name of an object as pictures write it: of a long one both ends, by which those of foreign files differ."""
     if len(name) <= LONGEST_NAME:

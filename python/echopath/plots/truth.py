@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arguments.checks import choice, text
 from ..base.text.counts import counted
-from .style import axes_or_new, require_drawable, short_name
+from .style import axes_or_new, look_from_above, require_drawable, short_name
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 if TYPE_CHECKING:
@@ -43,9 +43,7 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
         ax.autoscale_view()
         across, up = LABELS[view]
         ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names))
-        ax.set_aspect("equal", adjustable="datalim")
-        if not ax.xaxis_inverted():
-            ax.invert_xaxis()
+        look_from_above(ax)
         ax.grid(alpha=0.25)
     return ax
 

@@ -149,6 +149,27 @@ def test_points_of_detections_lie_where_the_target_is(frame, ax):
         frame.detections.plot("side")
 
 
+@pytest.mark.parametrize("first", ["detections", "truth", "range_azimuth"])
+@pytest.mark.parametrize("second", ["detections", "truth"])
+def test_what_is_drawn_over_another_picture_from_above_leaves_left_on_the_left(frame, ax, first, second):
+    def draw(name):
+        getattr(frame, name).plot(*["above"] * (name == "detections"), ax=ax)
+
+    draw(first)
+    limits = ax.get_xlim(), ax.get_ylim()
+    draw(second)
+    assert ax.xaxis_inverted() and ax.get_aspect() == 1.0
+    if first == "range_azimuth":  # a sector, which has its frame
+        ax.figure.canvas.draw()
+        assert (ax.get_xlim(), ax.get_ylim()) == limits
+
+
+def test_curves_of_two_angle_spectra_in_the_same_axes_have_left_on_the_left(frame, ax):
+    for window in ("hann", "rect"):
+        ep.angle_fft(frame.spectrum, frame.radar, window=window).plot(range=RANGE, velocity=0.0, ax=ax)
+        assert ax.xaxis_inverted()
+
+
 def test_labels_show_parts_or_objects(frame, ax):
     labels = frame.labels["parts"]
     words = {}

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 VIEWS = ("radar", "world")
 SIZE = 6.6, 5.4      # inches
 COLOUR = "0.25"      # of all: their names tell them apart, also over the colours of detections
+RIM = 2.5            # points, white around what is dark: maps from above are dark themselves
 WAY = 1.0            # s, whose way an arrow shows
 SHORTEST = 0.1       # m, of arrows: what stands has none
 MOST_NAMES = 30      # beside boxes, of those that the radar sees most of; more would hide one another
@@ -42,7 +43,7 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
             _draw_object(ax, truth.of_object(name), view, short_name(name) if name in named else None)
         ax.autoscale_view()
         across, up = LABELS[view]
-        ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names))
+        ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names, view))
         look_from_above(ax)
         ax.grid(alpha=0.25)
     return ax
@@ -58,22 +59,35 @@ def _draw_object(ax, rows, view: str, label: str | None) -> None:
     in_radar = view == "radar"
     corners = rows.corners_in_radar if in_radar else rows.corners
     centre = rows.position_in_radar if in_radar else rows.position
-    speed = np.linalg.norm(rows.velocity, axis=1, keepdims=True)
-    way = WAY * (np.nan_to_num(speed * rows.direction_in_radar) if in_radar else rows.velocity)
-    ax.plot(centre[:, 1], centre[:, 0], "-", color=COLOUR, linewidth=0.6)
+    way, look = _ways(rows, view), {"color": COLOUR, "path_effects": _rim()}
+    ax.plot(centre[:, 1], centre[:, 0], "-", linewidth=0.6, **look)
     for box, middle, along, share in zip(corners, centre, way, rows.visible_share):
         for face in FACES:
-            ax.plot(box[face, 1], box[face, 0], "-" if share > 0.0 else "--", color=COLOUR, linewidth=1.0)
+            ax.plot(box[face, 1], box[face, 0], "-" if share > 0.0 else "--", linewidth=1.0, **look)
         if np.hypot(*along[:2]) > SHORTEST:
             ax.annotate("", middle[1::-1] + along[1::-1], middle[1::-1], annotation_clip=False,
-                        arrowprops={"arrowstyle": "->", "color": COLOUR, "shrinkA": 0.0, "shrinkB": 0.0})
+                        arrowprops={"arrowstyle": "->", "shrinkA": 0.0, "shrinkB": 0.0, **look})
     ax.update_datalim(np.stack([centre + way, centre])[..., 1::-1].reshape(-1, 2))
     if label is not None:
-        ax.annotate(label, centre[-1, 1::-1], xytext=(5, 5), textcoords="offset points", color="0.1", fontsize=7)
+        ax.annotate(label, centre[-1, 1::-1], xytext=(5, 5), textcoords="offset points", color="0.1", fontsize=7,
+                    path_effects=_rim())
 
 
-def _title(truth, names) -> str:
-    arrows = np.any(np.hypot(*truth.velocity[:, :2].T) > SHORTEST / WAY)
+def _rim() -> list:
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=RIM, foreground="white")]
+
+
+def _title(truth, names, view: str) -> str:
+    arrows = np.any(np.hypot(*_ways(truth, view)[:, :2].T) > SHORTEST)
     dashes = np.any(truth.visible_share == 0.0)
     return "; ".join([counted(len(names), "object"), *["arrows: ways of a second"] * bool(arrows),
                       *["dashed: the radar sees nothing of it"] * bool(dashes)])
+
+
+def _ways(rows, view: str) -> np.ndarray:
+    """Ways [N, 3] in m over ground, 0 where they are not known."""
+    if view == "world":
+        return WAY * rows.velocity
+    return WAY * np.nan_to_num(np.linalg.norm(rows.velocity, axis=1, keepdims=True) * rows.direction_in_radar)

@@ -361,6 +361,24 @@ def test_an_array_is_drawn_in_wavelengths_with_the_elements_that_it_makes(ax):
     assert np.sort(virtual[:, 0]) == pytest.approx(0.5 * np.arange(12) - 2.75) and np.ptp(virtual[:, 1]) == pytest.approx(0.0)
 
 
+def test_the_truth_of_files_without_directions_in_the_radar_tells_of_no_arrows(frame, ax):
+    old = dataclasses.replace(frame.truth, velocity=np.array([[4.0, 0.0, 0.0]]),
+                              direction_in_radar=np.full_like(frame.truth.direction_in_radar, np.nan))
+    for view, has_arrows in (("radar", False), ("world", True)):
+        ax.clear()
+        old.plot(view, ax=ax)
+        assert ("arrows" in ax.get_title()) == has_arrows == any(text.arrow_patch is not None for text in ax.texts)
+
+
+def test_the_boxes_of_the_truth_stand_out_of_a_dark_map(frame, ax):
+    """Each stroke has white beside it, as the darkest colours of a map are black."""
+    frame.range_azimuth.plot(ax=ax)
+    drawn = list(ax.lines)
+    frame.truth.plot(ax=ax)
+    new = [line for line in ax.lines if line not in drawn]
+    assert new and all(line.get_path_effects() for line in new)
+
+
 def test_the_velocity_of_one_chirp_has_no_other_tick_than_its_own(ax):
     radar = build_radar(num_samples=16, num_chirps=1)
     ep.range_doppler(np.ones((1, 1, 1, 16), complex), radar).plot(ax=ax)

@@ -147,6 +147,19 @@ def test_main_lobes_end_at_the_first_null(window, bins):
     assert main_lobe_half_width(samples_of(window, 64)) == pytest.approx(bins, abs=1.0 / 64.0)
 
 
+def first_sidelobe_db(samples) -> float:
+    """Level below the main lobe of the largest sidelobe."""
+    response = np.abs(np.fft.rfft(samples, 1 << 14))
+    rises = np.flatnonzero(np.diff(response) > 0.0)
+    return 20.0 * np.log10(response[0] / response[rises[0]:].max())
+
+
+@pytest.mark.parametrize("count, error_db", [(16, 3.0), (48, 1.0), (128, 1.0)])
+def test_kaisers_level_is_met_as_closely_as_it_is_said_to_be(count, error_db):
+    for sidelobe_db in range(20, 121, 5):
+        assert first_sidelobe_db(samples_of(("kaiser", float(sidelobe_db)), count)) == pytest.approx(sidelobe_db, abs=error_db)
+
+
 def test_bad_input_is_an_error():
     radar = radar_of(num_chirps=4)
     cube = np.zeros((1, 1, 4, 512))

@@ -65,3 +65,38 @@ def test_a_ball_that_crosses_a_narrow_beam_is_heard_in_it_alone():
     off = np.arctan2(place, DISTANCE)
     expected = level_in_beam(off) * np.cos(off) ** 2
     assert np.abs(found - expected / expected.max()).max() < ERROR
+
+
+def error_of_nodes(scene, radar) -> float:
+    """Largest error of the signal with few nodes, over the largest of that which is evaluated in every chirp."""
+    paths = ep.trace(scene, radar, num_rays=1000)
+    exact = ep.synthesize(paths, radar, evaluate="chirps")
+    return np.abs(ep.synthesize(paths, radar) - exact).max() / np.abs(exact).max()
+
+
+@pytest.mark.parametrize("frame_time, width_deg", [(0.25, 0.5), (0.1, 2.0), (0.05, 0.5)])
+def test_a_ball_that_crosses_the_beam_of_a_receiver_far_from_the_transmitter_is_heard(frame_time, width_deg):
+    """Seen from the transmitter, 99 m away, it hardly moves; before the receiver, 4 m away, it had no echo."""
+    waveform = WAVEFORM.replace(chirp_interval=frame_time / CHIRPS, bandwidth=80e6)
+    beam = ep.GaussianBeam(azimuth=np.radians(width_deg), elevation=TALL)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna((95.0, 0.0, 0.0), pattern=beam)])
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(BALL), name="ball", material="metal", smooth=True, position=(99.0, -40.0 * frame_time / 2.6, 0.0),
+              motion=ep.LinearMotion(velocity=(0.0, 40.0, 0.0)))
+    assert error_of_nodes(scene, radar) < 1e-4
+
+
+@pytest.mark.parametrize("what", ["floor", "wall"])
+def test_places_of_large_triangles_are_seen_when_a_narrow_beam_passes_them(what):
+    """Their corners are 30 m away, and sweep through the beam far more slowly than what lies right before the radar."""
+    surface, angles, beam = {
+        "floor": (ep.actors.ground(60.0, edge=60.0), {"pitch": -np.radians(40)}, {"azimuth": TALL, "elevation": WIDTH}),
+        "wall": (ep.actors.wall(60.0, 4.0, edge=60.0), {"yaw": np.radians(90)}, {"azimuth": 1.5 * WIDTH, "elevation": TALL}),
+    }[what]
+    scene = ep.Scene()
+    scene.add(surface, name=what, material=ep.Material(permittivity=5.0, scattering=0.6),
+              position=(0.0, 0.0 if what == "floor" else 2.0, 0.0))
+    antennas = [ep.Antenna(pattern=ep.GaussianBeam(**beam), **angles)]
+    radar = ep.Radar(WAVEFORM.replace(chirp_interval=0.1 / CHIRPS), position=(0.0, 0.0, 1.0), transmitters=antennas,
+                     receivers=antennas, motion=ep.LinearMotion(velocity=(30.0, 0.0, 0.0)))
+    assert error_of_nodes(scene, radar) < 1e-4

@@ -42,8 +42,6 @@ class TriedVertices {
   std::vector<std::vector<Vec3>> at_;  // by node where the mesh deforms, else one for all
 };
 
-}  // namespace
-
 // Returns the sharpness (AntennaPattern) of the two-way beam, which is sharper than that of either end.
 double sharpness_of(const Radar& radar) {
   double largest[2] = {0.0, 0.0};
@@ -53,6 +51,50 @@ double sharpness_of(const Radar& radar) {
   }
   return std::hypot(largest[0], largest[1]);
 }
+
+// Returns whether a point, seen by the antenna of a posed scene, passes no beam between two nodes of a piece. position(node) is
+// the point relative to the origin of that scene, m.
+template <class Position>
+bool stays_in_beam(const FrameNodes& nodes, const PosedScenes& scenes, bool of_receivers, double sharpness,
+                   const Position& position) {
+  Vec3 before = Vec3::Zero();  // the direction in the axes of the antenna
+  for (size_t node = 0; node < scenes.size(); ++node) {
+    const PosedAntenna& antenna = scenes[node].antennas(of_receivers).front();
+    const Vec3 direction = antenna.antenna_from_world * (position(node) - antenna.position).normalized();
+    const bool is_first_of_piece = node % static_cast<size_t>(nodes.order) == 0;
+    if (!is_first_of_piece && sharpness * (direction - before).norm() > kStepInBeam) return false;
+    before = direction;
+  }
+  return true;
+}
+
+// Returns the point of a triangle that is nearest to `from` (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+Vec3 nearest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from) {
+  const Vec3 ab = b - a, ac = c - a;
+  const double d1 = ab.dot(from - a), d2 = ac.dot(from - a), d3 = ab.dot(from - b), d4 = ac.dot(from - b),
+               d5 = ab.dot(from - c), d6 = ac.dot(from - c);
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double of_c = d1 * d4 - d3 * d2, of_b = d5 * d2 - d1 * d6, of_a = d3 * d6 - d5 * d4;
+  if (of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + d1 / (d1 - d3) * ab;
+  if (of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + d2 / (d2 - d6) * ac;
+  if (of_a <= 0.0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  return a + (of_b * ab + of_c * ac) / (of_a + of_b + of_c);
+}
+
+// Returns the point of a mesh, in its frame, that is nearest to `from`. It sweeps through a beam the fastest.
+Vec3 nearest_of_mesh(const Mesh& mesh, const Vec3& from) {
+  const std::vector<Vec3>& vertices = mesh.vertices();
+  Vec3 nearest = vertices.front();
+  for (const Triangle& corners : mesh.triangles()) {
+    const Vec3 point = nearest_of_triangle(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], from);
+    if ((point - from).squaredNorm() < (nearest - from).squaredNorm()) nearest = point;
+  }
+  return nearest;
+}
+
+}  // namespace
 
 // Holds the first and the last grid, in their order, of those that the meshes of a path need.
 struct PathGrids::Range {
@@ -111,19 +153,35 @@ bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
   const TriedVertices vertices(paths_.scene->node_of(mesh_id), scenes);
   std::vector<double> distance;
   for (size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+    const auto position = [&](size_t node) -> Vec3 {
+      return scenes[node].linear(mesh_id) * vertices.at(node, vertex) + scenes[node].translation(mesh_id);
+    };
     distance.clear();
-    Vec3 before = Vec3::Zero();  // the direction from the transmitter in its own axes
-    for (size_t node = 0; node < scenes.size(); ++node) {
-      const PosedScene& scene = scenes[node];
-      const PosedAntenna& transmitter = scene.transmitters.front();
-      const Vec3 way = scene.linear(mesh_id) * vertices.at(node, vertex) + scene.translation(mesh_id) - transmitter.position;
-      distance.push_back(2.0 * way.norm());
-      const Vec3 direction = transmitter.antenna_from_world * way.normalized();
-      const bool is_first_of_piece = node % static_cast<size_t>(trial.nodes.order) == 0;
-      if (!is_first_of_piece && sharpness_ * (direction - before).norm() > kStepInBeam) return false;
-      before = direction;
-    }
+    for (size_t node = 0; node < scenes.size(); ++node)
+      distance.push_back(2.0 * (position(node) - scenes[node].transmitters.front().position).norm());
     if (wavenumber_ * tail_of(trial.nodes, distance) > phase_tolerance_) return false;
+    for (const bool of_receivers : {false, true}) {
+      if (!stays_in_beam(trial.nodes, scenes, of_receivers, sharpness_, position)) return false;
+    }
+  }
+  return sharpness_ == 0.0 || stays_in_beam_where_nearest(trial, mesh_id);
+}
+
+// Large triangles have places far from their corners: a floor of two beneath a radar, the wall that it drives along.
+bool PathGrids::stays_in_beam_where_nearest(const PosedGrid& trial, uint32_t mesh_id) const {
+  const PosedScenes& scenes = *trial.posed.scenes;
+  const Node& node_of_mesh = paths_.scene->node_of(mesh_id);
+  if (node_of_mesh.deformation) return true;  // the corners of what deforms lie close together
+  for (const bool of_receivers : {false, true}) {
+    for (const size_t nearest_at : {size_t{0}, scenes.size() / 2, scenes.size() - 1}) {
+      const PosedScene& scene = scenes[nearest_at];
+      const Vec3 way = scene.antennas(of_receivers).front().position - scene.translation(mesh_id);
+      const Vec3 nearest = nearest_of_mesh(*node_of_mesh.mesh, scene.linear(mesh_id).inverse() * way);
+      const auto position = [&](size_t node) -> Vec3 {
+        return scenes[node].linear(mesh_id) * nearest + scenes[node].translation(mesh_id);
+      };
+      if (!stays_in_beam(trial.nodes, scenes, of_receivers, sharpness_, position)) return false;
+    }
   }
   return true;
 }

@@ -39,6 +39,7 @@ class PathGrids {
   GridIndex first_of_mesh(uint32_t mesh_id, double turn_rate, PosedGrids& posed) const;
   bool is_quick_enough(GridIndex polynomial, double turn_rate) const;
   bool follows(const PosedGrid& trial, uint32_t mesh_id) const;
+  bool stays_in_beam_where_nearest(const PosedGrid& trial, uint32_t mesh_id) const;
   void join_cuts(TimeGrids& grids) const;
   GridIndex first_in_joined_cuts(int64_t path) const;
   struct Range;

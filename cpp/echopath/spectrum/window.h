@@ -13,9 +13,9 @@ enum class WindowKind { kRect, kHann, kHamming, kBlackman, kBlackmanHarris, kChe
 struct Window {
   WindowKind kind = WindowKind::kHann;
   // dB, positive, below the main lobe: of kChebyshev the level of all sidelobes, of kTaylor that of the nearest ones, of
-  // kKaiser that of the first one; beyond these they fall with their number. Fewer samples than it has dB may miss Taylor's
-  // level by up to 5 dB, fewer than a third as many by much more. Not given, it is 80 for kChebyshev, 35 for kTaylor and 60
-  // for kKaiser.
+  // kKaiser that of the first one, to a dB by 48 samples or more and to 3 dB by 16, up to 120 dB; beyond these they fall
+  // with their number. Fewer samples than it has dB may miss Taylor's level by up to 5 dB, fewer than a third as many by
+  // much more. Not given, it is 80 for kChebyshev, 35 for kTaylor and 60 for kKaiser.
   std::optional<double> sidelobe_db = {};
 
   // Takes "rect", "hann", "hamming", "blackman", "blackman_harris", "chebyshev", "taylor" or "kaiser"; raises

@@ -173,7 +173,6 @@ TEST(AntennaPattern, KnowsItsEfficiency) {
   EXPECT_THROW(pattern.gain(1.0), std::invalid_argument);
 }
 
-// Samples that alternate in sign, at steps of 2 and 40 degrees: the cubic between them goes far beyond.
 // A field exp(-s^2 x^2 / 2) has its steepest slope, s / sqrt(e), at x = 1 / s. The narrower of two widths counts, on the
 // level as on a cone around the pole, and phases do not.
 TEST(AntennaPattern, KnowsItsSharpness) {
@@ -195,6 +194,7 @@ TEST(AntennaPattern, KnowsItsSharpness) {
   EXPECT_NEAR(AntennaPattern::cosine_power(2.0 * kSharp * kSharp).sharpness(), kSharp, kRounding * kSharp);
 }
 
+// Samples that alternate in sign, at steps of 2 and 40 degrees: the cubic between them goes far beyond.
 TEST(GainTable, NothingIsBeyondTheSamplesByMoreThanItSays) {
   const std::vector<double> azimuth = {0.0, 2 * kDegree, 42 * kDegree, 44 * kDegree, 84 * kDegree};
   const std::vector<double> elevation = {-20 * kDegree, 0.0, 5 * kDegree, 30 * kDegree};

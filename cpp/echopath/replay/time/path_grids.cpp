@@ -16,6 +16,9 @@ constexpr size_t kTriedVertices = 16;  // of a mesh, at least, where it has as m
 // Way across a beam from one node to the next, over the angle at which its field has fallen to exp(-1/2) of its peak: at a
 // node the field is at least that then, wherever it passes.
 constexpr double kStepInBeam = 2.0;
+// Sharpness (AntennaPattern) from which on what lies beside a beam may be dark at all nodes: some 35 degrees at half the
+// power. Wider ones are seen from everywhere ahead.
+constexpr double kNarrow = 4.0;
 
 // Holds vertices all over a mesh in its frame, m, at the nodes of a grid. They do not depend on which triangles paths touch,
 // as patches do.
@@ -52,8 +55,8 @@ double sharpness_of(const Radar& radar) {
   return std::hypot(largest[0], largest[1]);
 }
 
-// Returns whether a point, seen by the antenna of a posed scene, passes no beam between two nodes of a piece. position(node) is
-// the point relative to the origin of that scene, m.
+// Returns whether a point, seen by the antenna of a posed scene, passes no beam between two nodes of a piece.
+// position(node) is the point relative to the origin of that scene, m.
 template <class Position>
 bool stays_in_beam(const FrameNodes& nodes, const PosedScenes& scenes, bool of_receivers, double sharpness,
                    const Position& position) {
@@ -151,6 +154,7 @@ bool PathGrids::is_quick_enough(GridIndex polynomial, double turn_rate) const {
 bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
   const PosedScenes& scenes = *trial.posed.scenes;
   const TriedVertices vertices(paths_.scene->node_of(mesh_id), scenes);
+  const bool is_narrow = sharpness_ > kNarrow;
   std::vector<double> distance;
   for (size_t vertex = 0; vertex < vertices.size(); ++vertex) {
     const auto position = [&](size_t node) -> Vec3 {
@@ -161,10 +165,10 @@ bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
       distance.push_back(2.0 * (position(node) - scenes[node].transmitters.front().position).norm());
     if (wavenumber_ * tail_of(trial.nodes, distance) > phase_tolerance_) return false;
     for (const bool of_receivers : {false, true}) {
-      if (!stays_in_beam(trial.nodes, scenes, of_receivers, sharpness_, position)) return false;
+      if (is_narrow && !stays_in_beam(trial.nodes, scenes, of_receivers, sharpness_, position)) return false;
     }
   }
-  return sharpness_ == 0.0 || stays_in_beam_where_nearest(trial, mesh_id);
+  return !is_narrow || stays_in_beam_where_nearest(trial, mesh_id);
 }
 
 // Large triangles have places far from their corners: a floor of two beneath a radar, the wall that it drives along.

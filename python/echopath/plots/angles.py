@@ -61,7 +61,7 @@ def _draw(ax, spectrum, level) -> None:
                               shading="nearest", rasterized=True)
         ax.set_xlim(max(ax.get_xlim()[0], -90.0), min(ax.get_xlim()[1], 90.0))
         ax.set_ylim(max(ax.get_ylim()[0], -90.0), min(ax.get_ylim()[1], 90.0))
-        ax.invert_xaxis()  # left is left, as seen from the radar
+        ax.xaxis.set_inverted(True)  # left is left, as seen from the radar
         ax.set_xlabel(f"{AZIMUTH_LABEL}, at elevation 0")
         ax.set_ylabel(ELEVATION_LABEL)
         ax.figure.colorbar(image, ax=ax, label=POWER_LABEL, extend="min", pad=0.02, aspect=30)
@@ -69,9 +69,10 @@ def _draw(ax, spectrum, level) -> None:
     is_upright = len(up) > 1
     angles, label = (elevation[up], ELEVATION_LABEL) if is_upright else (azimuth[across], AZIMUTH_LABEL)
     ax.plot(angles, level.ravel(), color="#0072b2", linewidth=1.4, marker="o" if len(angles) == 1 else None)
-    ax.set_ylim(highest - SHOWN_DB, highest + 3.0)
-    if not is_upright and len(angles) > 1 and not ax.xaxis_inverted():
-        ax.invert_xaxis()  # left is left, as seen from the radar
+    peaks = [np.max(line.get_ydata()) for line in ax.lines if line.get_transform() is ax.transData]
+    ax.set_ylim(min(peaks) - SHOWN_DB, max(peaks) + 3.0)  # of all curves in these axes
+    if not is_upright and len(angles) > 1:
+        ax.xaxis.set_inverted(True)  # left is left, as seen from the radar
     ax.set_xlabel(label)
     ax.set_ylabel(POWER_LABEL)
     ax.grid(alpha=0.25)

@@ -82,8 +82,7 @@ def look_from_above(ax) -> None:
     points in them, keep their frame: turned around once more they would show what is left on the right."""
     if ax.get_aspect() != 1.0:
         ax.set_aspect("equal", adjustable="datalim")
-    if not ax.xaxis_inverted():
-        ax.invert_xaxis()
+    ax.xaxis.set_inverted(True)
 
 
 def short_name(name: str) -> str:

@@ -5,6 +5,7 @@ import matplotlib
 import matplotlib.text
 import numpy as np
 import pytest
+from matplotlib.pyplot import close
 
 import echopath as ep
 from support.radars import build_radar
@@ -164,10 +165,37 @@ def test_what_is_drawn_over_another_picture_from_above_leaves_left_on_the_left(f
         assert (ax.get_xlim(), ax.get_ylim()) == limits
 
 
-def test_curves_of_two_angle_spectra_in_the_same_axes_have_left_on_the_left(frame, ax):
-    for window in ("hann", "rect"):
-        ep.angle_fft(frame.spectrum, frame.radar, window=window).plot(range=RANGE, velocity=0.0, ax=ax)
-        assert ax.xaxis_inverted()
+def test_left_stays_left_however_many_results_share_their_axes(frame):
+    """Each second plot of detections in one pair of axes turned them over, maps from above below them included."""
+    tracks = ep.track([[(9.0, 1.0)]] * 5, 0.1 * np.arange(5))
+    spectrum = ep.angle_fft(frame.spectrum, frame.radar)
+    for draws in ([frame.detections, frame.detections], [frame.truth, frame.detections], [tracks, frame.detections],
+                  [frame.range_azimuth, frame.detections], [frame.detections, frame.truth, tracks], [spectrum, spectrum]):
+        ax = None
+        for result in draws:
+            ax = result.plot("above", ax=ax) if result is frame.detections else result.plot(ax=ax)
+            assert ax.get_xlim()[0] > ax.get_xlim()[1]
+        close(ax.figure)
+
+
+def test_tracks_leave_room_for_what_is_drawn_into_their_axes(frame):
+    """Limits across that tracks had fixed left objects aside of them out of the picture."""
+    tracks = ep.track([[(9.0, -6.0)]] * 5, 0.1 * np.arange(5))
+    ax = frame.truth.plot(ax=tracks.plot())
+    ax.figure.canvas.draw()
+    plate, track = RANGE * np.array([np.sin(AZIMUTH), np.cos(AZIMUTH)]), (-6.0, 9.0)
+    shown = ax.transAxes.inverted().transform(ax.transData.transform([plate, track]))
+    assert np.all((shown > 0.0) & (shown < 1.0))
+    close(ax.figure)
+
+
+def test_curves_of_two_cells_in_common_axes_both_show_their_peaks(frame, ax):
+    """The limits were those of the curve that came last, above which a stronger one was cut off."""
+    spectrum = ep.angle_fft(frame.spectrum, frame.radar)
+    for distance in (RANGE, 2.0):
+        spectrum.plot(range=distance, velocity=0.0, ax=ax)
+    peaks = [line.get_ydata().max() for line in ax.get_lines()]
+    assert peaks[0] > peaks[1] + 10.0 and ax.get_ylim()[0] < peaks[1] and peaks[0] < ax.get_ylim()[1]
 
 
 def test_labels_show_parts_or_objects(frame, ax):

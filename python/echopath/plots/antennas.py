@@ -70,7 +70,7 @@ def draw_array(radar: _core.Radar, *, ax: Axes | None = None, title: str = "") -
                title=text("title", title) or counted(len(found.elements), "virtual element"))
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.1)
-        ax.invert_xaxis()
+        ax.xaxis.set_inverted(True)
         ax.grid(alpha=0.25)
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     return ax

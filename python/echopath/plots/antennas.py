@@ -8,7 +8,7 @@ import numpy as np
 from ..arguments.checks import text
 from ..base.numerics.decibels import SMALLEST_POWER
 from ..base.text.counts import counted
-from .style import CURVE_COLOURS, axes_or_new, require_drawable
+from .style import CURVE_COLOURS, axes_or_new, require_drawable, to_one_scale
 
 if TYPE_CHECKING:
     from .. import _core
@@ -68,9 +68,8 @@ def draw_array(radar: _core.Radar, *, ax: Axes | None = None, title: str = "") -
             ax.scatter(y, z, s=size, marker=marker, color=colour, alpha=0.8, label=f"{name}: {len(places)}", zorder=3)
         ax.set(xlabel="y in wavelengths (left: +)", ylabel="z in wavelengths (up: +)",
                title=text("title", title) or counted(len(found.elements), "virtual element"))
-        ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.1)
-        ax.xaxis.set_inverted(True)
+        to_one_scale(ax)
         ax.grid(alpha=0.25)
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     return ax

@@ -8,7 +8,7 @@ import numpy as np
 from ..arguments.checks import choice, text
 from ..base.text.counts import counted
 from .maps import RANGE_LABEL, VELOCITY_LABEL
-from .style import axes_or_new, look_from_above, part_colours, require_drawable
+from .style import axes_or_new, part_colours, require_drawable, to_one_scale
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def draw_detections(detections: Detections, *, view: str = "range_doppler", ax: 
         if view == "above":
             ax.set_xlabel(LEFT_LABEL)
             ax.set_ylabel(AHEAD_LABEL)
-            look_from_above(ax)
+            to_one_scale(ax)
         else:
             ax.set_xlabel(RANGE_LABEL)
             ax.set_ylabel(VELOCITY_LABEL)

@@ -77,7 +77,7 @@ def axes_or_new(ax, width: float, height: float):
         yield ax
 
 
-def look_from_above(ax) -> None:
+def to_one_scale(ax) -> None:
     """Gives axes one scale for both directions and left on the left. Those that are so already, with a map from above or other
     points in them, keep their frame: turned around once more they would show what is left on the right."""
     if ax.get_aspect() != 1.0:

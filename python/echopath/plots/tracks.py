@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .style import CURVE_COLOURS, axes_or_new, look_from_above, require_drawable
+from .style import CURVE_COLOURS, axes_or_new, require_drawable, to_one_scale
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
@@ -40,7 +40,7 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
             ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color="0.1")
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title)
-        look_from_above(ax)
+        to_one_scale(ax)
         if more:
             ax.plot([], [], " ", label=f"and {more} more")
         if listed:

@@ -7,8 +7,9 @@ import numpy as np
 
 from ..arguments.checks import choice, text
 from ..base.text.counts import counted
-from .style import axes_or_new, look_from_above, require_drawable, short_name
+from .style import axes_or_new, require_drawable, short_name, to_one_scale
 from .top_view import AHEAD_LABEL, LEFT_LABEL
+from .tracks import X_LABEL, Y_LABEL
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
@@ -22,7 +23,7 @@ WAY = 1.0            # s, whose way an arrow shows
 SHORTEST = 0.1       # m, of arrows: what stands has none
 MOST_NAMES = 30      # beside boxes, of those that the radar sees most of; more would hide one another
 FACES = [0, 4, 6, 2, 0], [1, 5, 7, 3, 1]  # corners around the lower and the upper face: the last axis of a box runs fastest
-LABELS = {"radar": (LEFT_LABEL, AHEAD_LABEL), "world": ("y in m (left: +)", "x in m (ahead)")}
+LABELS = {"radar": (LEFT_LABEL, AHEAD_LABEL), "world": (Y_LABEL, X_LABEL)}
 
 
 def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, title: str = "") -> Axes:
@@ -44,7 +45,7 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
         ax.autoscale_view()
         across, up = LABELS[view]
         ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names, view))
-        look_from_above(ax)
+        to_one_scale(ax)
         ax.grid(alpha=0.25)
     return ax
 

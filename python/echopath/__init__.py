@@ -96,6 +96,7 @@ from .paths.selections import first, hits, last, num_bounces, passes, power
 from .paths.visibility import ObjectVisibility, VisibilityFromEnd, visibility
 from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
+from .scene.adapted_materials import adapt_materials
 from .scene.foreign import mesh_from
 from .scene.found_objects import find_objects
 from .scene.interferers import Interferer
@@ -149,8 +150,8 @@ __all__ = [
     "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray",
     "VisibilityFromEnd", "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate",
     "annotate_frame", "around_corners",
-    "backproject", "beamform", "boltzmann", "calibrate", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose",
-    "demultiplex",
+    "adapt_materials", "backproject", "beamform", "boltzmann", "calibrate", "cfar", "check_rays", "check_signal",
+    "compensate_tdm", "decompose", "demultiplex",
     "detect", "detect_frame", "effects", "estimate_angles", "families", "find_objects", "first", "foreign_materials", "hits",
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",
     "load_model", "load_radar", "load_raw", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",

@@ -17,7 +17,7 @@ from ..arguments.settings import (
     SignalSettings,
     TraceSettings,
 )
-from . import interference, motion, radar, sampling, surfaces, weather  # each adds its rules, in this order
+from . import interference, materials, motion, radar, sampling, surfaces, weather  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.

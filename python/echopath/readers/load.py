@@ -55,8 +55,8 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     offset: s, the time of the animation at time 0 of the scene
     smooth: whether its meshes stand for curved surfaces (Scene.add); None: those whose normals in the file turn over most of
         their area, smoothing groups of an OBJ file included, and what the format itself makes of curves, such as spheres
-    frequency: Hz, at which permittivities of materials by name are those of Recommendation ITU-R P.2040; None: materials are
-        those of `ep.materials`, at 77 GHz. The notes name those that stay at 77 GHz
+    frequency: Hz, at which materials by name have their values (`ep.materials.at`); None: 77 GHz, as in `ep.materials`. The
+        notes name those that stay at 77 GHz
     Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
     place in it, also of a file without any surface; ValueError or TypeError naming the argument; ModuleNotFoundError saying what
     to install. Warns (RuntimeWarning) of a figure with a skeleton whose size is hardly right, unless its unit is given.

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.materials import LIBRARY_FREQUENCY, materials
 from ..base.text.node_names import fit_name, unique
-from .itu import at_frequency, note_of_library_values
-from .material_names import material_of, note_of_unknown
+from .material_names import Meaning, material_of, note_of_unknown
 from .model import Model, ModelNode
 from .options import ReadOptions
 
@@ -24,7 +24,7 @@ class Tree:
         self._taken: dict[int, dict[str, int]] = {}  # node -> names of its children
         self._meaning: dict[tuple[str, str], tuple] = {}
         self._unknown: list[str] = []
-        self._at_library_frequency: list[str] = []
+        self._at_library_frequency: set[str] = set()
         self._notes: dict[str, None] = {}
         self._counted: Counter[str] = Counter()
 
@@ -60,7 +60,7 @@ class Tree:
         """The Model; its notes are those of this tree."""
         counted = [f"{what} ({count} times)" if count > 1 else what for what, count in self._counted.items()]
         notes = (*self._notes, *counted, *note_of_unknown(self._unknown),
-                 *note_of_library_values(self._at_library_frequency))
+                 *self._note_of_library_values())
         return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
 
     def _material(self, name: str, kind: str):
@@ -69,13 +69,25 @@ class Tree:
             if note is not None and kind:
                 self.note(f"the material '{name}' is not known: {kind} is taken, as its type in the file says")
                 meant, note = kind, None
-            material, unmoved = at_frequency(meant, self.options.frequency)
-            self._at_library_frequency += [unmoved] if unmoved else []
-            self._meaning[name, kind] = material, note
+            self._meaning[name, kind] = self._at_frequency(meant), note
         material, note = self._meaning[name, kind]
         if note is not None:
             self._unknown.append(name)
         return material
+
+    def _at_frequency(self, meant: Meaning) -> Meaning:
+        """A material by name with its values at the frequency asked for; a Material, and all without a frequency, as it is."""
+        if self.options.frequency is None or not isinstance(meant, str):
+            return meant
+        library = materials.at(self.options.frequency)
+        if meant in library.not_given:
+            self._at_library_frequency.add(meant)
+        return meant if library[meant] == materials[meant] else library[meant]
+
+    def _note_of_library_values(self) -> list[str]:
+        """What to say of materials that have no values at the frequency asked for; nothing for none."""
+        known = ", ".join(sorted(self._at_library_frequency))
+        return [f"values at {LIBRARY_FREQUENCY * 1e-9:g} GHz are taken for {known}"] if known else []
 
 
 def _with_meshes(nodes: list[ModelNode]) -> list[ModelNode]:

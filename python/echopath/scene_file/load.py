@@ -17,6 +17,7 @@ from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
 from ..receiver.channels import require_channels
+from ..scene.adapted_materials import adapt_materials
 from ..scene.found_objects import find_objects
 from ..scene.interferers import Interferer
 from ..scene.large_planes import mark_mirrors
@@ -74,6 +75,8 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
         trajectories.traffic.add_to(scene)
         scene.interferers = _build_interferers(settings, folder, trajectories)
         radar = _build_radar(settings.radar, folder, trajectories)
+        if settings.adapt_materials:
+            adapt_materials(scene, radar)
         if settings.mark_mirrors:
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),

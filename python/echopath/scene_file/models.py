@@ -20,9 +20,9 @@ def material_of(value, key: str) -> _core.Material | None:
         if isinstance(value, str):
             return materials[value]
         given = value.model_dump(exclude_unset=True)
-        base = given.pop("base", None)
+        base, frequency = given.pop("base", None), given.pop("frequency", None)
         given = material_fields(given)
-        return known_with(base, **given) if base is not None else _core.Material(**given)
+        return known_with(base, frequency, **given) if base is not None else _core.Material(**given)
 
 
 def model_of(table: ModelKeys, folder: Path, key: str) -> Model:

@@ -25,8 +25,8 @@ PAGES = sorted((DOCS / "how_do_i").rglob("*.md"))
 TRAINING = EXAMPLES / "training"  # needs PyTorch, and takes minutes: no part of the gallery
 SCRIPTS = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent != TRAINING)
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
-TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "liquid_level", "foreign_scene", "car_with_speed",
-                                         "trajectories", "ego_motion", "live_scene")),
+TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "liquid_level", "foreign_scene", "other_frequencies",
+                                         "car_with_speed", "trajectories", "ego_motion", "live_scene")),
          *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr",
                                          "scanning_radar")),
          *(f"results/{name}" for name in ("angle_map", "spectrogram", "breath_and_heartbeat", "arms_only", "rcs_over_angle",

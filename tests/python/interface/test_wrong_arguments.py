@@ -68,6 +68,7 @@ def good(tmp_path_factory) -> dict:
         "load_frame": {"path": folder / "frame.h5"}, "load_labels": {"path": folder / "frame.h5"}, "load_mesh": mesh,
         "load_meshes": mesh, "load_model": {"path": folder / "box.glb"}, "load_scene": {"path": folder / "box.glb"},
         "load_sequence": {"path": folder / "frames"},
+        "adapt_materials": {"scene": ep.Scene(), "radar": radar},  # which it changes
         "mark_mirrors": {"scene": ep.Scene(), "radar": radar},  # which it changes
         "mesh_from": {"source": SimpleNamespace(vertices=np.eye(3), faces=np.array([[0, 1, 2]]))},
         "mie_rcs": {"radius": 0.1, "frequency": 1e9},

@@ -42,6 +42,7 @@ def deforming():
 
 STAGGERED = ep.ChirpSequence(num_chirps=2, extra_idle=(0.0, 1e-6))
 WIDE = ep.ChirpSequence(start_frequency=3e9, bandwidth=2.9e9, frequency_steps=(0.0, 0.1e9), num_chirps=2)
+LOW = ep.ChirpSequence(start_frequency=24e9, bandwidth=150e6, num_chirps=2)
 MOVING = ep.LinearMotion(velocity=(1, 0, 0))
 LOBED = ep.Material(reflectivity=0.5, scattering=1.0, lobe_exponent=4)
 TURNING = ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2)
@@ -72,6 +73,8 @@ def beside_mirror():
 
 # Of each effect: what asks for it (scene, radar, settings), a word of the reason, and what does not.
 CASES = {
+    "materials over frequency": (dict(scene=make_scene("concrete")), "at 77 GHz",
+                                 dict(scene=make_scene("concrete"), radar=make_radar().replace(waveform=LOW))),
     "coherent physical optics": (dict(scene=make_scene()), "1 mesh: plate", dict(scene=make_scene(ROUGH))),
     "footprint filter": (dict(footprint="first_order"), "first order", dict(footprint="none")),
     "smooth surfaces": (dict(scene=make_scene(smooth=True)), "plate", {}),
@@ -168,6 +171,17 @@ def test_a_record_does_not_deny_the_other_radars_of_its_scene():
                    for told in (frame.effects, frame.paths.effects)]
         assert of_frame in reasons[0]
         assert reasons[1] == "a record has none; simulate adds those of a scene"
+
+
+def test_materials_that_do_not_go_with_the_radar_are_named():
+    scene, radar = make_scene("concrete"), make_radar().replace(waveform=LOW)
+    stale = found(scene, radar)["materials over frequency"]
+    assert not stale.modelled and "ep.adapt_materials" in stale.reason and "concrete" in stale.reason
+    ep.adapt_materials(scene, radar)
+    adapted = found(scene, radar)["materials over frequency"]
+    assert adapted.modelled and "at 24.1 GHz" in adapted.reason
+    unknown = found(make_scene("rubber"), radar)["materials over frequency"]
+    assert not unknown.modelled and "nobody gives rubber at 24.1 GHz" in unknown.reason
 
 
 def test_every_rule_has_a_case():

@@ -121,7 +121,7 @@ def test_materials_of_the_recommendation_have_its_values_at_77_ghz():
 
 def test_materials_have_the_values_of_the_recommendation_at_the_frequency_asked_for(tmp_path):
     (tmp_path / "a.obj").write_text(SQUARE + "usemtl itu_concrete\nf 1 2 3\nusemtl itu_medium_dry_ground\nf 1 3 4\n"
-                                    "usemtl skin\nf 1 2 4\nusemtl metal\nf 2 3 4\nusemtl own\nf 2 4 3\n")
+                                    "usemtl rubber\nf 1 2 4\nusemtl metal\nf 2 3 4\nusemtl own\nf 2 4 3\n")
     own = ep.Material(permittivity=2.0)
     model = ep.load_model(tmp_path / "a.obj", frequency=5e9, materials={"own": own})
     found = {node.foreign_material: node.material for node in model.nodes if node.mesh}
@@ -130,8 +130,8 @@ def test_materials_have_the_values_of_the_recommendation_at_the_frequency_asked_
     for name, (a, b, c, d) in table.items():
         loss = c * 5**d / (2 * np.pi * 5e9 * 8.8541878128e-12)
         assert found[name].permittivity == pytest.approx(a * 5**b - 1j * loss, rel=1e-6)
-    assert (found["skin"], found["metal"], found["own"]) == ("skin", "metal", own)
-    assert "values at 77 GHz are taken for skin" in model.notes
+    assert (found["rubber"], found["metal"], found["own"]) == ("rubber", "metal", own)
+    assert "values at 77 GHz are taken for rubber" in model.notes
     at_77 = ep.load_model(tmp_path / "a.obj", frequency=77e9)
     assert not any("77 GHz" in note for note in at_77.notes)
     assert [node.material for node in ep.load_model(tmp_path / "a.obj").nodes if node.mesh][:2] == ["concrete", "soil"]

@@ -48,6 +48,13 @@ class MaterialTable(Table):
     backscatter_share: Annotated[float, Field(ge=0, le=1)] = Field(0.0, description="of the lobe")
     backscatter_exponent: Annotated[int, Field(ge=0, le=100)] = Field(0, description="of that part; 0: as lobe_exponent")
     base: str | None = Field(None, description="name of a known material that gives the other keys")
+    frequency: Annotated[Any, by_check(carrier)] | None = Field(None, description="Hz, of the values of the base; none: 77 GHz")
+
+    @model_validator(mode="after")
+    def _frequency_has_a_base(self):
+        if self.frequency is not None and self.base is None:
+            raise broken_rule("frequency", "needs a base, whose values it chooses", self.frequency)
+        return self
 
 
 MaterialValue = Annotated[

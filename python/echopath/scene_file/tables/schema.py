@@ -40,6 +40,7 @@ def _one_kind_of_parts(argument: str, value: dict) -> dict:
 class SceneTable(Table):
     title: str = Field("", description="one line about the scene")
     guard: bool = Field(True, description="whether a run is held against slower ways at a few random places")
+    adapt_materials: bool = Field(False, description="whether materials by name have their values at the radar's frequency")
     mark_mirrors: bool = Field(False, description="whether meshes of planes larger than their Fresnel zone become mirrors")
     radar: RadarTable
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")

@@ -1,0 +1,41 @@
+"""Materials of whole scenes at the frequency of the radar."""
+from __future__ import annotations
+
+from .. import _core
+from ..arguments.checks import an, checked
+from ..base.materials import materials
+from .scene import Scene
+
+
+@checked(scene=an(Scene), radar=an(_core.Radar))
+def adapt_materials(scene: Scene, radar: _core.Radar) -> tuple[str, ...]:
+    """Gives materials by name their values at the middle of the radar's band, in the place of those at 77 GHz.
+
+    These are the materials of `ep.materials` that were given by their name or as they are there, by actors and readers, too,
+    and the same as mirrors. What was made of them by other changes, as a roughness of one's own, stays as it is:
+    `ep.materials.at(frequency)` has them to start from, and `frequency` beside `base` in a table of a scene file. Names are
+    kept, from which a second call, for another radar, starts again.
+
+    scene: is changed
+    radar: its waveform says the frequency
+    Returns the names of the materials in the scene that nobody gives at this frequency, which keep their values at 77 GHz, in
+    order of name (`ep.materials.source` says where values come from). Raises TypeError naming the argument.
+    """
+    library = materials.at(radar.waveform.centre_frequency)
+    with scene._edit():
+        named = {index: name for index, node in enumerate(scene.nodes) if (name := library_name(node))}
+        for index, name in named.items():
+            node = scene.nodes[index]
+            material = library[name].replace(mirror=True) if node.material.mirror else library[name]
+            scene._change(index, node.replace(material=material, material_name=name))
+    return tuple(sorted(set(named.values()).intersection(library.not_given)))
+
+
+def library_name(node: _core.Node) -> str:
+    """The name in `ep.materials` of the material of a node's mesh, "" for any other and for none."""
+    if node.mesh is None:
+        return ""
+    if node.material_name or not node.material.mirror:
+        return node.material_name if node.material_name in materials else ""
+    as_object = node.material.replace(mirror=False)
+    return next((name for name, material in materials.items() if material == as_object), "")

@@ -35,11 +35,15 @@ inline Box box_about(std::span<const Vec3> points) {
   return box;
 }
 
-// Returns the distance from a point to the segment between two others, which may be one.
-inline double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
+// Returns the point of the segment between two points, which may be one, that is nearest to another point.
+inline Vec3 nearest_of_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
   const double square = along.squaredNorm(), at = square > 0 ? std::clamp(along.dot(point - from) / square, 0.0, 1.0) : 0.0;
-  return (from + at * along - point).norm();
+  return from + at * along;
+}
+
+inline double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
+  return (nearest_of_segment(point, from, to) - point).norm();
 }
 
 }  // namespace echopath

@@ -1,10 +1,12 @@
 #include "echopath/replay/time/path_grids.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "echopath/replay/meshes_of_path.h"
 #include "echopath/replay/time/chebyshev_tails.h"
 #include "echopath/replay/time/turn_rates.h"
+#include "echopath/scene/mesh/nearest_of_runs.h"
 
 namespace echopath {
 namespace {
@@ -71,30 +73,15 @@ bool stays_in_beam(const FrameNodes& nodes, const PosedScenes& scenes, bool of_r
   return true;
 }
 
-// Returns the point of a triangle that is nearest to `from` (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
-Vec3 nearest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from) {
-  const Vec3 ab = b - a, ac = c - a;
-  const double d1 = ab.dot(from - a), d2 = ac.dot(from - a), d3 = ab.dot(from - b), d4 = ac.dot(from - b),
-               d5 = ab.dot(from - c), d6 = ac.dot(from - c);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double of_c = d1 * d4 - d3 * d2, of_b = d5 * d2 - d1 * d6, of_a = d3 * d6 - d5 * d4;
-  if (of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + d1 / (d1 - d3) * ab;
-  if (of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + d2 / (d2 - d6) * ac;
-  if (of_a <= 0.0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  return a + (of_b * ab + of_c * ac) / (of_a + of_b + of_c);
-}
-
 // Returns the point of a mesh, in its frame, that is nearest to `from`. It sweeps through a beam the fastest.
 Vec3 nearest_of_mesh(const Mesh& mesh, const Vec3& from) {
   const std::vector<Vec3>& vertices = mesh.vertices();
-  Vec3 nearest = vertices.front();
-  for (const Triangle& corners : mesh.triangles()) {
-    const Vec3 point = nearest_of_triangle(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], from);
-    if ((point - from).squaredNorm() < (nearest - from).squaredNorm()) nearest = point;
-  }
-  return nearest;
+  const auto corners_of = [&](uint32_t triangle) -> std::array<Vec3, 3> {
+    const Triangle& corners = mesh.triangles()[triangle];
+    return {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
+  };
+  const NearestOfRuns runs(mesh.boxes_of_runs(), mesh.triangles().size());
+  return runs.within(std::numeric_limits<double>::infinity(), from, corners_of).value_or(mesh.vertices().front());
 }
 
 }  // namespace
@@ -164,8 +151,9 @@ bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
     for (size_t node = 0; node < scenes.size(); ++node)
       distance.push_back(2.0 * (position(node) - scenes[node].transmitters.front().position).norm());
     if (wavenumber_ * tail_of(trial.nodes, distance) > phase_tolerance_) return false;
+    if (!is_narrow) continue;
     for (const bool of_receivers : {false, true}) {
-      if (is_narrow && !stays_in_beam(trial.nodes, scenes, of_receivers, sharpness_, position)) return false;
+      if (!stays_in_beam(trial.nodes, scenes, of_receivers, sharpness_, position)) return false;
     }
   }
   return !is_narrow || stays_in_beam_where_nearest(trial, mesh_id);

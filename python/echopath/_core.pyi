@@ -1739,7 +1739,7 @@ class CfarResult:
     @property
     def method(self) -> str:
         """
-        "ca" or "os"
+        "ca", "os", "go" or "so"
         """
     @property
     def noise(self) -> numpy.typing.NDArray[numpy.float64]:

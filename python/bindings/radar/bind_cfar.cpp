@@ -19,7 +19,7 @@
 namespace echopath::bindings {
 namespace {
 
-constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
+constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os", "go", "so");
 
 // Binds call(map, radar, options, extra...) with the settings of a design before its own arguments.
 template <class Result, class... Extra, class... Names>
@@ -146,7 +146,7 @@ void bind_cfar(py::module_& m) {
           "are")
       .def_readonly("num_beams", &CfarResult::num_beams, "in which each cell was tested, 0: its channels were summed")
       .def_property_readonly(
-          "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); }, "\"ca\" or \"os\"")
+          "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); }, "\"ca\", \"os\", \"go\" or \"so\"")
       .def_property_readonly(
           "false_alarm_rate", [](const CfarResult& self) { return self.design.false_alarm_rate; }, "of one cell")
       .def_property_readonly(

@@ -23,7 +23,7 @@ from ..arguments.settings import SignalSettings
 from ..transmit.code import is_coded, signal_shape
 from .noise_shape import noise_shape
 
-CfarMethod = Literal["ca", "os"]
+CfarMethod = Literal["ca", "os", "go", "so"]
 _CELLS = optional(count(0, LARGEST_COUNT))
 
 # Of `cfar` and of what detects by it.
@@ -82,7 +82,10 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar, as its receiver gives it
     radar: that of the spectrum
-    method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
+    method: "ca" (cell averaging: mean of the training cells), "os" (ordered statistic: minds neighbouring targets less), "go" or
+        "so": the greatest or the smallest of the means of their two halves, at nearer and farther ranges, or, without training
+        cells along range, at lower and higher velocities. The greatest has fewer false alarms where clutter begins, the smallest
+        finds targets beside others
     false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
     guard_velocity, guard_range: half widths in cells of the rectangle about a cell that tells nothing of its noise, at least
         the window's main lobe; None: just that
@@ -98,7 +101,7 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
         600 beams and 128 x 256 cells
     progress: callable (stage, fraction), True for bars, or None
     Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each
-    side, "os" several times that; Ctrl-C is heard.
+    side, other methods several times that; Ctrl-C is heard.
     Returns a CfarResult. Raises TypeError or ValueError naming the argument, also for windows of more than 2000 cells,
     counted without padding.
     """

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <random>
 
 #include "cpp/support/any_threads.h"
@@ -60,6 +63,49 @@ CfarOptions small_options(CfarMethod method) {
   return options;
 }
 
+constexpr CfarMethod kMethods[] = {CfarMethod::kCellAveraging, CfarMethod::kOrderedStatistic, CfarMethod::kGreatestOf,
+                                   CfarMethod::kSmallestOf};
+
+struct Training {
+  Place place;
+  double power;
+};
+
+double mean_of(const std::vector<double>& powers) {
+  return std::accumulate(powers.begin(), powers.end(), 0.0) / static_cast<double>(powers.size());
+}
+
+// Means over the first and the last training cells of each row, in the order of ranges, of as many as make equal halves;
+// over the rows on each side where there are no training cells along range.
+std::array<double, 2> half_means(const CfarDesign& design, const std::vector<Training>& training) {
+  std::vector<double> halves[2];
+  for (int row = -design.cells.reach_velocity(); row <= design.cells.reach_velocity(); ++row) {
+    std::map<int, double> by_range;
+    for (const Training& one : training) {
+      if (one.place.velocity == row) by_range[one.place.range] = one.power;
+    }
+    const size_t in_half = by_range.size() / 2;
+    size_t number = 0;
+    for (const auto& [range, power] : by_range) {
+      const bool is_first = design.cells.training_range > 0 ? number < in_half : row < 0;
+      const bool is_middle = design.cells.training_range > 0 && by_range.size() % 2 == 1 && number == in_half;
+      if (!is_middle) halves[is_first ? 0 : 1].push_back(power);
+      ++number;
+    }
+  }
+  return {mean_of(halves[0]), mean_of(halves[1])};
+}
+
+double slow_statistic(const CfarDesign& design, const std::vector<Training>& training) {
+  const auto [least, greatest] = std::ranges::minmax(half_means(design, training));
+  if (design.method == CfarMethod::kGreatestOf) return greatest;
+  if (design.method == CfarMethod::kSmallestOf) return least;
+  std::vector<double> powers;
+  for (const Training& one : training) powers.push_back(one.power);
+  std::ranges::sort(powers);
+  return design.method == CfarMethod::kCellAveraging ? mean_of(powers) : powers[design.order() - 1];
+}
+
 // (velocity, range) and noise of the cells that a loop over all cells and their training cells finds.
 void expect_slow_detections(const CfarResult& result) {
   const CfarDesign& design = result.design;
@@ -67,16 +113,12 @@ void expect_slow_detections(const CfarResult& result) {
   size_t found = 0;
   for (int v = 0; v < num_velocities; ++v) {
     for (int r = 0; r < num_ranges; ++r) {
-      std::vector<double> training;
+      std::vector<Training> training;
       for (const Place& place : training_cells(design.cells, r, num_ranges)) {
-        training.push_back(result.power[(place.velocity + v + num_velocities) % num_velocities * num_ranges + place.range]);
+        const int row = (place.velocity + v + num_velocities) % num_velocities;
+        training.push_back({place, result.power[row * num_ranges + place.range]});
       }
-      std::sort(training.begin(), training.end());
-      double statistic = training[design.order() - 1];
-      if (design.method == CfarMethod::kCellAveraging) {
-        statistic = 0.0;
-        for (const double value : training) statistic += value / static_cast<double>(training.size());
-      }
+      const double statistic = slow_statistic(design, training);
       const double factor = result.factors.factor[std::min({r, num_ranges - 1 - r, design.cells.reach_range()})];
       if (result.power[v * num_ranges + r] <= factor * statistic) continue;
       ASSERT_LT(found, result.cells.size());
@@ -91,8 +133,14 @@ void expect_slow_detections(const CfarResult& result) {
 
 TEST(Cfar, FindsWhatALoopOverAllTrainingCellsFinds) {
   const Radar radar = radar_of();
-  for (const CfarMethod method : {CfarMethod::kCellAveraging, CfarMethod::kOrderedStatistic}) {
-    expect_slow_detections(cfar(random_map(radar, 1), radar, small_options(method)));
+  for (const CfarMethod method : kMethods) {
+    CfarOptions options = small_options(method);
+    expect_slow_detections(cfar(random_map(radar, 1), radar, options));
+    options.guard_range = options.training_range = 0;
+    expect_slow_detections(cfar(random_map(radar, 1), radar, options));
+    options = small_options(method);
+    options.guard_velocity = options.training_velocity = 0;
+    expect_slow_detections(cfar(random_map(radar, 1), radar, options));
   }
 }
 
@@ -104,7 +152,7 @@ TEST(Cfar, NoiseOfAKnownShapeIsComparedAsIfItWereAlikeAtAllRanges) {
   std::vector<double> noise_shape(map.range.size());
   for (size_t r = 0; r < noise_shape.size(); ++r) noise_shape[r] = std::exp2(2.0 * static_cast<double>(r * r % 4));
   for (size_t i = 0; i < map.values.size(); ++i) shaped.values[i] *= std::sqrt(noise_shape[i % noise_shape.size()]);
-  for (const CfarMethod method : {CfarMethod::kCellAveraging, CfarMethod::kOrderedStatistic}) {
+  for (const CfarMethod method : kMethods) {
     CfarOptions options = small_options(method);
     const CfarResult wanted = cfar(map, radar, options);
     EXPECT_NE(cfar(shaped, radar, options).cells, wanted.cells);
@@ -125,7 +173,7 @@ TEST(Cfar, VelocityIsACircle) {
   RangeDoppler turned = map;
   const int64_t by = 5 * static_cast<int64_t>(map.range.size());
   std::rotate(turned.values.begin(), turned.values.begin() + by, turned.values.end());
-  for (const CfarMethod method : {CfarMethod::kCellAveraging, CfarMethod::kOrderedStatistic}) {
+  for (const CfarMethod method : kMethods) {
     auto cells = cfar(map, radar, small_options(method)).cells;
     for (auto& cell : cells) cell[0] = (cell[0] - 5 + 16) % 16;
     std::sort(cells.begin(), cells.end());

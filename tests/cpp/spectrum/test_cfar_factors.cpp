@@ -69,6 +69,35 @@ TEST(Cfar, OrderedStatisticOfIndependentCellsHasRohlingsProduct) {
   }
 }
 
+// Returns the probability that a unit exponential power exceeds t times the smaller of two sums of n such powers (Gandhi,
+// Kassam, IEEE Trans. AES-24 (1988) 427), and with `is_greatest` the greater: both together are those of one sum twice.
+double halves_rate(double t, int n, bool is_greatest) {
+  double smallest = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const double log_choose = std::lgamma(n + k) - std::lgamma(k + 1) - std::lgamma(n);
+    smallest += 2.0 * std::exp(log_choose - (n + k) * std::log(2.0 + t));
+  }
+  return is_greatest ? 2.0 * std::pow(1.0 + t, -n) - smallest : smallest;
+}
+
+TEST(Cfar, HalvesOfIndependentCellsHaveTheirPublishedRates) {
+  // Three standard errors, as of the ordered statistic.
+  for (const auto& [rate, draws_error] : {std::pair{1e-3, 0.02}, std::pair{1e-6, 0.06}}) {
+    for (const CfarMethod method : {CfarMethod::kGreatestOf, CfarMethod::kSmallestOf}) {
+      CfarDesign design = design_of(WindowKind::kRect, 1, {1, 1, 2, 4}, rate);
+      design.method = method;
+      const int n = 3 * 4 + 4 * 5;  // 3 rows of 4 cells beside the guard, 4 rows of 5
+      EXPECT_EQ(design.cells.num_in_half(), n);
+      const CfarFactors factors = cfar_factors(design);
+      const bool is_greatest = method == CfarMethod::kGreatestOf;
+      EXPECT_NEAR(halves_rate(factors.factor.back() / n, n, is_greatest) / rate, 1.0, draws_error) << rate << is_greatest;
+      // The mean difference of two means of n unit exponential powers, nearly Gaussian, is 2 / sqrt(pi n).
+      const double expected = 1.0 + (is_greatest ? 1.0 : -1.0) / std::sqrt(kPi * n);
+      EXPECT_NEAR(factors.statistic, expected, 0.005);
+    }
+  }
+}
+
 // E z_a conj z_b of one axis for cells `lag` apart
 Complex correlation(const std::vector<double>& samples, int size, int lag) {
   Complex sum;

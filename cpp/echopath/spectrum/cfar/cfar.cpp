@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "echopath/base/memory/recent_results.h"
 #include "echopath/base/text/streamed.h"
@@ -9,6 +11,7 @@
 #include "echopath/spectrum/array/covering_directions.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/cfar/beam_maps.h"
+#include "echopath/spectrum/cfar/training_halves.h"
 #include "echopath/spectrum/cfar/training_power.h"
 
 namespace echopath {
@@ -47,12 +50,28 @@ struct Found {
 class Detector {
  public:
   // `power` [V, R] is the result's where noise is alike in all cells.
-  Detector(const CfarResult& result, const std::vector<double>& power, const TrainingPower& training)
-      : result_(result), power_(power), training_(training) {}
+  Detector(const CfarResult& result, const std::vector<double>& power)
+      : result_(result), power_(power), training_(power, result.num_velocities, result.num_ranges, result.design.cells) {
+    const CfarMethod method = result.design.method;
+    if (method == CfarMethod::kGreatestOf || method == CfarMethod::kSmallestOf)
+      halves_.emplace(power, result.num_velocities, result.num_ranges, result.design.cells);
+  }
+
+  // Prepares a row; call it once for each velocity before any row is asked for.
+  void prepare_row(int64_t velocity) {
+    if (result_.design.method == CfarMethod::kCellAveraging) training_.prepare_row(velocity);
+    if (halves_) halves_->prepare_row(velocity);
+  }
 
   // Returns the cells of a row above their thresholds.
   std::vector<Found> row(int64_t velocity) const {
-    return result_.design.method == CfarMethod::kCellAveraging ? averaged(velocity) : ordered(velocity);
+    switch (result_.design.method) {
+      case CfarMethod::kCellAveraging: return averaged(velocity);
+      case CfarMethod::kOrderedStatistic: return ordered(velocity);
+      case CfarMethod::kGreatestOf: return halved(velocity, [](double a, double b) { return std::max(a, b); });
+      case CfarMethod::kSmallestOf: return halved(velocity, [](double a, double b) { return std::min(a, b); });
+    }
+    throw std::logic_error("unknown CFAR method");
   }
 
  private:
@@ -84,9 +103,24 @@ class Detector {
     return found;
   }
 
+  template <class Choose>
+  std::vector<Found> halved(int64_t velocity, Choose choose) const {
+    const double* power = power_.data() + velocity * result_.num_ranges;
+    const double share = 1.0 / static_cast<double>(result_.design.cells.num_in_half());
+    std::vector<Found> found;
+    std::vector<double> first(result_.num_ranges), second(result_.num_ranges);
+    halves_->sums(velocity, {first.data(), second.data()});
+    for (int64_t r = 0; r < result_.num_ranges; ++r) {
+      const double statistic = share * choose(first[r], second[r]);
+      if (power[r] > factor(r) * statistic) found.push_back({r, statistic / result_.factors.statistic});
+    }
+    return found;
+  }
+
   const CfarResult& result_;
   const std::vector<double>& power_;
-  const TrainingPower& training_;
+  TrainingPower training_;
+  std::optional<TrainingHalves> halves_;  // of the methods that compare them
 };
 
 // Returns the powers of rows of ranges, each over that of the noise at its range.
@@ -114,11 +148,8 @@ std::vector<FoundCell> find_in(const CfarResult& result, const std::vector<doubl
   const bool is_shaped = !noise_shape.empty();
   const std::vector<double> shaped = is_shaped ? over_noise(given, noise_shape) : std::vector<double>();
   const std::vector<double>& power = is_shaped ? shaped : given;
-  TrainingPower training(power, result.num_velocities, result.num_ranges, result.design.cells);
-  if (result.design.method == CfarMethod::kCellAveraging) {
-    parallel_for(result.num_velocities, [&](int64_t v) { training.prepare_row(v); });
-  }
-  const Detector detector(result, power, training);
+  Detector detector(result, power);
+  parallel_for(result.num_velocities, [&](int64_t v) { detector.prepare_row(v); });
   std::vector<std::vector<Found>> rows(result.num_velocities);
   parallel_for(result.num_velocities, [&](int64_t v) { rows[v] = detector.row(v); }, job);
   std::vector<FoundCell> cells;

@@ -37,9 +37,11 @@ struct CfarResult {
 };
 
 // Finds the cells whose power, summed over all channels, exceeds the threshold that their training cells give for a
-// false-alarm rate (Finn, Johnson 1968: cell averaging; Rohling 1983: ordered statistic). The velocity axis wraps around; at
-// the ends of the range axis training cells are taken from the other side. A target within the training cells of its
-// neighbours raises their thresholds, for the ordered statistic less.
+// false-alarm rate (Finn, Johnson 1968: cell averaging; Rohling 1983: ordered statistic; Hansen, Sawyers 1980: greatest of;
+// Trunk 1978: smallest of). The velocity axis wraps around; at the ends of the range axis training cells are taken from the
+// other side. A target within the training cells of its neighbours raises their thresholds, for the ordered statistic less,
+// for the smallest of two halves not where it is in one of them alone; the greatest of them has fewer false alarms where
+// clutter begins.
 // Model: noise is independent between channels and alike in all cells, or has the noise shape, by which the power of each
 // cell is divided before it is compared with others. The threshold allows for the correlation that window and zero padding
 // make (cfar_factor.h). For real samples it does not hold within the main lobe of range 0, where the image leaks.
@@ -47,13 +49,13 @@ struct CfarResult {
 // the noise of its own direction, 10 log10(channels) dB lower than that of a channel, and echoes of other directions do not
 // hide it. The rate of a cell is then at most the one asked for, and less since beams overlap: up to a fifth for filled
 // arrays, by half for sparse rectangles. Time: elements x beams products for each cell, and a CFAR for each beam.
-// Cost per cell: CA takes as many additions as the window has rows, and log2 of its columns; OS counts about a quarter of
-// its training cells. Runs in parallel over velocities; the result does not depend on the number of threads.
-// The thresholds are computed once for each design (the last 8 are kept), at a cost that is cubic in the number of cells of
-// the window, counted without padding. CA takes 0.1 s on one core for the defaults and 3 s for 12 x 24 training cells on
-// each side; OS three to six times that.
-// Raises invalid_argument naming the argument, also when the map is not the radar's and for windows of more than 2000 cells,
-// counted without padding; raises Cancelled within half a second after the job is cancelled.
+// Cost per cell: CA takes as many additions as the window has rows, and log2 of its columns, GO and SO twice that; OS counts
+// about a quarter of its training cells. Runs in parallel over velocities; the result does not depend on the number of
+// threads. The thresholds are computed once for each design (the last 8 are kept), at a cost that is cubic in the number of
+// cells of the window, counted without padding. CA takes 0.1 s on one core for the defaults and 3 s for 12 x 24 training
+// cells on each side; the others three to six times that. Raises invalid_argument naming the argument, also when the map is
+// not the radar's and for windows of more than 2000 cells, counted without padding; raises Cancelled within half a second
+// after the job is cancelled.
 CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& options = {}, Job* job = nullptr);
 
 // Raises what `cfar` would with beams for an array of too many and for a false-alarm rate that is too small for them.

@@ -172,37 +172,42 @@ std::vector<double> averaging_factors(const CfarDesign& design, const TrainingNo
   return interpolated(columns, factors);
 }
 
-// Holds the multipliers of the ordered statistic and of the mean, for a cell in the middle that is independent of the
-// training cells.
-struct Multipliers {
-  double ordered = 0.0, mean = 0.0;
+// Holds the multipliers of a statistic other than the mean and of the mean, for a cell in the middle that is independent of
+// the training cells, and what the statistic is for noise of unit mean power.
+struct DrawnMultipliers {
+  double drawn = 0.0, mean = 0.0;
+  double statistic = 1.0;
 };
 
-Multipliers independent_multipliers(const CfarDesign& design, const TrainingNoise& noise, Job* job) {
+// Returns the quantile of the mean power of `num_channels` channels that the order statistic estimates.
+double expected_quantile(const CfarDesign& design) {
+  const int channels = design.noise.num_channels;
+  const double above = 1.0 - static_cast<double>(design.order()) / (static_cast<double>(design.cells.num_training()) + 1.0);
+  return solve_decreasing([&](double x) { return std::exp(log_tail(channels, x)); }, above) / channels;
+}
+
+double mean_of_draws(const std::vector<TrainingDraw>& draws) {
+  double sum = 0.0;
+  for (const TrainingDraw& draw : draws) sum += draw.statistic;
+  return sum / static_cast<double>(draws.size());
+}
+
+DrawnMultipliers drawn_multipliers(const CfarDesign& design, const TrainingNoise& noise, Job* job) {
   const int channels = design.noise.num_channels, middle = design.cells.reach_range();
+  const int count = std::max(kFewDraws, kManyDraws / channels);
   const double number = static_cast<double>(design.cells.num_training());
   const Eigen::MatrixXd form = noise.quadratic_form(middle);
   const std::vector<double> eigenvalues = covariance_eigenvalues(ColumnForm(noise, middle, job));
   const double of_sum = alone_multiplier(eigenvalues, design);
-  const TrainingDraws source(design, noise, form, eigenvalues, hazard(channels, of_sum * number * channels) * of_sum);
-  const int count = std::max(kFewDraws, kManyDraws / channels);
-  const std::vector<TrainingDraw> draws = source.draw(count, job);
-  const double ordered = solve_decreasing([&](double alpha) {
+  const auto draw = [&](double tilt) { return TrainingDraws(design, noise, form, eigenvalues, tilt).draw(count, job); };
+  const std::vector<TrainingDraw> draws = draw(hazard(channels, of_sum * number * channels) * of_sum);
+  const double drawn = solve_decreasing([&](double alpha) {
     double sum = 0.0;
-    for (const TrainingDraw& draw : draws) sum += std::exp(draw.log_weight + log_tail(channels, alpha * draw.statistic));
+    for (const TrainingDraw& one : draws) sum += std::exp(one.log_weight + log_tail(channels, alpha * one.statistic));
     return sum / count;
   }, design.false_alarm_rate);
-  return {ordered, number * of_sum};
-}
-
-// Returns the quantile of the mean power of `num_channels` channels that the order statistic estimates, for unit noise
-// power.
-double expected_statistic(const CfarDesign& design) {
-  if (design.method == CfarMethod::kCellAveraging) return 1.0;
-  const int channels = design.noise.num_channels;
-  const double above = 1.0 - static_cast<double>(design.order()) / (static_cast<double>(design.cells.num_training()) + 1.0);
-  const double sum = solve_decreasing([&](double x) { return std::exp(log_tail(channels, x)); }, above);
-  return sum / channels;
+  const bool is_ordered = design.method == CfarMethod::kOrderedStatistic;
+  return {drawn, number * of_sum, is_ordered ? expected_quantile(design) : mean_of_draws(draw(0.0)) / channels};
 }
 
 void require_guard(int guard, int training, int lobe, const char* name) {
@@ -264,10 +269,11 @@ double false_alarm_probability(double alpha, const std::vector<double>& eigenval
 CfarFactors cfar_factors(const CfarDesign& design, Job* job) {
   design.validate();
   const TrainingNoise noise(design);
-  CfarFactors result{averaging_factors(design, noise, job), expected_statistic(design)};
+  CfarFactors result{averaging_factors(design, noise, job)};
   if (design.method == CfarMethod::kCellAveraging) return result;
-  const Multipliers independent = independent_multipliers(design, noise, job);
-  for (double& factor : result.factor) factor *= independent.ordered / independent.mean;
+  const DrawnMultipliers independent = drawn_multipliers(design, noise, job);
+  for (double& factor : result.factor) factor *= independent.drawn / independent.mean;
+  result.statistic = independent.statistic;
   return result;
 }
 

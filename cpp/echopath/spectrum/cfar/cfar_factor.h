@@ -10,7 +10,9 @@ namespace echopath {
 
 inline constexpr double kLeastRate = 1e-15;  // of false alarms
 
-enum class CfarMethod { kCellAveraging, kOrderedStatistic };
+// What a cell is held against: the mean of its training cells, one of them in the order of their powers, or the greater or
+// the smaller of the means of their two halves (CfarWindow::half_of).
+enum class CfarMethod { kCellAveraging, kOrderedStatistic, kGreatestOf, kSmallestOf };
 
 // Models the noise of a map: circular Gaussian cells, independent between channels, whose correlation is the product of
 // those along the axes.
@@ -38,7 +40,7 @@ struct CfarDesign {
 };
 
 // A cell is detected where its power, summed over channels, exceeds factor times the statistic: the mean of the training
-// cells (CA), or the order()-th of them in ascending order (OS).
+// cells (CA), the order()-th of them in ascending order (OS), or the greater or the smaller mean of two halves (GO, SO).
 struct CfarFactors {
   std::vector<double> factor;  // [reach_range + 1] by the cell's distance from the nearer end of the range axis
   double statistic = 1.0;      // for noise of unit mean power: noise level = statistic / this
@@ -53,11 +55,11 @@ double false_alarm_probability(double alpha, const std::vector<double>& eigenval
 // windows of more than 400 degrees of freedom (about their cells without padding) this holds for cells within twice the
 // guard cells of the end of the range axis, for those in the middle, and at distances between that double each time;
 // elsewhere factors lie on straight lines, where the rate is right to 0.2 % (without taper, padded: 1 %).
-// OS takes the mean over 8192 / num_channels (at least 512) draws of the training cells; given a draw, the probability has a
-// closed form. Draws come from the tilted distribution in which false alarms happen: the standard error is about 1 % of a
-// false-alarm rate of 1e-3, 2 % of 1e-6. OS takes from CA how the factor changes near the ends of the range axis, and the
-// correlation with the cell under test that remains beyond the guard cells.
-// The result does not depend on the number of threads. Raises as CfarDesign::validate.
+// The others take the mean over 8192 / num_channels (at least 512) draws of the training cells; given a draw, the
+// probability has a closed form. Draws come from the tilted distribution in which false alarms happen: the standard error is
+// about 1 % of a false-alarm rate of 1e-3, 2 % of 1e-6. They take from CA how the factor changes near the ends of the range
+// axis, and the correlation with the cell under test that remains beyond the guard cells. The result does not depend on the
+// number of threads. Raises as CfarDesign::validate.
 CfarFactors cfar_factors(const CfarDesign& design, Job* job = nullptr);
 
 }  // namespace echopath

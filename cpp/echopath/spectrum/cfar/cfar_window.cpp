@@ -22,6 +22,16 @@ int64_t CfarWindow::num_training() const {
   return int64_t{num_rows()} * num_columns() - (2 * int64_t{guard_velocity} + 1) * (2 * int64_t{guard_range} + 1);
 }
 
+std::optional<int> CfarWindow::half_of(int rows, int columns) const {
+  const int along = training_range > 0 ? columns : rows;
+  return along == 0 ? std::nullopt : std::optional(along > 0 ? 1 : 0);
+}
+
+int64_t CfarWindow::num_in_half() const {
+  if (training_range == 0) return int64_t{training_velocity} * num_columns();
+  return (2 * int64_t{guard_velocity} + 1) * training_range + 2 * int64_t{training_velocity} * reach_range();
+}
+
 void CfarWindow::validate(int64_t num_velocities, int64_t num_ranges) const {
   require_half_width(guard_velocity, "guard_velocity", guard_velocity, num_velocities);
   require_half_width(guard_range, "guard_range", guard_range, num_ranges);

@@ -2,6 +2,7 @@
 // Selects the training cells, from which the noise of a cell under test is estimated.
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "echopath/spectrum/window.h"
 
@@ -19,6 +20,11 @@ struct CfarWindow {
   int num_rows() const { return 2 * reach_velocity() + 1; }
   int num_columns() const { return 2 * reach_range() + 1; }
   int64_t num_training() const;
+  // Returns in which half of the training cells one lies, 0 or 1, that is (rows, columns) from the cell under test in the
+  // middle: among nearer or farther ranges, or, without training cells along range, among lower or higher velocities. Cells
+  // at the range of the cell under test belong to neither half of ranges.
+  std::optional<int> half_of(int rows, int columns) const;
+  int64_t num_in_half() const;
   bool operator==(const CfarWindow&) const = default;
 
   // Raises invalid_argument naming the field unless there are training cells and all of them fit into

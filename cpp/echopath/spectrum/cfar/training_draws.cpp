@@ -1,8 +1,10 @@
 #include "echopath/spectrum/cfar/training_draws.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
@@ -62,17 +64,29 @@ TrainingDraw TrainingDraws::one(int64_t index) const {
 TrainingDraw TrainingDraws::summed_up(const RowMatrix& power) const {
   const CfarWindow& cells = design_.cells;
   std::vector<double> training;
-  for (int row = 0; row < cells.num_rows(); ++row) {
-    const bool beyond = std::abs(row - cells.reach_velocity()) > cells.guard_velocity;
-    for (int column = 0; column < cells.num_columns(); ++column) {
-      if (beyond || std::abs(column - cells.reach_range()) > cells.guard_range) training.push_back(power(row, column));
+  double sum = 0.0;
+  std::array<double, 2> half_means{};
+  for (int row = -cells.reach_velocity(); row <= cells.reach_velocity(); ++row) {
+    for (int column = -cells.reach_range(); column <= cells.reach_range(); ++column) {
+      if (std::abs(row) <= cells.guard_velocity && std::abs(column) <= cells.guard_range) continue;
+      const double value = power(row + cells.reach_velocity(), column + cells.reach_range());
+      training.push_back(value);
+      sum += value;
+      if (const auto half = cells.half_of(row, column))
+        half_means[*half] += value / static_cast<double>(cells.num_in_half());
     }
   }
-  double sum = 0.0;
-  for (const double value : training) sum += value;
+  const auto [least, greatest] = std::ranges::minmax(half_means);
+  const double statistic = design_.method == CfarMethod::kGreatestOf   ? greatest
+                           : design_.method == CfarMethod::kSmallestOf ? least
+                                                                       : ordered(std::move(training));
+  return {statistic, tilt_ * sum + log_mean_};
+}
+
+double TrainingDraws::ordered(std::vector<double> training) const {
   const auto place = training.begin() + (design_.order() - 1);
   std::nth_element(training.begin(), place, training.end());
-  return {*place, tilt_ * sum + log_mean_};
+  return *place;
 }
 
 }  // namespace echopath

@@ -9,7 +9,7 @@
 namespace echopath {
 
 struct TrainingDraw {
-  double statistic = 0.0;   // the order()-th training power in ascending order, for cells of unit mean power per channel
+  double statistic = 0.0;   // what the method makes of the training powers, for cells of unit mean power per channel
   double log_weight = 0.0;  // a mean over the noise weighs the draw by e^this
 };
 
@@ -30,6 +30,7 @@ class TrainingDraws {
   Eigen::MatrixXd white_numbers(int64_t index) const;
   TrainingDraw one(int64_t index) const;
   TrainingDraw summed_up(const RowMatrix& power) const;
+  double ordered(std::vector<double> training) const;
 
   const CfarDesign& design_;
   const TrainingNoise& noise_;

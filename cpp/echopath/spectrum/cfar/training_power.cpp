@@ -4,35 +4,10 @@
 #include <cstdlib>
 
 #include "echopath/base/lanes/simd.h"
+#include "echopath/spectrum/cfar/moving_sums.h"
 
 namespace echopath {
 namespace {
-
-// Adds values[i] + ... + values[i + width - 1] to sum[i] for i in [0, num_sums), by doubling: `level` [count], which holds
-// the values at first, holds sums of 1, 2, 4, ... numbers in turn.
-ECHOPATH_INLINE void add_levels(double* level, int64_t count, int64_t width, int64_t num_sums, double* sum) {
-  int64_t done = 0;
-  for (int64_t size = 1; size <= width; size *= 2) {
-    if (width & size) {
-      for (int64_t i = 0; i < num_sums; ++i) sum[i] += level[i + done];
-      done += size;
-    }
-    const int64_t next = count - 2 * size + 1;
-    for (int64_t i = 0; i < next; ++i) level[i] += level[i + size];
-  }
-}
-
-void moving_sums(const double* values, int64_t count, int64_t width, double* sum) {
-  if (width == 0 || width > count) return;
-  const int64_t num_sums = count - width + 1;
-  std::vector<double> level(values, values + count);
-  std::fill(sum, sum + num_sums, 0.0);
-  run_simd<add_levels>(level.data(), count, width, num_sums, sum);
-}
-
-ECHOPATH_INLINE void add(const double* values, int64_t count, double* sum) {
-  for (int64_t i = 0; i < count; ++i) sum[i] += values[i];
-}
 
 ECHOPATH_INLINE void count_below(const double* values, int64_t count, double limit, int64_t* below) {
   int64_t found = 0;
@@ -76,7 +51,7 @@ void TrainingPower::sums(int64_t velocity, double* sum) const {
   std::fill(sum, sum + num_ranges_, 0.0);
   for (int64_t shift = -window_.reach_velocity(); shift <= window_.reach_velocity(); ++shift) {
     const std::vector<double>& spans = std::abs(shift) > window_.guard_velocity ? outer_ : inner_;
-    run_simd<add>(spans.data() + (velocity + shift + num_velocities_) % num_velocities_ * num_ranges_, num_ranges_, sum);
+    add_row(spans.data() + (velocity + shift + num_velocities_) % num_velocities_ * num_ranges_, num_ranges_, sum);
   }
 }
 

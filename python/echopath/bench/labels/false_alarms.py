@@ -3,10 +3,12 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from typing import get_args
 
 import numpy as np
 
 import echopath as ep
+from echopath.spectra.range_doppler import CfarMethod
 
 NUM_CHIRPS, NUM_SAMPLES = 128, 512
 RATES = (1e-3, 1e-4)
@@ -64,7 +66,7 @@ def describe_false_alarms(rows: list[dict]) -> list[str]:
 
 def _measure(num_cells: int, of_map: NoiseMap, rates) -> list[dict]:
     radar = _radar(of_map)
-    found = {(method, rate): [] for method in ("ca", "os") for rate in rates}
+    found = {(method, rate): [] for method in get_args(CfarMethod) for rate in rates}
     cells = 0
     for seed in itertools.count():
         spectrum = _noise(radar, of_map, seed)

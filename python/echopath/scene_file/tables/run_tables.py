@@ -164,7 +164,7 @@ class LabelsTable(Table):
 
 
 class DetectionsTable(Table):
-    method: CfarMethod = Field("ca", description="cell averaging, or an ordered statistic")
+    method: CfarMethod = Field("ca", description="average, ordered statistic, greatest or smallest of two halves")
     false_alarm_rate: Annotated[float, Field(ge=1e-15, le=0.5)] = Field(FALSE_ALARM_RATE, description="of one cell")
     guard_velocity: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: the window's main lobe")
     guard_range: Annotated[int, Field(ge=0)] | None = Field(None, description="cells; none: the window's main lobe")

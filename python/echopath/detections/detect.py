@@ -55,11 +55,12 @@ def _signals_of(parts: dict, paths, radar, progress) -> dict:
     return decompose(paths, radar, parts, progress=progress)
 
 
-def _require_other_names(parts: dict | None, beside: dict | None) -> None:
+def _require_other_names(parts: dict | None, labels: Labels | None, beside: dict | None) -> None:
     """Raises ValueError for what is named in both: either would stand in the place of the other."""
-    twice = [name for name in beside or {} if name in (parts or {})]
+    argument, names = ("parts", parts or {}) if labels is None else ("labels", labels.part_names)
+    twice = [name for name in beside or {} if name in names]
     if twice:
-        raise ValueError(f"beside: must have other names than parts, got {twice[0]!r} in both")
+        raise ValueError(f"beside: must have other names than {argument}, got {twice[0]!r} in both")
 
 
 _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all but spectrum and radar
@@ -99,7 +100,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
         are what no path makes there: a detection of theirs is of no object
     labels: Labels of the map instead of parts; without paths their objects and ghosts too
     beside: {name: cube or RangeDoppler} of what no path makes, such as `Frame.beside_spectra`: a detection in whose cell one of
-        these has the largest power has its name as part, and is of no object; named otherwise than the parts
+        these has the largest power has its name as part, and is of no object; named otherwise than the parts, or those of labels
     objects: of `families`, with paths
     noise_margin_db: dB from -300 to 300, with paths: as of `annotate`, above which the rule of labels tells an object from what
         hides it; None: that of labels where they are given, else 10
@@ -125,7 +126,7 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
-    _require_other_names(parts, beside)
+    _require_other_names(parts, labels, beside)
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, of any receiver, got another {field}")
     if labels is not None:
@@ -186,10 +187,12 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
         found.families = labelling.families_of_labels(labels, cells)
         found.resolved = labelling.resolved_labels(labels)
     if labels is not None:
-        names, powers, whole = labelling.label_powers(spectrum, labels, cells, gains)
+        names, powers, whole = labelling.label_powers(spectrum, labels, beside, cells, gains)
         found.take_part_names(names, powers)
-        if makers.paths is None or beams is None:  # those of paths in a beam are what the power in it compares with
+        if makers.paths is None or beams is None:
             found.take_echoes(whole, power)
+        elif beside:  # the echoes of paths in the beam are what the power in it compares with
+            found.add_echoes(labelling.part_powers(beside, cells, gains, beams)[2])
     elif parts is not None:
         found.take_parts(*labelling.part_powers(parts | beside, cells, gains, beams), power)
     elif beside:

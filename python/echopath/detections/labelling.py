@@ -59,14 +59,18 @@ def require_cells_of(spectrum, labels) -> None:
         raise ValueError(f"labels: must be of the spectrum's cells {spectrum.values.shape[2:]}, got {labels!r}")
 
 
-def label_powers(spectrum, labels, cells, gains) -> tuple:
-    """As part_powers, from Labels of the range-Doppler map: with the gain in the mean over the channels."""
+def label_powers(spectrum, labels, beside: dict, cells, gains) -> tuple:
+    """As part_powers, from Labels of the range-Doppler map and maps of what is beside them: with the gain in the mean over the
+    channels. Labels keep no fields, so that the power of all is the sum of theirs and of what is beside them."""
     velocity, distance = cells[:, 0], cells[:, 1]
     tx, rx = (np.arange(count) for count in spectrum.values.shape[:2])
     powers = [labels.power[k, velocity, distance] * _mean_gain(gains.of(name, tx[:, None, None], rx[:, None], distance))
               for k, name in enumerate(labels.part_names)]
-    of_echoes = _mean_gain(gains.of("", tx[:, None, None], rx[:, None], distance))
-    return list(labels.part_names), np.array(powers), labels.whole[velocity, distance] * of_echoes
+    whole = labels.whole[velocity, distance] * _mean_gain(gains.of("", tx[:, None, None], rx[:, None], distance))
+    if not beside:
+        return list(labels.part_names), np.array(powers), whole
+    names, more, all_beside = part_powers(beside, cells, gains)
+    return [*labels.part_names, *names], np.array([*powers, *more]), whole + all_beside
 
 
 def _mean_gain(gains) -> np.ndarray:
@@ -158,13 +162,18 @@ class CellLabels:
         """whole, measured: [N] W, power of all echoes as one field and that of the map, of the same channels or beams"""
         self._echoes, self._measured = whole, measured
 
+    def add_echoes(self, more) -> None:
+        """more: [N] W, power of what the map has beside the echoes that were taken"""
+        self._echoes = self._echoes + more
+
     def take_beside(self, names, powers, measured) -> None:
         """names: [K] of what no path makes; powers: [K, N] W: beside the echoes of paths, which have no part's name, or else
         beside what the map has more of; measured: [N] W, of the map."""
         echoes = np.maximum(measured - powers.sum(axis=0), 0.0) if self._echoes is None else self._echoes
         self._part, self._share = _strongest_part(["", *names], np.concatenate([echoes[None], powers]))
         self._share = np.where(self._part == "", np.nan, self._share)
-        self._echoes = None if self._echoes is None else echoes + powers.sum(axis=0)
+        if self._echoes is not None:
+            self.add_echoes(powers.sum(axis=0))
 
     def leave(self, names) -> None:
         """Cells of parts of these names are of no family."""

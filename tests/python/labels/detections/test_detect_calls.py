@@ -84,6 +84,8 @@ def test_bad_arguments_are_named(spheres):
         ep.detect(spectrum, radar, labels=object())
     with pytest.raises(ValueError, match="labels: cannot be given beside parts"):
         ep.detect(spectrum, radar, parts=parts, labels=ep.annotate(paths, parts))
+    with pytest.raises(ValueError, match="beside: must have other names than labels, got 'near' in both"):
+        ep.detect(spectrum, radar, labels=ep.annotate(paths, parts), beside={"near": parts["near"]})
     with pytest.raises(ValueError, match="paths: must be traced with the radar"):
         other = radar_with(num_chirps=32)
         ep.detect(ep.range_doppler(np.zeros((1, 8, 32, 256), complex), other), other, paths=paths)

@@ -63,19 +63,37 @@ def test_parts_label_their_own_targets(spheres):
     assert np.array_equal(found.part, of_maps.part) and np.array_equal(found.share, of_maps.share)
 
 
-@pytest.mark.parametrize("with_paths", [False, True])
-def test_what_no_path_makes_has_the_cells_where_it_is_the_most(spheres, with_paths):
-    """A tone of another radar, faint beside the targets' echoes and 30 dB above the noise in a cell of its own."""
+@pytest.fixture(scope="module")
+def beside_a_tone(spheres):
+    """(cube of a tone of another radar, map of it, echoes and noise): faint beside the targets' echoes and 30 dB above the noise
+    in a cell of its own."""
     radar, paths, _ = spheres
     place = 2.0 * np.pi * np.add.outer(0.25 * np.arange(radar.waveform.num_chirps), 0.6 * np.arange(radar.waveform.num_samples))
     echoes = ep.synthesize(paths, radar)
     other = np.broadcast_to(np.sqrt(1e3 * ep.noise_power(radar)) * np.exp(1j * place), echoes.shape)
-    spectrum = ep.range_doppler(ep.add_noise(echoes + other, radar, seed=1), radar)
+    return other, ep.range_doppler(ep.add_noise(echoes + other, radar, seed=1), radar)
+
+
+@pytest.mark.parametrize("with_paths", [False, True])
+def test_what_no_path_makes_has_the_cells_where_it_is_the_most(spheres, beside_a_tone, with_paths):
+    (radar, paths, _), (other, spectrum) = spheres, beside_a_tone
     found = ep.detect(spectrum, radar, beside={"interference": other}, paths=paths if with_paths else None)
     by_range = np.argsort(found.range)
     assert found.part[by_range].tolist() == [""] * len(TARGETS) + ["interference"]
     assert found.share[by_range[-1]] > 0.99 and np.isnan(found.share[by_range[:-1]]).all() and not found.is_noise.any()
     assert found.range.max() == pytest.approx(0.6 * radar.waveform.max_range, abs=0.1)
+
+
+@pytest.mark.parametrize("with_paths, beams", [(False, False), (True, False), (True, True)])
+def test_what_no_path_makes_has_its_cells_beside_labels_too(spheres, beside_a_tone, with_paths, beams):
+    (radar, paths, _), (other, spectrum) = spheres, beside_a_tone
+    labels = ep.annotate(paths, {"near": "T 'near' R"})
+    found = ep.detect(spectrum, radar, labels=labels, beside={"interference": other}, paths=paths if with_paths else None,
+                      beams=beams)
+    at_the_tone = found.range > 0.5 * radar.waveform.max_range
+    assert np.count_nonzero(at_the_tone) == 1 and found.part[at_the_tone] == "interference" and found.share[at_the_tone] > 0.99
+    assert not found.is_noise.any() and sorted(found.object) == ["", *sorted(TARGETS)]
+    assert found.part[nearest(found, "near")] == "near"
 
 
 @pytest.mark.parametrize("name", ["interference", "jammer"])

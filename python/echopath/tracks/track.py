@@ -159,8 +159,8 @@ class _Tracker:
 def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:
     """The name of the object that each row follows, "" for none, frame by frame, each object in one track at most.
 
-    A track keeps its object while it is near it; the rest go together so that their distances are least (the rule of CLEAR
-    MOT: Bernardin and Stiefelhagen 2008).
+    A track keeps its object while it is near it and no other track has followed that since; the rest go together so that their
+    distances are least (the rule of CLEAR MOT: Bernardin and Stiefelhagen 2008).
     """
     names, kept, rows_of_frame = [""] * len(rows), {}, {}
     for index, row in enumerate(rows):
@@ -174,7 +174,8 @@ def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:
         nearest = np.min(distance, axis=1, keepdims=True, initial=np.inf)
         is_possible = (distance <= truth_distance) & (is_kept | (distance <= nearest + 0.5 * truth_distance))
         pairs = assigned(np.where(is_possible, cost, np.inf), truth_distance + 1.0)
-        kept |= {rows[here[row]][0]: str(there.name[found]) for row, found in pairs}
+        taken = {rows[here[row]][0]: str(there.name[found]) for row, found in pairs}
+        kept = {number: name for number, name in kept.items() if name not in taken.values()} | taken
         for row, found in pairs:
             names[here[row]] = str(there.name[found])
     return names

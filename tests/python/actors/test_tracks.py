@@ -62,6 +62,17 @@ def test_crossing_points_keep_their_tracks(seed, merge_distance):
         assert one.state[-1, 2:] == pytest.approx([4.0, 4.0 if one.object[0] == "up" else -4.0], abs=0.5)
 
 
+def test_who_leaves_an_object_and_comes_back_does_not_take_it_from_who_has_followed_it_since():
+    """One track begins on a post, goes 4 m aside and comes back to 1.6 m beside it, where another one has been meanwhile."""
+    post, away = np.array([10.0, 0.0]), np.interp(np.arange(FRAMES), [5, 15, 18, 24], [0.0, 4.0, 4.0, 1.6])
+    found = [[post + [0.0, aside]] + ([post] if frame >= 12 else []) for frame, aside in enumerate(away)]
+    tracks = ep.track(found, TIMES, truth=truth_of(np.tile(post, (FRAMES, 1, 1)), ["post"]), merge_distance=0.1,
+                      acceleration_std=20.0)
+    assert tracks.num_tracks == 2 and tracks.num_switches == 1
+    first, second = (tracks.of_track(number) for number in (0, 1))
+    assert first.object[0] == "post" and set(second.object) == {"post"} and set(first.object[12:]) == {""}
+
+
 def test_what_passes_a_rail_is_none_of_its_posts():
     """A rail of 12 m shows as three posts; what passes it 1.8 m aside stays unseen."""
     posts = np.array([[10.0, 0.0], [15.0, 0.0], [20.0, 0.0]])

@@ -153,7 +153,7 @@ def _label_scene(work: Labelling, owners, intervals: dict, mask) -> dict:
     visibility = {of_object.name: of_object for of_object in seen}
     hidden = occluded_objects(families.objects, found, visibility, request.plane)
     appearing = appearing_in_frame(paths, request.radar, hidden, request.objects, progress=progress)
-    objects, object_map = label_objects(families.objects, found, visibility, appearing, request.plane, paths)
+    objects, object_map = label_objects(families.objects, found, visibility, appearing, request.plane, work.seen)
     ghosts, ghost_map = label_ghosts(found, request.plane)
     return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map,
             "left_out": owners.left_out}

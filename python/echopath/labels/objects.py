@@ -63,7 +63,7 @@ def label_objects(names, found: FamilyCells, visibility: dict, appearing, plane,
     """The labels of the objects and i16 [V, R], index of the object in each cell, -1: none.
 
     names: of the objects; visibility: {name: ObjectVisibility} at the time of the trace; appearing: names of those that are
-    hidden then, but not throughout the frame; paths: of the trace
+    hidden then, but not throughout the frame; paths: of the trace, with the radar that is to receive them
     """
     labels, chosen = [], {}
     for index, name in enumerate(names):

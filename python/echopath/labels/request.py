@@ -14,6 +14,7 @@ from ..paths.families import families as find_families
 from ..paths.resolution import mean_powers
 from ..paths.subset import part_of_path
 from ..signals.parts import ONLY_PARTITION
+from ..signals.same_radar import difference
 from .part_cells import floor_over, masks_of
 from .planes import make_plane
 from .standard_errors import require_batches
@@ -80,11 +81,13 @@ class Labelling:
     """What cells are labelled by, beside the powers of the parts; made by `labelling_of`.
 
     selections: {partition: {name: selection}}; settings: signal settings of `decompose`
+    seen: the paths, with the radar of the request in place of that which traced them: what powers by themselves are received by
     families: Families of the paths; mean: MeanPowers of these and of the parts of selections
     """
 
     request: Request
     paths: _core.Paths
+    seen: _core.Paths
     families: object
     selections: dict
     settings: dict
@@ -92,9 +95,16 @@ class Labelling:
 
 
 def labelling_of(request: Request, paths, selections: dict, settings: dict) -> Labelling:
-    """What the cells of these paths are labelled by; arguments: fields of Labelling."""
-    families = find_families(paths, request.objects)
-    return Labelling(request, paths, families, selections, settings, _powers_received(paths, families, selections))
+    """What the cells of these paths are labelled by; arguments: fields of Labelling, paths those that were traced."""
+    families, seen = find_families(paths, request.objects), _seen_by(request.radar, paths)
+    return Labelling(request, paths, seen, families, selections, settings, _powers_received(seen, families, selections))
+
+
+def _seen_by(radar, paths):
+    """The paths with a radar in place of that which traced them."""
+    if not difference(radar, paths.radar, paths.frame.start_time):
+        return paths
+    return _core.Paths.from_arrays(**paths.__getstate__() | {"radar": radar})
 
 
 def _powers_received(paths, families, selections: dict):

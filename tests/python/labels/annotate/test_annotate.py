@@ -147,6 +147,15 @@ def test_power_of_an_object_is_that_of_its_cube(plates_and_wall):
         assert label.power / np.mean(np.abs(made[label.name]) ** 2) == pytest.approx(1.0, abs=ROUNDING)
 
 
+def test_mean_powers_are_received_by_the_radar_that_is_asked_for(plates_and_wall, labels):
+    """All powers grow with the power that is sent, those of objects, ghosts and parts over the random phases, too."""
+    paths, parts, _ = plates_and_wall
+    loud = ep.annotate(paths, parts, make_radar().replace(transmit_power=7.0 * make_radar().transmit_power))
+    of_loud, of_own = ([*(label.received for label in (*found.objects, *found.ghosts)), *found.part_received]
+                       for found in (loud, labels))
+    assert np.allclose(of_loud, 7.0 * np.array(of_own), rtol=ROUNDING, atol=0.0)
+
+
 def test_power_of_ghosts_that_share_cells_is_that_of_the_cube_of_each(plates_and_wall, labels):
     paths, _, _ = plates_and_wall
     cubes = ep.decompose(paths, parts=ep.families(paths))

@@ -86,6 +86,8 @@ class Views:
             raise refused(ValueError, "labels", f"None for frames whose partitions are called '{OBJECTS}' or '{FAMILIES}'", taken)
         partitions = {view: {name: self._of_channel(cube) for name, cube in cubes.items()} for view, cubes in frame.parts.items()}
         found = PartsOfFrame(frame, self._settings.objects, FAINT * self._floor(), self._channel)
+        if taken := [name for name in found.objects if name in (GHOSTS, REST, *BESIDE)]:
+            raise refused(ValueError, "labels.objects", "{another name: glob} for objects whose names other parts have", taken)
         rest = {REST: found.rest}
         of_objects = found.objects | ({GHOSTS: sum([*found.ghosts.values(), found.faint])} if found.has_ghosts else {}) | rest
         return partitions | {OBJECTS: of_objects, FAMILIES: found.objects | found.ghosts | {REST: found.rest + found.faint}}

@@ -165,5 +165,8 @@ def test_what_they_cannot_tell_is_refused_by_name(frames):
         ep.spectrogram(frames, labels={"plane": "range_azimuth"})
     with pytest.raises(TypeError, match="^labels: unknown keyword 'margin'"):
         ep.spectrogram(frames, labels={"margin": 3.0})
+    for name in ("other", "ghosts", "rain"):  # an object of the name of another part would not be there
+        with pytest.raises(ValueError, match="^labels.objects: must be {another name: glob} for objects whose names other parts"):
+            ep.spectrogram(frames, labels={"objects": {name: "fast"}})
     with pytest.raises(ValueError, match="^labels: must be None for frames whose partitions are called"):
         ep.spectrogram(frames_of(make_scene(), 1, parts={"objects": {"goes": "T 'fast' R"}}), labels=True)

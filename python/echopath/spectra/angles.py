@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from .. import _core
 from ..arguments.checks import (
     LARGEST_COUNT,
@@ -26,6 +28,8 @@ from .one_polarisation import warn_of_mixed_polarisations
 BeamMethod = Literal["bartlett", "capon"]
 Overlaps = Literal["average", "first"]
 Combine = Literal["sum", "peak"]
+
+ROUNDING = 1e-9  # of a cell of velocity, at the end of the axis
 
 _ANGLES = optional(array("[]", "[N]"))
 _CELLS = array("[N, 2]", kind="whole")
@@ -141,7 +145,8 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
     azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left, -2 pi to 2 pi; None: those the array
         tells apart about where its antennas look (`VirtualArray.default_angles`)
     elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
-    velocity: m/s, of the cells to take; None: all velocities
+    velocity: m/s, of the cells to take; None: all velocities. Nearer to the end of the axis than to its last cell it is that of
+        the first one, to which it folds
     combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
         case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
         about ln(num_chirps) times that of a cell.
@@ -153,11 +158,25 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
     (RuntimeWarning) where the antennas tell no azimuths apart.
     """
     warn_of_mixed_polarisations(radar, "range_azimuth")
+    if velocity is not None:
+        spectrum, velocity = _folded_to_first(spectrum, radar, velocity, compensate)
     return _core.range_azimuth(spectrum, radar, azimuth, elevation, velocity=velocity, combine=combine,
                                velocity_gate=velocity_gate, method=method, window=window, overlaps=overlaps,
                                compensate=compensate, diagonal_loading=diagonal_loading,
                                velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
                                forward_backward=forward_backward, progress=progress)
+
+
+def _folded_to_first(spectrum, radar, velocity: float, compensate: bool) -> tuple:
+    """The map and the velocity in m/s that is to be taken of it: of one between the last cell and the end of the axis, but nearer
+    to the end, those in which the first cell has it, with the phase between transmit slots of this velocity."""
+    axis = spectrum.velocity
+    step = axis[1] - axis[0] if len(axis) > 1 else np.inf
+    if not 0.5 < (velocity - axis[-1]) / step <= 1.0 + ROUNDING:
+        return spectrum, velocity
+    if compensate and not spectrum.is_tdm_compensated:
+        return _core.compensate_tdm(spectrum, radar, 1), velocity
+    return spectrum, velocity - len(axis) * step
 
 
 @checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), peak_range_db=real(0.0, 200.0, unit="dB"),

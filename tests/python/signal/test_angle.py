@@ -119,6 +119,27 @@ def test_range_azimuth_equals_the_slow_mean():
                                atol=ROUNDING * slow.max())
 
 
+@pytest.mark.parametrize("transmitters", [[(0, 0)], [(0, 0), (4, 0), (8, 0)]])
+def test_velocities_up_to_the_end_of_the_axis_are_those_of_its_first_cell(transmitters):
+    """A point whose velocity is a quarter of a cell below the end, where no cell of its own is: what was checked before the trace
+    is not to be refused behind it. The transmitters of the second radar take turns, which turns it by its own velocity."""
+    radar, azimuth, takes_turns = mimo(transmitters, LINE), 0.3, len(transmitters) > 1
+    end, cell = radar.waveform.max_velocity(len(transmitters)), radar.waveform.velocity_resolution(len(transmitters))
+    speed = end - 0.25 * cell
+    spectrum = ep.range_doppler(cube_of_points(radar, [(at(8.0, azimuth, 0.0), at(speed, azimuth, 0.0), 1.0)]), radar)
+    found = ep.range_azimuth(spectrum, radar, velocity=speed)
+    assert found.velocity == pytest.approx(end)
+    top = np.unravel_index(found.power.argmax(), found.power.shape)[0]
+    assert found.azimuth[top] == pytest.approx(azimuth, abs=DIRECTION_TOLERANCE + np.diff(found.azimuth).max())
+    first = ep.range_azimuth(spectrum, radar, found.azimuth, velocity=-end, compensate=False).power
+    without = ep.range_azimuth(spectrum, radar, found.azimuth, velocity=speed, compensate=False).power
+    assert np.array_equal(without, first) and np.allclose(first, found.power) != takes_turns
+    frame = ep.simulate(scene_of_spheres([8.0, 0.0, 0.0]), radar, num_rays=500, angles={"velocity": speed}, guard=False)
+    assert frame.range_azimuth.velocity == pytest.approx(end)
+    with pytest.raises(ValueError, match="^velocity: must be on the map's axis"):
+        ep.range_azimuth(spectrum, radar, velocity=end + 0.1 * cell)
+
+
 def test_noise_falls_by_the_number_of_elements():
     radar = three_by_four()
     power = np.mean([ep.beamform(noise_map(radar, seed), radar, [-0.5, 0.2]).power.mean() for seed in range(6)])

@@ -63,7 +63,8 @@ def _require_other_names(parts: dict | None, labels: Labels | None, beside: dict
         raise ValueError(f"beside: must have other names than {argument}, got {twice[0]!r} in both")
 
 
-_ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all but spectrum and radar
+_OWN = ("spectrum", "radar", "cells", "velocity", "progress")  # of each call, which no settings have
+_ANGLES = keywords("estimate_angles", tuple(name for name in parameters_of(estimate_angles) if name not in _OWN))
 
 
 @checked(**CFAR_RULES, angles=optional(_ANGLES), paths=optional(an(_core.Paths)), parts=optional(_parts),

@@ -63,7 +63,7 @@ class FrameRun:
         if signal.retrace != "never" and signal.keyframes > radar.waveform.num_chirps:
             raise refused(ValueError, "keyframes", f"at most the {radar.waveform.num_chirps} chirps of the frame",
                           signal.keyframes)
-        self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
+        self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles, zero_pad=signal.zero_pad)
         check_partitions(self.partitions, scene)
         require_names(self.partitions)
         has_rain_echoes(scene, trace.effects)  # raises

@@ -84,7 +84,7 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
                                detections=settings.detections, guard=settings.guard, sequence=settings.sequence,
                                **_tables_of_objects(settings, scene, radar))
         with blamed("angle"):
-            checked_settings(scene_file.radar, scene_file.angle_settings())
+            checked_settings(scene_file.radar, scene_file.angle_settings(), zero_pad=scene_file.signal.zero_pad)
         check_partitions(scene_file.partitions(), scene_file.scene)
         _check_objects(scene_file)
         return scene_file

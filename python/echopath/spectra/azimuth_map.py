@@ -9,14 +9,16 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import keywords, optional, real, refused
-from ..arguments.gates import gate
+from ..arguments.gates import gate, in_gate
 from ..arguments.keywords import parameters_of
+from ..base.radar.velocities import velocity_span_of
 from .angles import range_azimuth
 
 DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
 
 _ARRAYS = ("azimuth", "elevation", "velocity_gate")
-_KEYWORDS = keywords("range_azimuth", parameters_of(range_azimuth)[2:])  # all but spectrum and radar
+_OWN = ("spectrum", "radar", "progress")  # of the call, which no settings have
+_KEYWORDS = keywords("range_azimuth", tuple(name for name in parameters_of(range_azimuth) if name not in _OWN))
 
 
 def sees_azimuth(radar, settings) -> bool:
@@ -29,10 +31,11 @@ def sees_azimuth(radar, settings) -> bool:
     return array.tells_azimuths and (settings.get("azimuth") is not None or array.has_default_azimuths)
 
 
-def checked_settings(radar, settings, velocity_gate=None) -> dict:
+def checked_settings(radar, settings, velocity_gate=None, zero_pad: int | None = None) -> dict:
     """Keywords of `ep.range_azimuth` for a radar, DEFAULTS for None; raises what it would raise, before a long trace.
 
-    velocity_gate: (lowest, highest) in m/s beside the settings, or None
+    velocity_gate: (lowest, highest) in m/s beside the settings, or None; zero_pad: of the maps of the radar's frames, None: a
+        gate need not hold a cell of these
     """
     settings = dict(DEFAULTS) if settings is None else _kept(_KEYWORDS("angles", settings))
     if velocity_gate is not None:
@@ -42,6 +45,8 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
     if gate("velocity_gate", settings.get("velocity_gate")) and settings.get("velocity") is not None:
         raise refused(ValueError, "velocity_gate", "None where a velocity is chosen", settings["velocity_gate"])
     velocity = optional(real(unit="m/s"))("velocity", settings.get("velocity"))
+    if zero_pad is not None:
+        in_gate("velocity_gate", _velocities(radar, zero_pad), gate("velocity_gate", settings.get("velocity_gate")), "m/s")
     limit = radar.waveform.max_velocity(radar.num_slots)
     if velocity is not None and abs(velocity) > limit:
         raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
@@ -54,6 +59,12 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
         range_azimuth(_core.range_doppler(cube, small), small, **checked)
     return settings
+
+
+def _velocities(radar, zero_pad: int) -> np.ndarray:
+    """[V] m/s, the axis of a map."""
+    count = radar.waveform.num_chirps * zero_pad
+    return (np.arange(count) - count // 2) * (velocity_span_of(radar) / count)
 
 
 def _kept(settings: dict) -> dict:

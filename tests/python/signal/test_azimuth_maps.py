@@ -49,10 +49,16 @@ def test_settings_of_a_map_are_checked_before_the_trace():
     scene = scene_of_spheres([8.0, 0, 0])
     stages = []
     for angles, text in (({"window": "hann"}, "^window: "), ({"velocity": 99.0}, "^velocity: "),
+                         ({"velocity_gate": (98.0, 99.0)}, "^velocity_gate: "), ({"progress": None}, "^angles: .*'progress'"),
                          ({"azimuth": 9}, "^azimuth: "), ({"windw": "hann"}, "'windw'")):
         with pytest.raises((ValueError, TypeError), match=text):
             ep.simulate(scene, radar, angles=angles, progress=lambda stage, fraction: stages.append(stage))
     assert "trace" not in stages
+    padded = 0.5 * radar.waveform.velocity_resolution(1)  # a cell of padded maps alone
+    gate = {"velocity_gate": (0.9 * padded, 1.1 * padded)}
+    with pytest.raises(ValueError, match="^velocity_gate: "):
+        ep.simulate(scene, radar, num_rays=100, angles=gate, guard=False)
+    assert ep.simulate(scene, radar, num_rays=100, angles=gate, zero_pad=2, guard=False).range_azimuth is not None
 
 
 def test_frames_of_one_channel_have_no_map_of_azimuth():

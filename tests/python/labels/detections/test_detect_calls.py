@@ -82,6 +82,9 @@ def test_bad_arguments_are_named(spheres):
     parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
     with pytest.raises(TypeError, match="labels: must be Labels"):
         ep.detect(spectrum, radar, labels=object())
+    for own in ("cells", "velocity", "progress"):
+        with pytest.raises(TypeError, match=f"^angles: unknown keyword '{own}'"):
+            ep.detect(spectrum, radar, angles={own: None})
     with pytest.raises(ValueError, match="labels: cannot be given beside parts"):
         ep.detect(spectrum, radar, parts=parts, labels=ep.annotate(paths, parts))
     with pytest.raises(ValueError, match="beside: must have other names than labels, got 'near' in both"):

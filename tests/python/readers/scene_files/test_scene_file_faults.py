@@ -49,6 +49,7 @@ FAULTS = [
     (RADAR + "[angle]\nelevation_deg = [5, 5]", "angle.elevation_deg: must be a number or an ascending list"),
     (RADAR + "[angle]\nmethod = 'capon'\nwindow = 'hann'", "angle.window: must be \"rect\" for capon"),
     (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),
+    (RADAR + "[angle]\nvelocity_gate = [10.0, 11.0]", "angle: velocity_gate: must hold a cell of the axis from -9.67"),
     (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
     (RADAR + "[radar.receiver]\nreceiver_phase = [0.1, 0.2, 0.3]",
      "radar: receiver.receiver_phase: must be of the shape (1,) for this radar, got an array [3] of float64"),

@@ -18,6 +18,7 @@ from ..frame.maps import FrameMaps
 from ..signals.beside import cubes_beside
 from ..signals.parts import decompose, selection_rule
 from ..signals.same_radar import WAVEFORM_KINDS
+from ..spectra.range_doppler import require_finite
 
 Frames = Frame | ArrayLike | Iterable[Frame] | Iterable[ArrayLike]
 Part = str | Hashable | Selection | None
@@ -119,7 +120,7 @@ def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_t
                             f'keep="all" do{maps}')
         else:
             start = _start_of(number, before, start_times)
-            burst = Burst(start, _CUBE("frames", one), _radar_of_cubes(radar, part),
+            burst = Burst(start, _finite(_CUBE("frames", one)), _radar_of_cubes(radar, part),
                           speckle=None if start_times is None else ANY)
         yield _followed(before, _of_channel(burst, channel))
         before = burst
@@ -144,6 +145,13 @@ def _speckle_of(paths) -> Hashable:
     if not np.any(paths.diffuse):
         return ANY
     return ("surface", paths.frame.seed) if paths.frame.scatterers == "surface" else None
+
+
+def _finite(cube) -> np.ndarray:
+    """The cube. Raises ValueError for what is no finite number, which would leave nothing of its column."""
+    with np.errstate(invalid="ignore"):  # of infinities that take each other away
+        require_finite("frames", cube, np.sum(cube))
+    return cube
 
 
 def _start_of(number: int, before: Burst | None, start_times) -> float:

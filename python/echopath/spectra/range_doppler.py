@@ -54,15 +54,16 @@ def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = Signa
         raise refused(ValueError, "cube", f"apart by transmitters, of the shape {apart}, as ep.demultiplex(cube, radar) gives it",
                       cube)
     found = _core.range_doppler(cube, radar, window, zero_pad)
-    _require_finite(cube, found.values)
+    # A transform spreads what is no number to all cells of its channel, the first too.
+    require_finite("cube", cube, found.values[:, :, 0, 0])
     return found
 
 
-def _require_finite(cube: ArrayLike, values: np.ndarray) -> None:
-    """Raises ValueError for a cube with what is no number: a transform spreads it to all cells of its channel, the first too."""
-    if not np.all(np.isfinite(values[:, :, 0, 0])):
+def require_finite(argument: str, cube: ArrayLike, told: np.ndarray) -> None:
+    """Raises ValueError for a cube with what is no number. told: made of all samples, so that it is no number then either"""
+    if not np.all(np.isfinite(told)):
         place = tuple(np.argwhere(~np.isfinite(cube))[0].tolist())
-        raise ValueError(f"cube: must be finite, got {np.asarray(cube)[place]} at [tx, rx, chirp, sample] = {list(place)}")
+        raise ValueError(f"{argument}: must be finite, got {np.asarray(cube)[place]} at [tx, rx, chirp, sample] = {list(place)}")
 
 
 @checked(**CFAR_RULES)

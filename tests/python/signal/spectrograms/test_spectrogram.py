@@ -266,6 +266,18 @@ def test_how_soon_a_frame_may_follow_is_named(num_samples):
     assert len(ep.spectrogram(cubes, radar, start_times=[0.0, soonest + 1e-9], window_length=32).trains) == 2
 
 
+@pytest.mark.parametrize("make", [ep.spectrogram, ep.range_time])
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -1j * np.inf])
+def test_samples_that_are_no_numbers_are_refused_as_maps_refuse_them(make, wrong):
+    """A receiver that has lost one: it would be NaN in all cells of its windows."""
+    radar = build_radar(num_chirps=8)
+    good = random_cube(radar, 1)
+    broken = good.copy()
+    broken[0, 0, 3, 17], broken[0, 0, 4, 1] = wrong, -wrong
+    with pytest.raises(ValueError, match=r"^frames: must be finite, got .* at \[tx, rx, chirp, sample\] = \[0, 0, 3, 17\]"):
+        make([good, broken], radar)
+
+
 def test_what_cannot_follow_is_refused():
     radar, cubes = build_radar(num_chirps=32), []
     cubes = [random_cube(radar, seed) for seed in range(2)]

@@ -203,7 +203,12 @@ class EchoFields:
 
     def _unsteady_near(self, distance: int) -> np.ndarray:
         """Places in the echoes of those whose phase is no parabola, within reach of a cell of range, ascending."""
-        return self._unsteady[np.abs(self._echoes["range"][self._unsteady] - distance) <= self._far + 1.0]
+        return self._unsteady[self._away(self._echoes["range"][self._unsteady], distance) <= self._far + 1.0]
+
+    def _away(self, ranges, distance: int) -> np.ndarray:
+        """Cells from some ranges [N], in cells, to a cell; of complex samples the axis is a circle, around which sidelobes go."""
+        away = np.abs(ranges - distance)
+        return away if self._paths.radar.waveform.real else np.minimum(away, len(self._spectrum.range) - away)
 
     @cached_property
     def _unsteady(self) -> np.ndarray:
@@ -321,14 +326,21 @@ class EchoFields:
     def _candidates(self, number, velocity: int, distance: int):
         """Places in echoes, in the order of the `number` of their nearest cells, of those within reach of a cell."""
         num_velocities, num_ranges = len(self._spectrum.velocity), len(self._spectrum.range)
-        pad = self._spectrum.zero_pad
-        slow = min(int(self._velocity_response.reach * pad), num_velocities // 2)
-        far = int(self._far)
+        slow = min(int(self._velocity_response.reach * self._spectrum.zero_pad), num_velocities // 2)
         rows = np.unique(np.arange(velocity - slow, velocity + slow + 1) % num_velocities) * num_ranges
-        first = np.searchsorted(number, rows + max(distance - far, 0))
-        last = np.searchsorted(number, rows + min(distance + far, num_ranges - 1), side="right")
-        near = [np.arange(*pair) for pair in zip(first, last)]
+        first, last = (np.add.outer(rows, ends).ravel() for ends in zip(*self._spans_about(distance)))
+        near = [np.arange(*pair) for pair in zip(np.searchsorted(number, first), np.searchsorted(number, last, side="right"))]
         return _all_of([*near, self._unsteady_near(distance)], len(number)) if len(self._unsteady) else np.concatenate(near)
+
+    def _spans_about(self, distance: int) -> list:
+        """[(first, last)] of the cells of range within reach of one, ascending: two where they go over an end of the axis."""
+        far, count = int(self._far), len(self._spectrum.range)
+        first, last = distance - far, distance + far
+        if self._paths.radar.waveform.real:
+            return [(max(first, 0), min(last, count - 1))]
+        if last - first >= count - 1:
+            return [(0, count - 1)]
+        return [(first, last)] if 0 <= first and last < count else [(0, last % count), (first % count, count - 1)]
 
 
 def _key(cell) -> tuple:

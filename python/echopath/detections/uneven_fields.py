@@ -74,7 +74,7 @@ class UnevenEchoFields(EchoFields):
         """As of EchoFields, those of all velocities."""
         pad, ranges = self._spectrum.zero_pad, self._echoes["range"]
         far = (self._range_response.reach + 0.5 * self._largest("travel") + self._all.largest_shift + 1.0) * pad
-        return np.flatnonzero(np.abs(ranges - distance) <= far + self._most_wider * ranges)
+        return np.flatnonzero(self._away(ranges, distance) <= far + self._most_wider * ranges)
 
     def _bounds(self, some, cell) -> np.ndarray:
         pad = self._spectrum.zero_pad

@@ -12,6 +12,7 @@ from echopath.detections.echo_fields import EchoFields
 from echopath.detections.response import Response
 from echopath.detections.uneven_fields import echo_fields as fields_of
 from echopath.spectra.windows import samples_of
+from support.radars import with_waveform
 from support.scenes.small_spheres import TARGETS, WAVELENGTH, at, nearest, radar_with, scene_of
 from support.shapes import lambert
 
@@ -144,6 +145,34 @@ def test_an_echo_that_goes_on_during_the_frame_is_in_all_cells_that_it_passes(mo
         index, field = echoes.fields((velocity, distance + far))
         model = field[0, index == chosen].sum()
         assert abs(model) == pytest.approx(abs(values[velocity, distance + far]), abs=LINE * np.abs(values).max())
+
+
+@pytest.mark.parametrize("steps", [(), (0.0, 6e7, 2e7)], ids=["even", "hopping"])
+@pytest.mark.parametrize("distance", [1.3, 30.8])
+def test_sidelobes_go_around_the_axis_of_complex_samples(distance, steps):
+    """Those of an echo at one end of the axis, half of which are at the other: by the paths as in the map itself."""
+    radar = with_waveform(radar_with(receivers=2), bandwidth=0.3e9, num_samples=64, num_chirps=8, frequency_steps=steps)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.2, 0.2), name="plate", material=lambert(0.3), position=(distance, 0.0, 0.0))
+    paths = ep.trace(scene, radar, num_rays=100, max_bounces=1)
+    spectrum = ep.range_doppler(ep.synthesize(paths, radar, method="direct"), radar, "rect")
+    echoes, values = fields_of(paths, spectrum), spectrum.values[0]
+    slow = np.unravel_index(np.abs(values).argmax(), values.shape)[1]
+    for far in range(0, 64, 3):
+        model, exact = echoes.fields((slow, far))[1].sum(axis=1), values[:, slow, far]
+        turn = np.vdot(model, exact) / max(abs(np.vdot(model, exact)), 1e-300)  # of all fields of a cell: where samples begin
+        np.testing.assert_allclose(turn * model, exact, rtol=0.0, atol=TABLE * np.abs(values).max())
+
+
+def test_sidelobes_at_the_other_end_of_the_axis_are_no_noise():
+    """A ball next to the radar, whose sidelobes of a Taylor window are detections from end to end of the axis."""
+    radar = with_waveform(radar_with(receivers=2, num_chirps=16), bandwidth=0.3e9, num_samples=64)
+    paths = ep.trace(scene_of({"ball": (1.3, 0.0, 0.0)}), radar, num_rays=1000)
+    found = ep.detect(ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar, ("taylor", 30)), radar,
+                      paths=paths)
+    beyond = np.flatnonzero(found.range > 0.5 * radar.waveform.max_range)
+    assert len(beyond) and not found.is_noise.any() and set(found.object) == {"ball"}
+    assert all(len(found.paths(i)[0]) for i in beyond)
 
 
 def test_an_echo_counts_that_only_the_last_antennas_have_in_the_cell():

@@ -24,6 +24,7 @@ MIRROR_COLOUR = (0.55, 0.65, 0.80)
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
 CUT = 1e-6                              # m: what lies as near to the border of the picture was cut there
 MARGIN = 0.6                            # m around the rays
+FLOOR = 0.02                            # of the height of what is drawn: grounds end no farther above its lowest point
 ELEVATION, AZIMUTH = 22.0, -118.0       # degrees, of the eye
 WIDE = 2.2                              # width of the view in perspective over its height
 FILLED, MOST_ZOOM = 0.72, 1.75          # share of the height that a scene fills; the rest is for the labels of the axes
@@ -42,11 +43,13 @@ TICK_SPACE = 0.06                       # of the longest side: room that a numbe
 
 @dataclasses.dataclass
 class _Drawing:
-    """What the views show: polygons [N, 3] with colours [4], edges [2, 3] that end a mirror and that the picture cuts it at, rays
-    [S, 2, 3] by number of bounces; names, mirror_names: {object: (lowest, highest) corner [3] of its box in the picture}."""
+    """What the views show: polygons [N, 3] with colours [4], those of grounds, mesh by mesh, as (height, first, last), edges
+    [2, 3] that end a mirror and that the picture cuts it at, rays [S, 2, 3] by number of bounces; names, mirror_names: {object:
+    (lowest, highest) corner [3] of its box in the picture}."""
 
     bodies: list
     body_colours: list
+    grounds: list
     mirrors: list
     mirror_edges: list
     mirror_cuts: list
@@ -119,7 +122,7 @@ def _collect(scene, shown, time: float, names) -> _Drawing:
     corners = np.concatenate([corners, _small_mirrors(scene, time, corners.min(axis=0), corners.max(axis=0))])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
     middle = 0.5 * (transmitter + receiver)
-    drawing = _Drawing([], [], [], [], [], segments, middle, low, high, _places_of(scene, names, time), {})
+    drawing = _Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, time), {})
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
         _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh)
@@ -196,8 +199,11 @@ def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
         if polygons:
             _add_mirror_name(drawing.mirror_names, object_of(mesh.name), np.concatenate(polygons))
         return
-    drawing.bodies += polygons
     if polygons:
+        height = triangles[..., 2].max()
+        if height <= drawing.low[2] + MARGIN + FLOOR * (drawing.high - drawing.low)[2]:
+            drawing.grounds.append((height, len(drawing.bodies), len(drawing.bodies) + len(polygons)))
+        drawing.bodies += polygons
         drawing.body_colours += _shaded(np.array([polygon[:3] for polygon in polygons]))
 
 
@@ -259,12 +265,19 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
         if len(items):  # matplotlib fails on empty 3-D collections
             axes.add_collection3d(kind(items, zorder=order, clip_on=False, **look))
 
+    def add_bodies(order: int, chosen) -> None:
+        add(Poly3DCollection, _of_equal_length([drawing.bodies[k] for k in chosen]), order,
+            facecolors=np.array([drawing.body_colours[k] for k in chosen]), edgecolors="none")
+
     add(Poly3DCollection, drawing.mirrors, 1, facecolors=(*MIRROR_COLOUR, 0.25), edgecolors="none")
     add(Line3DCollection, drawing.mirror_edges, 1, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7)
     add(Line3DCollection, drawing.mirror_cuts, 1, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7, linestyles=[DASHES])
+    # Matplotlib sorts polygons by their middles, by which a wide ground would hide what stands on its farther half.
+    for ground in _grounds(drawing):
+        add_bodies(1, ground)
     for count, segments in reversed(drawing.segments.items()):
         add(Line3DCollection, segments, 2, colors=_colour(count), linewidths=0.6, alpha=_ray_opacity(segments))
-    add(Poly3DCollection, _of_equal_length(drawing.bodies), 3, facecolors=np.array(drawing.body_colours), edgecolors="none")
+    add_bodies(3, _above_ground(drawing))
     # Matplotlib lays figures out before it projects: it would take the coordinates in m for a place on the page.
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False, in_layout=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
@@ -275,6 +288,17 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
                   verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
     _frame_box(axes, drawing)
     _draw_names_in_perspective(axes, drawing.names)
+
+
+def _grounds(drawing: _Drawing) -> list:
+    """Indices of the polygons of each ground, from the lowest on: seen from above, none hides what stands on it."""
+    return [range(first, last) for _, first, last in sorted(drawing.grounds)]
+
+
+def _above_ground(drawing: _Drawing) -> list:
+    """Indices of the polygons of all other bodies."""
+    on_ground = set(itertools.chain.from_iterable(_grounds(drawing)))
+    return [k for k in range(len(drawing.bodies)) if k not in on_ground]
 
 
 def _draw_names_in_perspective(axes, names: dict) -> None:

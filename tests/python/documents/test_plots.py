@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 import echopath as ep
 from echopath import plots
@@ -291,6 +292,33 @@ def test_a_picture_of_a_scene_names_its_objects():
     for axes in figure.axes[:2]:  # in perspective, from above
         assert {text.get_text().strip() for text in axes.texts} >= {"plate0", "plate1", "plate2"}
     assert "ground" in {text.get_text().strip() for text in figure.axes[0].texts}
+
+
+def on_a_field(length: float, width: float, height: float, box_size: float = 0.5):
+    """A picture of a box that hovers above the farther end of a field, which is no mirror."""
+    scene = ep.Scene()
+    scene.add(ep.actors.ground((length, width)), name="field", material="grass", position=(0.5 * length, 0, 0))
+    middle = 0.8 * length, 0.2 * width, height - 0.5 * box_size
+    scene.add(ep.actors.box(box_size), name="box", material="metal", position=middle)
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    return plot_scene(scene, ep.trace(scene, radar, num_rays=200), objects=["field", "box"])
+
+
+def test_a_field_hides_neither_what_stands_on_its_farther_half_nor_rays():
+    """As seen where the box and the way to it are on the page, which have other colours than the field."""
+    figure = on_a_field(120.0, 20.0, 4.0, box_size=3.0)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    picture = np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+
+    def colour(*place) -> np.ndarray:
+        across, up = axes.transData.transform(proj_transform(*place, axes.get_proj())[:2])
+        return picture[int(len(picture) - up), int(across)]
+
+    field = colour(60.0, -5.0, 0.0)
+    assert np.abs(colour(60.0, -7.0, 0.0) - field).max() == 0
+    assert np.abs(colour(94.5, 4.0, 2.5) - field).max() > 10    # the side of the box that faces the radar
+    assert np.abs(colour(47.25, 2.0, 1.75) - field).max() > 10  # half-way between the radar and that side
 
 
 def test_names_of_objects_behind_each_other_stand_apart():

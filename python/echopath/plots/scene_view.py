@@ -34,11 +34,13 @@ MIDDLE = 0.1                            # of the longer side of an object, to ei
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
 MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
+TITLE_PAD = 6.0                         # points between axes and title
 LETTER, LINE, POINTS_PER_INCH = 0.6, 1.2, 72.0  # width of a letter and height of a line over the size of the font
 DASHES = (0, (4, 3))
 CUT_LABEL, MIRROR_LABEL = "cut here, it goes on beyond the picture", "surface that mirrors"
 NAME_PLACE = 0.93                       # along x of a mirror, where its name stands
 TICK_SPACE = 0.06                       # of the longest side: room that a number on an axis in perspective needs
+LABEL_SPACE, OWN_PAD = 34.0, 21.0       # points from an axis of a cube to its label, of which Matplotlib adds the second itself
 
 
 @dataclasses.dataclass
@@ -365,8 +367,9 @@ def _frame_box(axes, drawing: _Drawing) -> None:
     axes.set_xlabel("x in m")
     axes.set_ylabel("y in m")
     axes.set_zlabel("z in m")
-    for axis, side in zip((axes.xaxis, axes.yaxis, axes.zaxis), drawing.high - drawing.low):
-        share = side / (drawing.high - drawing.low).max()
+    shares = (drawing.high - drawing.low) / (drawing.high - drawing.low).max()
+    for k, (axis, share) in enumerate(zip((axes.xaxis, axes.yaxis, axes.zaxis), shares)):
+        axis.labelpad = LABEL_SPACE / np.sqrt(np.delete(shares, k).max()) - OWN_PAD  # it counts along the other two sides
         axis.set_major_locator(MaxNLocator(nbins=min(max(int(share / TICK_SPACE), 1), 8), steps=(1, 2, 5, 10)))
         axis.pane.set_visible(False)
         axis._axinfo["grid"].update(color=(0.85, 0.85, 0.85), linewidth=0.4)
@@ -396,26 +399,31 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])
     axes.set_aspect("equal")
     axes.apply_aspect()
-    _draw_flat_names(axes, drawing, plane)
-    axes.set_title(title)
+    axes.set_title(title, pad=TITLE_PAD + _draw_flat_names(axes, drawing, plane))
     axes.set_xlabel("xyz"[plane[0]] + " in m")
     axes.set_ylabel("xyz"[plane[1]] + " in m")
 
 
-def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> None:
+def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
     """Names of the radar, of mirrors that are seen as lines and, from above, of objects; from the side these would stand on each
-    other."""
+    other. Returns how many points of them may stand above the axes."""
     def write(name: str, place, offset: tuple, ha: str, **look) -> None:
         axes.annotate(short_name(name), place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
 
-    is_high = drawing.radar[plane[1]] > drawing.high[plane[1]] - 2.0 * MARGIN  # the title is right above
+    line_height = LINE * NAME_LOOK["fontsize"]
+    top = drawing.high[plane[1]] - 2.0 * MARGIN  # the title is right above
+    above = 0.0
+    is_high = drawing.radar[plane[1]] > top
     write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)
     tops = {name: (0.5 * (low[0] + high[0]), high[1]) for name, (low, high) in drawing.names.items()} if plane == (0, 1) else {}
     for name, line in _free_lines(axes, tops).items():
-        write(name, tops[name], (0, 3 + line * LINE * NAME_LOOK["fontsize"]), "center", **NAME_LOOK)
+        write(name, tops[name], (0, 3 + line * line_height), "center", **NAME_LOOK)
+        above = max(above, (line + 1) * line_height if tops[name][1] > top else 0.0)
     for name, (low, high) in _named_mirrors(drawing).items():
         if high[plane[1]] - low[plane[1]] < CUT:
             write(name, (low[0], high[plane[1]]), (4, 2), "left", **MIRROR_NAME_LOOK)
+            above = max(above, line_height if high[plane[1]] > top else 0.0)
+    return above
 
 
 def _add_legend(figure, drawing: _Drawing) -> None:

@@ -321,6 +321,19 @@ def test_a_field_hides_neither_what_stands_on_its_farther_half_nor_rays():
     assert np.abs(colour(47.25, 2.0, 1.75) - field).max() > 10  # half-way between the radar and that side
 
 
+@pytest.mark.parametrize("size", [(120.0, 20.0, 6.0), (20.0, 20.0, 6.0), (20.0, 60.0, 6.0), (5.0, 2.0, 1.5)])
+def test_names_of_axes_stand_beside_their_numbers_and_titles_above_names(size):
+    """As measured on the page once it is drawn: of long scenes the name of x stood on a number, that of a field in a title."""
+    figure = on_a_field(*size)
+    figure.draw_without_rendering()
+    perspective, from_above = figure.axes[:2]
+    for axis in (perspective.xaxis, perspective.yaxis, perspective.zaxis):
+        numbers = [tick.label1.get_window_extent() for tick in axis.get_major_ticks() if tick.label1.get_text()]
+        assert numbers and not axis.label.get_window_extent().count_overlaps(numbers)
+    names = [text.get_window_extent() for text in from_above.texts]
+    assert not from_above.title.get_window_extent().count_overlaps(names)
+
+
 def test_names_of_objects_behind_each_other_stand_apart():
     """As measured on the page once it is drawn."""
     scene = ep.Scene()

@@ -123,10 +123,10 @@ def _covers(one, azimuth: float) -> bool:
 
 
 def _name_places(axes, shown: dict, reach: float) -> None:
-    """Names right below their places, left or lower where another stands there."""
+    """Names right below their places, left or lower where a ring or another name is, with lines between both."""
     from matplotlib.patheffects import withStroke
 
-    taken = []  # (leftmost, rightmost, height) in m of the names so far
+    taken = [(left, left, ahead) for left, ahead in shown.values()]  # (leftmost, rightmost, height) in m of rings and names
     for name, (left, ahead) in sorted(shown.items(), key=lambda one: -one[1][1]):
         name = short_name(name)
         length, aside, line = NAME_LETTER * reach * len(name), NAME_ASIDE * reach, NAME_LINE * reach
@@ -136,9 +136,11 @@ def _name_places(axes, shown: dict, reach: float) -> None:
             if all(span[1] < low or high < span[0] or abs(height - other) >= 0.99 * line for low, high, other in taken):
                 break
         taken.append((*span, height))
-        axes.text(begin, height, name, color="white", fontsize=7, verticalalignment="center",
-                  horizontalalignment="left" if side < 0.0 else "right",
-                  path_effects=[withStroke(linewidth=2.0, foreground="black")])
+        axes.annotate(name, (left, ahead), xytext=(begin, height), textcoords="data", color="white", fontsize=7,
+                      verticalalignment="center", horizontalalignment="left" if side < 0.0 else "right",
+                      path_effects=[withStroke(linewidth=2.0, foreground="black")],
+                      arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.7, "shrinkA": 0.0,
+                                  "shrinkB": 0.5 * TRUE_LOOK["markersize"]})
 
 
 def _in_dbm(power):

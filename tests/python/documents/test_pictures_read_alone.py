@@ -112,6 +112,25 @@ def test_maps_from_above_ring_the_true_places_and_have_minus_signs():
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["where the object truly is (its middle)"]
 
 
+def test_names_of_true_places_stand_nearer_to_their_rings_than_to_others():
+    """On the page: that of the car stood right below the ring of the person beside it, and that of the person farther below."""
+    azimuth, distance = np.radians(np.arange(-60.0, 61.0, 2.0)), np.arange(64) * 0.5
+    power = np.full((len(azimuth), len(distance)), 1e-16)
+    power[25, 62] = 1e-10
+    map = SimpleNamespace(azimuth=azimuth, range=distance, power=power)
+    places = {"car": (9.0, np.radians(-11.0)), "person": (8.5, np.radians(-20.0)), "van": (20.0, 0.0)}
+    figure = plots.plot_range_azimuth(map, places=places)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    rings = {name: axes.transData.transform((r * np.sin(angle), r * np.cos(angle))) for name, (r, angle) in places.items()}
+    boxes = {text.get_text(): text for text in axes.texts if text.get_text() in places}
+    for name, text in boxes.items():
+        low, high = Text.get_window_extent(text).get_points()  # without the line to the ring
+        apart = {other: np.linalg.norm(ring - np.clip(ring, low, high)) for other, ring in rings.items()}
+        assert min(apart, key=apart.get) == name
+    assert boxes.keys() == places.keys()
+
+
 def small_radar(position=(0, 0, 0)):
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=20e6, num_chirps=2,
                                 chirp_interval=1e-4)

@@ -152,6 +152,24 @@ def test_things_of_a_town_are_told_apart_as_its_labels_do():
             assert twin.object in told and (len(twin.meshes) == 1 or told == {"town"})
 
 
+@pytest.mark.parametrize("objects", [["box"], ["plate"], ["plate", "box"], ["box", "plate"], None])
+def test_what_makes_a_cell_is_of_the_objects_of_the_labels_in_their_order(objects):
+    """A path over two objects is of the first: `ep.annotate` was told which, and the frame knows no more than its labels."""
+    rough = ep.Material(reflectivity=0.5, scattering=1.0)
+    scene = ep.Scene()
+    scene.add(ep.actors.box(1.0), name="box", material=rough, position=(6.0, 0.7, 0.0))
+    scene.add(ep.actors.ground(3.0), name="plate", material=rough, position=(6.0, -0.5, -0.6))
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=10e6, num_chirps=4,
+                              chirp_interval=5e-5)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.01, 0))])
+    frame = ep.simulate(scene, radar, num_rays=1000, max_bounces=2, labels={"objects": objects}, guard=False)
+    session = Session(from_frame(frame))
+    found = ep.families(frame.paths, session.told_objects())
+    expected = ep.families(frame.paths, objects)
+    assert [str(one) for one in found] == [str(one) for one in expected] and len(expected) > 1
+    assert np.array_equal(found.family_of_path, expected.family_of_path)
+
+
 def _box(centre):
     corners = np.array([[x, y, z] for x in (-0.3, 0.3) for y in (-0.3, 0.3) for z in (-0.3, 0.3)]) + centre
     faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),

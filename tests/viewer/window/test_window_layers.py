@@ -90,6 +90,15 @@ def test_names_of_objects_stand_on_no_others(qtbot, layered):
     assert not names[0][1].intersects(names[1][1])
 
 
+@pytest.mark.parametrize("share", [(0.01, 0.01), (0.01, 0.99), (0.99, 0.01), (0.99, 0.99)])
+def test_names_of_objects_at_the_edges_stand_within_the_map(qtbot, layered, share):
+    panel = panel_of(layered, *WHOLE)
+    place = panel.view.left() + share[0] * panel.view.width(), panel.view.top() + share[1] * panel.view.height()
+    panel.show_layers(None, [Marker("object", *place, "pedestrian", (9, 9, 9))])
+    (_, rect), = panel.names_of_objects(panel.fontMetrics())
+    assert panel.plot_rect().contains(rect) and not rect.contains(panel.to_pixel(*place))
+
+
 def test_every_layer_comes_and_goes(qtbot, layered):
     for layer in LAYERS:
         layered.layer_actions[layer].setChecked(True)

@@ -15,6 +15,7 @@ from .ticks import axis_ticks, step_of, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 8, 20, 32  # pixels around the map
 MARKER_REACH, MARKER_RADIUS = 8, 4.0     # pixels
+NAME_ASIDE = 8.0, 2.0  # pixels from a marker to its name, across and down
 FILE_SCALE = 4.0  # pixels of maps in files to one of the screen
 BOX_COLOUR, RAY_COLOUR = QtGui.QColor("#56b4e9"), QtGui.QColor("#7bff7b")
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s"
@@ -199,13 +200,14 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
             painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, text)
 
     def names_of_objects(self, metrics) -> list:
-        """(text, QRectF) of the names beside the markers of objects; those that would stand on others are told by the mouse."""
+        """(text, QRectF) of the names beside the markers of objects, within the map; those that would stand on others are told by
+        the mouse."""
         seen, found = self.plot_rect(), []
         for marker in self.markers:
             at = self.to_pixel(marker.range, marker.velocity)
             if marker.kind != "object" or not seen.contains(at):
                 continue
-            rect = QtCore.QRectF(at + QtCore.QPointF(8, 2), QtCore.QSizeF(metrics.size(0, marker.text)))
+            rect = _beside(at, QtCore.QSizeF(metrics.size(0, marker.text)), seen)
             if not any(rect.intersects(other) for _, other in found):
                 found.append((marker.text, rect))
         return found
@@ -262,6 +264,16 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)
+
+
+def _beside(at: QtCore.QPointF, size: QtCore.QSizeF, seen: QtCore.QRectF) -> QtCore.QRectF:
+    """Where a name of that size stands: right below a marker, left or above where it would reach over the edge of the map."""
+    rect = QtCore.QRectF(at + QtCore.QPointF(*NAME_ASIDE), size)
+    if rect.right() > seen.right():
+        rect.moveRight(at.x() - NAME_ASIDE[0])
+    if rect.bottom() > seen.bottom():
+        rect.moveBottom(at.y() - NAME_ASIDE[1])
+    return rect
 
 
 def _cut_out(image, source: QtCore.QRectF, size: QtCore.QSizeF) -> QtGui.QImage:

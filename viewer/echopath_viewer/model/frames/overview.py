@@ -9,6 +9,7 @@ import echopath as ep
 from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.base.numerics.rotations import quaternions
 from echopath.base.radar.antennas import middle_of_antennas, velocity_of_antennas
+from echopath.base.radar.velocities import velocity_span_of
 from echopath.frame_file.container import our_file
 from echopath.frame_file.detections import read_detections
 from echopath.frame_file.h5 import read_group
@@ -16,6 +17,7 @@ from echopath.frame_file.maps import axes_in_file, has_power, power_in_file
 from echopath.frame_file.radar import read_radar
 
 AXES = ("velocity", "range")
+KNOWN = 0.25  # of the axis of velocities, the most that the velocity of a track may be uncertain by to be shown
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,7 +102,8 @@ def _radar_of_all(glances, times):
 
 
 def track_values(tracks, glances, axis: str):
-    """[N], range in m or radial velocity in m/s from the middle of the antennas of each row of tracks.
+    """[N], range in m or radial velocity in m/s from the middle of the antennas of each row of tracks; NaN where the track does
+    not know its velocity, as one that has just begun and is at rest until it is told otherwise.
 
     glances: those that the tracks are of
     """
@@ -110,7 +113,10 @@ def track_values(tracks, glances, axis: str):
     if axis == "range":
         return distance
     own = _for_each(velocity_of_antennas, radars, times)
-    return np.einsum("ni,ni->n", way, tracks.state[:, 2:] - own) / np.maximum(distance, 1e-9)
+    sights = way / np.maximum(distance, 1e-9)[:, None]
+    spread = np.sqrt(np.einsum("ni,nij,nj->n", sights, tracks.covariance[:, 2:, 2:], sights))
+    spans = np.array([velocity_span_of(radar) for radar in radars])
+    return np.where(spread <= KNOWN * spans, np.einsum("ni,ni->n", sights, tracks.state[:, 2:] - own), np.nan)
 
 
 def _for_each(of_radar, radars, times):

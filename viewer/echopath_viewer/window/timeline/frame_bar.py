@@ -176,7 +176,7 @@ class TimeStrip(QtWidgets.QWidget):
             return
         values = track_values(self.tracks, self._glances, self.axis)
         for number in np.unique(self.tracks.track):
-            rows = np.flatnonzero(self.tracks.track == number)
+            rows = np.flatnonzero((self.tracks.track == number) & np.isfinite(values))
             line = QtGui.QPolygonF([QtCore.QPointF(self.x_of(int(self.tracks.frame[row])), self._y_of(values[row]))
                                     for row in rows])
             for colour, width in ((QtGui.QColor("white"), 3.5), (QtGui.QColor(track_colour(number)), 1.8)):

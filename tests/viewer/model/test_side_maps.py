@@ -206,6 +206,16 @@ def test_labels_of_azimuths_do_not_lie_over_velocities(stored_run):
         Session(from_maps(maps, stored_run)).set_layer("labels", True)
 
 
+def test_maps_of_files_without_signals_are_called_the_means_that_they_are(stored_run):
+    frame = stored_run[0]
+    power = np.abs(frame.spectrum.values) ** 2
+    kept, whole = Session(from_maps(maps_of(frame, with_power=True), stored_run)), Session(from_frame(frame))
+    shown = 10.0 ** (0.1 * kept.parts.whole.level(*kept.channel) - 3.0)
+    assert shown == pytest.approx(power.mean(axis=(0, 1)), rel=1e-3, abs=0)
+    assert power.shape[:2] == (1, 4) and list(kept.channels) == [kept.channel_name] == ["mean of 4 channels"]
+    assert len(whole.channels) == 4 and whole.channel_name == "TX 0, RX 0"
+
+
 def test_true_centres_that_are_too_fast_for_the_map_are_where_their_echo_is(frame):
     """A plate that comes straight at the radar with 1.4 of the velocities of the map: its echo is folded to 0.6 of them away."""
     waveform = frame.radar.waveform.replace(num_chirps=32)

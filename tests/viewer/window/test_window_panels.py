@@ -133,6 +133,7 @@ def test_files_of_maps_show_the_azimuths_that_they_keep(qtbot, window, panels, m
     run = ep.Sequence(scene, moving_sequence.radar, frames=1, interval=0.2, num_rays=1000, max_bounces=1)
     run.save(tmp_path / "maps", keep="maps")
     assert window.open_file(tmp_path / "maps")
+    assert window.map_area.channel_box.currentText() == "mean of 4 channels"
     panel = opened(qtbot, window, "Range-azimuth")
     row, column = np.unravel_index(panel.map.level.argmax(), panel.map.level.shape)
     assert panel.map.y[row] == pytest.approx(np.degrees(np.arctan2(4.0, 6.0)), rel=0, abs=4.0)

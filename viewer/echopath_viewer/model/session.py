@@ -96,6 +96,19 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
     def channel(self) -> tuple:
         return self.columns.tx, self.columns.rx
 
+    @property
+    def channels(self) -> dict:
+        """{words: (tx, rx)} of those that maps may be of; a file that keeps maps alone has the mean power of all."""
+        num_sending, num_hearing = len(self.radar.transmitters), len(self.radar.receivers)
+        if self.kept_maps is not None and num_sending * num_hearing > 1:
+            return {f"mean of {num_sending * num_hearing} channels": self.channel}
+        return {f"TX {tx}, RX {rx}": (tx, rx) for tx in range(num_sending) for rx in range(num_hearing)}
+
+    @property
+    def channel_name(self) -> str:
+        """What the maps are of, in words."""
+        return next(words for words, channel in self.channels.items() if channel == self.channel)
+
     def set_channel(self, tx: int, rx: int) -> None:
         """Another pair of antennas: powers, ranges, cells and maps are its own."""
         self._read_channel(tx, rx)

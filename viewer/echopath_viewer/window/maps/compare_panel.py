@@ -91,8 +91,7 @@ class ComparePanel(SeenPanel):
         """What tells it from others first: there is room for few words above a map."""
         session = self.session
         name = str(session.title).rpartition("/")[2] or "paths"
-        return "{}, {:.3f} s, {}, TX {}, RX {}".format(name, session.paths.frame.start_time, title_of(session.part),
-                                                       *session.channel)
+        return f"{name}, {session.paths.frame.start_time:.3f} s, {title_of(session.part)}, {session.channel_name}"
 
     def refresh(self) -> None:
         """All three maps."""

@@ -34,7 +34,7 @@ class MapArea(QtWidgets.QWidget):
         self.view, self.near_view, self.whole_view = (QtCore.QRectF() for _ in range(3))
         self.layout_box, self.part_box, self.partition_box = (QtWidgets.QComboBox() for _ in range(3))
         self.layout_box.addItems(["all parts", "one map"])
-        self.channel_box = QtWidgets.QComboBox()
+        self.channel_box, self._channels = QtWidgets.QComboBox(), {}
         self.reach_box = QtWidgets.QSpinBox(minimum=0, maximum=50, prefix="± ", suffix=" cells")
         self.layout_box.setToolTip("The maps of all parts beside each other, or a large one (M)")
         self.partition_box.setToolTip("By which partition the signal is taken apart")
@@ -92,11 +92,6 @@ class MapArea(QtWidgets.QWidget):
 
     def show_session(self, session) -> None:
         self.session = session
-        radar = session.radar
-        self.channel_box.clear()
-        for tx in range(len(radar.transmitters)):
-            for rx in range(len(radar.receivers)):
-                self.channel_box.addItem(f"TX {tx}, RX {rx}", (tx, rx))
         self.reach_box.setValue(int(session.signals.spectrum_settings.get("zero_pad", 1)) // 2)
         self._find_views()
         self.view = QtCore.QRectF(self.near_view)
@@ -189,7 +184,12 @@ class MapArea(QtWidgets.QWidget):
             self.partition_box.setCurrentText(session.partition or "-")
             for widget in (self.by_label, self.partition_box):  # the others need the room
                 widget.setVisible(bool(session.parts.partitions))
-            self.channel_box.setCurrentText("TX {}, RX {}".format(*session.channel))
+            if session.channels != self._channels:
+                self._channels = session.channels
+                self.channel_box.clear()
+                for words, channel in self._channels.items():
+                    self.channel_box.addItem(words, channel)
+            self.channel_box.setCurrentText(session.channel_name)
             self.range_slider.setValue(round(session.dynamic_range_db))
         self.range_label.setText(f"{session.dynamic_range_db:.0f} dB")
 

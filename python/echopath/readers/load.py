@@ -50,8 +50,8 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     materials: {pattern of names in the file: Material or a name in ep.materials}, before `ep.foreign_materials`; what is not
         known there either gets a default, and patterns may take nothing: the notes tell
     animation: name of one of the file's; None: its first one, if there is any; "": at rest
-    loop: True: the animation begins anew at its end, without end; False: its last pose is held, but frames and motion captures
-        end with it
+    loop: True: the animation begins anew at its end, without end, that of glTF with its first key; False: its last pose is held,
+        but frames and motion captures end with it
     offset: s, the time of the animation at time 0 of the scene
     smooth: whether its meshes stand for curved surfaces (Scene.add); None: those whose normals in the file turn over most of
         their area, smoothing groups of an OBJ file included, and what the format itself makes of curves, such as spheres

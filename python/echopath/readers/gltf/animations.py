@@ -8,7 +8,7 @@ import numpy as np
 from ... import _core
 from ...base.text.node_names import fit_name, unique
 from ..options import ReadOptions
-from ..sampled import chosen_animation, period_of
+from ..sampled import Clock, chosen_animation
 from .accessors import FLOAT, Accessors
 from .document import Document
 from .item import Item
@@ -24,7 +24,8 @@ class Animation:
     """One animation of a file, or rest.
 
     name: None at rest; curves: {(node, path): Curve}, values as the file has them: rotations (x, y, z, w)
-    duration: s; period: s or None; offset: s
+    duration: s, of a run; period: s or None; offset: s, the time of the curves at time 0 of the scene. Those of a loop begin
+        with its first key, others with time 0 of the file
     """
 
     name: str | None = None
@@ -42,13 +43,17 @@ def animation_names(document: Document) -> tuple[str, ...]:
 
 
 def read_animation(document: Document, accessors: Accessors, names: tuple, options: ReadOptions) -> Animation:
-    """The animation that the caller asks for. Raises ValueError for a name that is not there."""
+    """The animation that the caller asks for. A loop goes from its first key to its last: what begins later than at 0 s, as with
+    frame 1 of Blender, would else stand still for so long in every run. Raises ValueError for a name that is not there."""
     name = chosen_animation(options, names)
     if name is None:
         return Animation()
     curves = _Channels(document, accessors, document.json["animations"].objects()[names.index(name)]).curves()
-    duration = max((curve.times[-1] for curve in curves.values()), default=0.0)
-    return Animation(name, curves, duration, period_of(options, duration), options.offset)
+    begin = min((float(curve.times[0]) for curve in curves.values()), default=0.0) if options.loop else 0.0
+    end = max((float(curve.times[-1]) for curve in curves.values()), default=0.0)
+    clock = Clock(options, begin, end)
+    curves = {key: curve.replace(times=clock.times(curve.times)) for key, curve in curves.items()}
+    return Animation(name, curves, end - begin, clock.period, clock.offset)
 
 
 class _Channels:

@@ -157,6 +157,19 @@ def test_animations_go_by_name_with_loop_and_offset(tmp_path):
         loaded(tmp_path, file, animation="walk")
 
 
+@pytest.mark.parametrize("offset", [0.0, 0.35, -7.0])
+def test_a_loop_begins_anew_with_its_first_key(tmp_path, offset):
+    """As that of a timeline whose first frame is 1: what waits for that key would stand still in every run."""
+    file = box_file()
+    file.animation((0, "translation", KEYS, PLACES, "LINEAR"), (0, "rotation", KEYS[1:2], QUARTERS[:1], "LINEAR"))
+    model = loaded(tmp_path, file, loop=True, offset=offset)
+    scene, period = scene_of(model), KEYS[-1] - KEYS[0]
+    assert model.duration == period
+    for time in (0.0, 0.3, 0.6, 1.4, 1.6, 7.9, -3.2):
+        place = [np.interp(KEYS[0] + (time + offset - KEYS[0]) % period, KEYS, axis) for axis in PLACES.T]
+        assert np.abs(vertices_at(scene, time)["box"] - (BOX + place)[:, TO_SCENE]).max() < SINGLE, time
+
+
 def test_a_scale_that_moves_scales_what_is_below_it(tmp_path):
     file = box_file()
     file.json["nodes"].append({"name": "carrier", "children": [0], "translation": [0, 1, 0]})

@@ -26,7 +26,7 @@ RATE_FILE = "frame_rate.txt"
 
 
 def read(path: Path, options: ReadOptions) -> Model:
-    """A Model whose meshes are VertexSequence, cubic between the frames; the first frame is at 0 s.
+    """A Model whose meshes are VertexSequence, cubic between the frames; the first frame is at 0 s, or where `times` has it.
 
     path: of a folder of .obj files, which are frames in the order of the numbers in their names, and may have a file
     frame_rate.txt with a number in 1/s; or of a .npz file with vertices [T, V, 3], triangles [F, 3], and times [T] in s or

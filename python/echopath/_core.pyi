@@ -3400,7 +3400,7 @@ def decompose(paths: Paths, radar: Radar, views: collections.abc.Sequence[Groupi
     Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. The other
     arguments are those of ep.synthesize.
     """
-def estimate_angles(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = None, *, cells: typing.Any, velocity: typing.Any = None, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> AngleEstimates:
+def estimate_angles(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = None, *, cells: typing.Any, velocity: typing.Any = None, range: typing.Any = None, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> AngleEstimates:
     """
     What the function of that name in ep calls.
     """

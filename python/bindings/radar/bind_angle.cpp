@@ -95,11 +95,14 @@ RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, cons
 }
 
 AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& beams,
-                         const py::object& progress, py::object cells, py::object velocity, int max_peaks,
+                         const py::object& progress, py::object cells, py::object velocity, py::object range, int max_peaks,
                          double peak_range_db, int folds) {
   const std::vector<Cell> chosen = as_pairs(cells, "cells");
-  const EstimateOptions options{beams, max_peaks, peak_range_db, folds,
-                                velocity.is_none() ? std::vector<double>() : as_vector<double>(velocity, "velocity")};
+  const auto of_cells = [](const py::object& values, const char* name) {
+    return values.is_none() ? std::vector<double>() : as_vector<double>(values, name);
+  };
+  const EstimateOptions options{
+      beams, max_peaks, peak_range_db, folds, of_cells(velocity, "velocity"), of_cells(range, "range")};
   return run_job("estimate_angles", progress,
                  [&](Job& job) { return estimate_angles(map, radar, chosen, angles, options, &job); });
 }
@@ -134,8 +137,8 @@ void bind_angle(py::module_& m) {
             py::arg("combine") = "sum", py::arg("velocity_gate") = py::none());
   const EstimateOptions standard;
   def_beams(m, "estimate_angles", py::none(), kSearchStep, &estimates, py::arg("cells"), py::arg("velocity") = py::none(),
-            py::arg("max_peaks") = standard.max_peaks, py::arg("peak_range_db") = standard.peak_range_db,
-            py::arg("folds") = standard.folds);
+            py::arg("range") = py::none(), py::arg("max_peaks") = standard.max_peaks,
+            py::arg("peak_range_db") = standard.peak_range_db, py::arg("folds") = standard.folds);
 }
 
 }  // namespace echopath::bindings

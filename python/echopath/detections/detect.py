@@ -63,7 +63,7 @@ def _require_other_names(parts: dict | None, labels: Labels | None, beside: dict
         raise ValueError(f"beside: must have other names than {argument}, got {twice[0]!r} in both")
 
 
-_OWN = ("spectrum", "radar", "cells", "velocity", "progress")  # of each call, which no settings have
+_OWN = ("spectrum", "radar", "cells", "velocity", "range", "progress")  # of each call, which no settings have
 _ANGLES = keywords("estimate_angles", tuple(name for name in parameters_of(estimate_angles) if name not in _OWN))
 
 
@@ -144,7 +144,7 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
     makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, gains, peaks["beam_weights"])
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
-    directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
+    directions = directions_of(spectrum, radar, peaks, angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 

@@ -179,11 +179,11 @@ def _folded_to_first(spectrum, radar, velocity: float, compensate: bool) -> tupl
     return spectrum, velocity - len(axis) * step
 
 
-@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), peak_range_db=real(0.0, 200.0, unit="dB"),
+@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), range=optional(array("[N]")), peak_range_db=real(0.0, 200.0, unit="dB"),
          folds=count(0, LARGEST_COUNT))
 def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
                     elevation: ArrayLike | None = None, *, cells: ArrayLike, velocity: ArrayLike | None = None,
-                    max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: BeamMethod = "bartlett",
+                    range: ArrayLike | None = None, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: BeamMethod = "bartlett",
                     window: Window = "rect", overlaps: Overlaps = "average", compensate: bool = True,
                     diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2,
                     forward_backward: bool = False, progress: Progress = None) -> _core.AngleEstimates:
@@ -198,6 +198,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     cells: [N, 2] (velocity, range) indices
     velocity: [N] in m/s of the echoes in these cells, by which the phase between transmit slots is taken out, None: that of the
         middles of the cells, which is off by up to half a cell: by half a turn over the frame's number of chirps
+    range: [N] in m of the echoes in these cells as the map shows them, by which the phases of transmitters with carriers of their
+        own (`frequency_steps`, "tdm") are taken out, None: that of the middles of the cells, which is off by up to half a cell
     max_peaks: of a cell, the strongest, one of each beam
     peak_range_db: dB below the strongest of the cell, within which others count
     folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
@@ -214,8 +216,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     warn_of_mixed_polarisations(radar, "estimate_angles")
     if azimuth is None and elevation is None:
         require_told_folds(radar, folds)
-    return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, max_peaks=max_peaks,
-                                 peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
+    return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, range=range,
+                                 max_peaks=max_peaks, peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
                                  compensate=compensate, diagonal_loading=diagonal_loading,
                                  velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
                                  forward_backward=forward_backward, progress=progress)

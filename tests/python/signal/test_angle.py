@@ -335,6 +335,44 @@ def test_transmitters_that_send_on_carriers_of_their_own_see_the_same_direction(
     assert abs(ep.estimate_angles(spectrum, radar, cells=cells, compensate=False).azimuth[0] - 0.3) > 3 * DIRECTION_TOLERANCE
 
 
+HOPS = (0.0, 1e8, 2e8)
+OF_CARRIERS = 0.004  # rad: 3 mm of range turn the third transmitter by 0.025 rad
+
+
+def radar_that_hops(steps=HOPS):
+    """Three transmitters in turns, each on a carrier of its own, before four receivers: a row of twelve elements."""
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=500e6, num_samples=128, sampling_rate=10e6, num_chirps=32,
+                              chirp_interval=20e-6, frequency_steps=steps)
+    half = 0.5 * ep.speed_of_light / 77e9
+    return ep.Radar(chirps, transmitters=[ep.Antenna((0, 4 * i * half, 0)) for i in range(3)],
+                    receivers=[ep.Antenna((0, i * half, 0)) for i in range(4)])
+
+
+@pytest.mark.parametrize("settings", [{}, {"method": "capon"}])
+@pytest.mark.parametrize("distance, azimuth, speed", [(12.15, 0.3, 0.0), (20.85, -0.5, 6.0), (7.4, 0.1, -8.0)])
+def test_carriers_of_their_own_turn_echoes_between_range_cells_as_those_within(distance, azimuth, speed, settings):
+    """Half a cell of 0.3 m turns the third transmitter by 1.3 rad; 8 m/s show an echo 1.6 cm farther, which turns nothing."""
+    radar, toward = radar_that_hops(), np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+    cube = ep.point_targets(radar, positions=[distance * toward], velocities=[speed * toward], rcs=1e3)
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=1), radar)
+    found = ep.detect(spectrum, radar, false_alarm_rate=1e-9, angles=settings)
+    assert found.azimuth[found.power.argmax()] == pytest.approx(azimuth, abs=OF_CARRIERS)
+    if distance != 7.4:  # which lies near the middle of its cell
+        assert abs(ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)]).azimuth[0] - azimuth) > 0.02
+    shown = distance + speed * (0.5 * radar.frame_duration + 77.25e9 / radar.waveform.slope)
+    for one in (spectrum, ep.compensate_tdm(spectrum, radar)):
+        told = ep.estimate_angles(one, radar, cells=[strongest_cell(one)], velocity=[speed], range=[shown], **settings)
+        assert told.azimuth[0] == pytest.approx(azimuth, abs=OF_CARRIERS)
+
+
+def test_carriers_that_are_listed_twice_are_the_same():
+    radars = [radar_that_hops(steps) for steps in (HOPS, HOPS + HOPS)]
+    cubes = [ep.point_targets(radar, positions=[(12.0, 4.0, 0.0)], rcs=1.0) for radar in radars]
+    assert np.array_equal(*cubes)
+    found = [ep.detect(ep.range_doppler(ep.add_noise(cubes[0], radar, seed=1), radar), radar) for radar in radars]
+    assert np.array_equal(found[0].azimuth, found[1].azimuth)
+
+
 def test_virtual_arrays_tell_what_they_are():
     array = ep.virtual_array(mimo([(0, 0), (3, 0)], LINE, height=1.0))
     assert array.positions.shape == (2, 4, 3) and array.elements.shape == (7, 3)

@@ -63,11 +63,11 @@ BeamSource::BeamSource(const RangeDoppler& map, const Radar& radar, const Beamfo
   if (options.forward_backward) mirrored_ = mirrored_elements(array_);
 }
 
-CellBeam BeamSource::cell(int64_t velocity, int64_t range, double fold) const {
+CellBeam BeamSource::cell(int64_t velocity, int64_t range, const EchoPlace& echo) const {
   MatrixXcd own(reader_.num_elements(), 1);
-  reader_.read(velocity, range, 1, own, fold);
+  reader_.read(velocity, range, 1, own, echo);
   if (options_.method == BeamMethod::kBartlett) return {weights_, own};
-  return {covariance(neighbourhood(velocity, range, fold)), own, options_.diagonal_loading};
+  return {covariance(neighbourhood(velocity, range, echo)), own, options_.diagonal_loading};
 }
 
 CellBeam BeamSource::velocities(int64_t begin, int64_t end, int64_t range) const {
@@ -104,7 +104,7 @@ MatrixXcd BeamSource::covariance(const MatrixXcd& snapshots) const {
   return both;
 }
 
-MatrixXcd BeamSource::neighbourhood(int64_t velocity, int64_t range, double fold) const {
+MatrixXcd BeamSource::neighbourhood(int64_t velocity, int64_t range, const EchoPlace& echo) const {
   const int64_t num_velocities = reader_.num_velocities(), reach = options_.range_neighbours;
   const int64_t around = std::min<int64_t>(options_.velocity_neighbours, (num_velocities - 1) / 2);
   const int64_t first = std::max<int64_t>(0, range - reach), last = std::min(reader_.num_ranges() - 1, range + reach);
@@ -114,8 +114,9 @@ MatrixXcd BeamSource::neighbourhood(int64_t velocity, int64_t range, double fold
     const int64_t v = velocity + step;
     const int turn = v < 0 ? -1 : (v >= num_velocities ? 1 : 0);  // beyond the axis is the next fold
     // The echo of the cell lies in its neighbours, too, with the phase between slots of its own velocity.
-    const double of_cell = fold + turn - static_cast<double>(step) / static_cast<double>(num_velocities);
-    reader_.read(v - turn * num_velocities, first, count, snapshots.middleCols((step + around) * count, count), of_cell);
+    const double fold = echo.fold + turn - static_cast<double>(step) / static_cast<double>(num_velocities);
+    reader_.read(v - turn * num_velocities, first, count, snapshots.middleCols((step + around) * count, count),
+                 {fold, echo.range});
   }
   return snapshots;
 }

@@ -33,8 +33,8 @@ class BeamSource {
 
   const VirtualArray& array() const { return array_; }
 
-  // Returns the beam of one cell; `fold` as in ElementReader::read.
-  CellBeam cell(int64_t velocity, int64_t range, double fold = 0.0) const;
+  // Returns the beam of one cell toward the directions of an echo.
+  CellBeam cell(int64_t velocity, int64_t range, const EchoPlace& echo = {}) const;
   // Returns the beam of one range over its velocities [begin, end).
   CellBeam velocities(int64_t begin, int64_t end, int64_t range) const;
   // Returns for Bartlett the snapshots of ranges [first, first + count) of one velocity times the weights, [elements,
@@ -43,7 +43,8 @@ class BeamSource {
 
  private:
   Eigen::MatrixXcd covariance(const Eigen::MatrixXcd& snapshots) const;
-  Eigen::MatrixXcd neighbourhood(int64_t velocity, int64_t range, double fold) const;  // [elements, snapshots]
+  // [elements, snapshots]
+  Eigen::MatrixXcd neighbourhood(int64_t velocity, int64_t range, const EchoPlace& echo) const;
 
   const BeamformOptions options_;
   const VirtualArray array_;

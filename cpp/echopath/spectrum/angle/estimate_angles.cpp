@@ -43,12 +43,13 @@ class PeakSearch {
       : source_(source), angles_(angles), options_(options),
         beams_(source.array(), beam_directions(source.array(), angles)) {}
 
-  // `beside`: by how much the echo is faster than its cell, in spans of the velocity axis.
-  CellPeaks find(const Cell& cell, double beside) const {
+  // place_of(fold) is where the echo lies if its velocity is so many spans of the axis beyond that which is shown.
+  template <class PlaceOf>
+  CellPeaks find(const Cell& cell, const PlaceOf& place_of) const {
     CellPeaks best;
     for (int k = 0; k <= 2 * options_.folds; ++k) {
       const int fold = k % 2 == 0 ? -k / 2 : (k + 1) / 2;  // 0, 1, -1, 2, ...: a tie goes to the slowest
-      CellPeaks found{fold, peaks(source_.cell(cell[0], cell[1], fold + beside))};
+      CellPeaks found{fold, peaks(source_.cell(cell[0], cell[1], place_of(fold)))};
       if (found.peaks.empty()) continue;
       // The margin is relative, because hypotheses that the array cannot tell apart differ by rounding.
       constexpr double kMargin = 1.0 + 1e-9;
@@ -219,12 +220,21 @@ AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, cons
   const auto velocity_of = [&](size_t i) {
     return options.velocity.empty() ? map.velocity[cells[i][0]] : options.velocity[i];
   };
-  const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
+  require(options.range.empty() || options.range.size() == cells.size(), "range", "must have one value for each cell",
+          options.range.size());
+  const ChirpSequence& waveform = radar.waveform;
+  const double span = 2.0 * waveform.max_velocity(radar.num_slots());
+  const double shown_per_velocity = waveform.centre_frequency() / waveform.slope();  // s, range that is shown
   const PeakSearch search(source, angles, options);
   std::vector<CellPeaks> found(cells.size());
   if (job) job->start(std::ssize(cells));
   const auto search_cell = [&](int64_t i) {
-    found[i] = search.find(cells[i], (velocity_of(i) - map.velocity[cells[i][0]]) / span);
+    const double beside = (velocity_of(i) - map.velocity[cells[i][0]]) / span;
+    found[i] = search.find(cells[i], [&](int fold) {
+      EchoPlace place{fold + beside, {}};
+      if (!options.range.empty()) place.range = options.range[i] - shown_per_velocity * (velocity_of(i) + fold * span);
+      return place;
+    });
   };
   parallel_for(std::ssize(cells), search_cell, job);
 

@@ -20,6 +20,10 @@ struct EstimateOptions {
   // These are the velocities v, m/s, of the echoes in the cells [N], which may lie between those of the map; empty: those of
   // the cells. Compensation goes by them.
   std::vector<double> velocity;
+  // These are the ranges of the echoes in the cells [N], m, as the map shows them, which may lie between those of the map;
+  // empty: those of the cells. Phases of carriers that transmitters have of their own (tdm.h) go by them, less what the
+  // velocity adds to the range that is shown.
+  std::vector<double> range;
 
   void validate(int num_slots) const;
 };

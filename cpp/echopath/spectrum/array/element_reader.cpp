@@ -21,6 +21,7 @@ ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array,
   if (!compensate_) return;
   const double period = radar.num_slots() * radar.waveform.mean_interval();
   for (const double delay : slot_delays(radar)) turns_of_fold_.push_back(delay / period);
+  turns_of_carrier_ = carrier_turns(radar);
   if (map.is_tdm_compensated) {
     phasor_.assign(radar.transmitters.size() * map.velocity.size(), 1.0);
     return;
@@ -36,18 +37,26 @@ Complex ElementReader::weight(int64_t entry, int64_t velocity, double fold) cons
   return phasor_[slot * num_velocities_ + velocity] * std::polar(1.0, -kTwoPi * turns);
 }
 
+Complex ElementReader::carrier(int64_t channel, int64_t range, const EchoPlace& echo) const {
+  if (turns_of_carrier_.empty()) return 1.0;
+  const int64_t slot = channel / map_.num_receivers;
+  if (!echo.range) return carrier_.empty() ? 1.0 : carrier_[slot * num_ranges_ + range];
+  const double taken_out = map_.is_tdm_compensated ? map_.range[range] : 0.0;
+  return std::polar(1.0, -turns_of_carrier_[slot] * (*echo.range - taken_out));
+}
+
 void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values,
-                         double fold) const {
+                         const EchoPlace& echo) const {
   for (int64_t element = 0; element < num_elements(); ++element) {
     const double share = 1.0 / static_cast<double>(first_[element + 1] - first_[element]);
     for (int64_t entry = first_[element]; entry < first_[element + 1]; ++entry) {
-      const Complex factor = share * weight(entry, velocity, fold);
-      const Complex* row = map_.values.data() + (channel_[entry] * num_velocities_ + velocity) * num_ranges_ + first;
+      const int64_t channel = channel_[entry];
+      const Complex factor = share * weight(entry, velocity, echo.fold);
+      const Complex* row = map_.values.data() + (channel * num_velocities_ + velocity) * num_ranges_ + first;
       const bool is_first = entry == first_[element];
-      const Complex* carrier =
-          carrier_.empty() ? nullptr : &carrier_[channel_[entry] / map_.num_receivers * num_ranges_ + first];
       for (int64_t i = 0; i < count; ++i) {
-        const Complex value = carrier ? factor * carrier[i] * row[i] : factor * row[i];
+        const Complex value =
+            turns_of_carrier_.empty() ? factor * row[i] : factor * carrier(channel, first + i, echo) * row[i];
         values(element, i) = is_first ? value : values(element, i) + value;
       }
     }
@@ -59,8 +68,8 @@ Eigen::VectorXcd ElementReader::channel_weights(int64_t velocity, int64_t range,
   for (int64_t element = 0; element < num_elements(); ++element) {
     const double share = 1.0 / static_cast<double>(first_[element + 1] - first_[element]);
     for (int64_t entry = first_[element]; entry < first_[element + 1]; ++entry) {
-      const Complex carrier = carrier_.empty() ? 1.0 : carrier_[channel_[entry] / map_.num_receivers * num_ranges_ + range];
-      weights[channel_[entry]] = of_elements[element] * share * weight(entry, velocity, 0.0) * carrier;
+      const int64_t channel = channel_[entry];
+      weights[channel] = of_elements[element] * share * weight(entry, velocity, 0.0) * carrier(channel, range, {});
     }
   }
   return weights;

@@ -32,7 +32,12 @@ void require_axes(const RangeDoppler& map, const Radar& radar) {
 }
 
 // Returns whether a list of steps, repeated from slot to slot, gives all chirps of a transmitter the same one.
-bool repeats_with(const std::vector<double>& steps, size_t num_tx) { return steps.empty() || num_tx % steps.size() == 0; }
+bool repeats_with(const std::vector<double>& steps, size_t num_tx) {
+  for (size_t slot = 0; slot < steps.size(); ++slot) {
+    if (steps[slot] != steps[(slot + num_tx) % steps.size()]) return false;
+  }
+  return true;
+}
 
 double repeated(const std::vector<double>& steps, size_t slot) { return steps.empty() ? 0.0 : steps[slot % steps.size()]; }
 
@@ -77,7 +82,7 @@ void require_map_of(const RangeDoppler& map, const Radar& radar) {
   require_axes(map, radar);
 }
 
-std::vector<std::complex<double>> carrier_phasors(const Radar& radar, const std::vector<double>& range) {
+std::vector<double> carrier_turns(const Radar& radar) {
   const ChirpSequence& waveform = radar.waveform;
   const size_t num_tx = radar.transmitters.size();
   if (!radar.takes_turns() ||
@@ -85,15 +90,21 @@ std::vector<std::complex<double>> carrier_phasors(const Radar& radar, const std:
     return {};
   }
   const double middle = waveform.window_centre() * waveform.sampling_rate / waveform.num_samples;  // of the sweep
-  std::vector<double> step;
+  std::vector<double> turns;
   for (size_t tx = 0; tx < num_tx; ++tx) {
-    step.push_back(repeated(waveform.frequency_steps, tx) + middle * repeated(waveform.bandwidth_steps, tx));
+    const double step = repeated(waveform.frequency_steps, tx) + middle * repeated(waveform.bandwidth_steps, tx);
+    turns.push_back(2.0 * kTwoPi * step / kSpeedOfLight);
   }
-  if (std::all_of(step.begin(), step.end(), [&](double one) { return one == step.front(); })) return {};
+  const double first = turns.front();
+  for (double& turn : turns) turn -= first;
+  if (std::ranges::all_of(turns, [](double turn) { return turn == 0.0; })) return {};
+  return turns;
+}
+
+std::vector<std::complex<double>> carrier_phasors(const Radar& radar, const std::vector<double>& range) {
   std::vector<std::complex<double>> phasors;
-  for (size_t tx = 0; tx < num_tx; ++tx) {
-    for (const double r : range)
-      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * (step[tx] - step[0]) * r / kSpeedOfLight));
+  for (const double turn : carrier_turns(radar)) {
+    for (const double r : range) phasors.push_back(std::polar(1.0, -turn * r));
   }
   return phasors;
 }

@@ -18,9 +18,11 @@ std::vector<double> slot_delays(const Radar& radar);
 // delay t_m of transmitter m; 1 where the transmitters do not take turns.
 std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::vector<double>& velocity);
 
-// Returns e^{-j 2 pi f_m 2 r / c}, [tx, R], which takes out the phase that an echo at range r has because transmitter m
-// sends f_m above the first one, in the middle of the sweep; empty where all send alike, or where the steps of a transmitter
-// change from chirp to chirp.
+// Returns 4 pi f_m / c, [tx] in rad/m, by which an echo turns with its range because transmitter m sends f_m above the first
+// one, in the middle of the sweep; empty where all send alike, or where the steps of a transmitter change from chirp to chirp.
+std::vector<double> carrier_turns(const Radar& radar);
+
+// Returns e^{-j r 4 pi f_m / c}, [tx, R], which takes these phases out; empty where there are none.
 std::vector<std::complex<double>> carrier_phasors(const Radar& radar, const std::vector<double>& range);
 
 // Returns the map with the phase between slots taken out, each cell by its velocity and its range. A target between two

@@ -71,7 +71,7 @@ class BeamReader {
     Eigen::MatrixXcd values(reader_.num_elements(), 1);
     // The echo of the cell lies in its neighbours, too, with the phase between slots of its own velocity.
     const double turns = static_cast<double>(cell[0] - other[0]) / static_cast<double>(places_.num_velocities());
-    reader_.read(other[0], other[1], 1, values, turns);
+    reader_.read(other[0], other[1], 1, values, {turns, {}});
     return {of_elements(index).cwiseProduct(values.col(0)).sum()};
   }
   double power(int64_t index, const Cell& cell, const Cell& other) const {
@@ -131,7 +131,7 @@ class PeakFinder {
     const Cell& cell = cells_[index];
     const auto above = places_.cell(cell[0] + step[0], cell[1] + step[1]);
     const auto below = places_.cell(cell[0] - step[0], cell[1] - step[1]);
-    if (num_cells < 3 || !above || !below) return 0.0;
+    if (num_cells < 2 || !above || !below) return 0.0;
     const Fields own = reader_.fields(index, cell, cell);
     double whole = 0.0;
     for (const std::complex<double>& field : own) whole += std::norm(field);

@@ -52,6 +52,20 @@ def test_power_is_what_the_radar_equation_gives(spheres):
         assert found.snr_db[i] == pytest.approx(10 * np.log10(expected / ep.noise_power(radar)), abs=NOISE_DB), name
 
 
+@pytest.mark.parametrize("speed", [-16.0, -3.0, 5.0, 11.0])
+def test_two_chirps_tell_velocities_between_their_two_cells(speed):
+    """Each is the neighbour of the other on both sides; 11 m/s are shown less the span of the axis."""
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=500e6, num_samples=128, sampling_rate=10e6, num_chirps=2,
+                              chirp_interval=50e-6)
+    radar, span = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna()]), 2 * chirps.max_velocity()
+    cube = ep.point_targets(radar, positions=[(12, 0, 0)], velocities=(speed, 0, 0), rcs=1e5)
+    found = ep.detect(ep.range_doppler(ep.add_noise(cube, radar, seed=1), radar, "rect"), radar)
+    strongest = found.power.argmax()
+    assert np.remainder(found.velocity[strongest] - speed + 0.5 * span, span) == pytest.approx(0.5 * span, abs=0.1)
+    expected = radar.transmit_power * (ep.speed_of_light / 77.25e9) ** 2 * 1e5 / ((4 * np.pi) ** 3 * 12 ** 4)
+    assert 10 * np.log10(found.power[strongest] / expected) == pytest.approx(0.0, abs=0.1)
+
+
 def test_parts_label_their_own_targets(spheres):
     radar, paths, spectrum = spheres
     parts = ep.decompose(paths, radar, {name: f"T '{name}' R" for name in list(TARGETS)[:2]})

@@ -179,14 +179,15 @@ def _folded_to_first(spectrum, radar, velocity: float, compensate: bool) -> tupl
     return spectrum, velocity - len(axis) * step
 
 
-@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), range=optional(array("[N]")), peak_range_db=real(0.0, 200.0, unit="dB"),
-         folds=count(0, LARGEST_COUNT))
+@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), range=optional(array("[N]")),
+         peak_range_db=real(0.0, 200.0, unit="dB"), folds=count(0, LARGEST_COUNT))
 def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
                     elevation: ArrayLike | None = None, *, cells: ArrayLike, velocity: ArrayLike | None = None,
-                    range: ArrayLike | None = None, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: BeamMethod = "bartlett",
-                    window: Window = "rect", overlaps: Overlaps = "average", compensate: bool = True,
-                    diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2,
-                    forward_backward: bool = False, progress: Progress = None) -> _core.AngleEstimates:
+                    range: ArrayLike | None = None, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0,
+                    method: BeamMethod = "bartlett", window: Window = "rect", overlaps: Overlaps = "average",
+                    compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1,
+                    range_neighbours: int = 2, forward_backward: bool = False,
+                    progress: Progress = None) -> _core.AngleEstimates:
     """Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
 
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
@@ -217,8 +218,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     if azimuth is None and elevation is None:
         require_told_folds(radar, folds)
     return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, range=range,
-                                 max_peaks=max_peaks, peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
-                                 compensate=compensate, diagonal_loading=diagonal_loading,
+                                 max_peaks=max_peaks, peak_range_db=peak_range_db, folds=folds, method=method, window=window,
+                                 overlaps=overlaps, compensate=compensate, diagonal_loading=diagonal_loading,
                                  velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
                                  forward_backward=forward_backward, progress=progress)
 

@@ -221,8 +221,8 @@ def detections(found, of_partitions: dict, advice: str = "", *, file: str = "") 
 
 
 def other_method(asked, words: str) -> str:
-    """`words`, which ask for order statistics, unless keywords of a detector name another method than the mean over cells."""
-    return words if (asked or {}).get("method", "ca") == "ca" else ""
+    """`words`, which ask for order statistics, unless keywords of a detector name a method that minds neighbours as little."""
+    return words if (asked or {}).get("method", "ca") in ("ca", "go") else ""
 
 
 def _undetected(found, of_partitions: dict, advice: str) -> list[str]:

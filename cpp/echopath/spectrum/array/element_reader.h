@@ -18,7 +18,8 @@ enum class Overlaps { kAverage, kFirst };
 struct EchoPlace {
   // Its velocity is that of the cell and 2 fold v_max, also where `fold` is not whole.
   double fold = 0.0;
-  // Its range in m, by which phases of carriers are taken out in all cells that have of the echo; none: by that of each cell.
+  // Its range in m, by which phases of carriers are taken out in all cells that have some of the echo; none: by that of each
+  // cell.
   std::optional<double> range;
 };
 

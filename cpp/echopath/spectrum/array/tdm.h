@@ -19,7 +19,8 @@ std::vector<double> slot_delays(const Radar& radar);
 std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::vector<double>& velocity);
 
 // Returns 4 pi f_m / c, [tx] in rad/m, by which an echo turns with its range because transmitter m sends f_m above the first
-// one, in the middle of the sweep; empty where all send alike, or where the steps of a transmitter change from chirp to chirp.
+// one, in the middle of the sweep; empty where all send alike, or where the steps of a transmitter change from chirp to
+// chirp.
 std::vector<double> carrier_turns(const Radar& radar);
 
 // Returns e^{-j r 4 pi f_m / c}, [tx, R], which takes these phases out; empty where there are none.

@@ -120,7 +120,7 @@ def test_labels_of_a_scene_file_are_keywords_of_annotate(scene_path, tmp_path):
     ("dynamic_range_db = -3.0", "labels.dynamic_range_db: must be at least 0"),
     ("planes = 'x'", "labels.planes: unknown key; did you mean 'plane'?"),
     ("[detections]\nfalse_alarm_rate = 0.0", "detections.false_alarm_rate: must be at least 1e-15"),
-    ("[detections]\nmethod = 'go'", "detections.method: must be 'ca' or 'os', got 'go'"),
+    ("[detections]\nmethod = 'gold'", "detections.method: must be 'ca', 'os', 'go' or 'so', got 'gold'"),
     ("[detections]\nrank = 1.5", "detections.rank: must be at most 1"),
 ])
 def test_faults_of_labels_name_the_key(tmp_path, table, message):

@@ -184,6 +184,17 @@ def test_materials_that_do_not_go_with_the_radar_are_named():
     assert not unknown.modelled and "nobody gives rubber at 24.1 GHz" in unknown.reason
 
 
+def test_each_mesh_of_a_named_material_needs_the_values_of_the_radar():
+    scene, radar = make_scene("concrete"), make_radar()
+    scene.add(ep.actors.plate(0.3, 0.3), name="second", material="concrete", position=(6, 1, 0))
+    ep.adapt_materials(scene, radar.replace(waveform=LOW))
+    far = found(scene, radar)["materials over frequency"]  # of a radar at 77 GHz, whose library the scene has left
+    assert not far.modelled and "gives concrete the values" in far.reason
+    scene[next(iter(scene))].material = "concrete"
+    mixed = found(scene, radar.replace(waveform=LOW))["materials over frequency"]
+    assert not mixed.modelled and "gives concrete the values at 24.1 GHz" in mixed.reason
+
+
 def test_every_rule_has_a_case():
     assert set(CASES) == {rule.name for rule in rules.RULES}
 

@@ -17,6 +17,7 @@ EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
 ERRORS_DB = (0.01, 0.30, 1.8, 5.0)
 MAX_RATIO = 0.4          # edge / sqrt(radius wavelength) that errs by 0.3 dB
 SMOOTH_GAIN = 4.0        # how much coarser a smooth mesh may be
+EVEN = 1e-6              # share by which the scales of an object along its axes may differ and count as one
 _NAMED = 3               # meshes of which a warning tells
 
 
@@ -103,9 +104,12 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
     if not asked:
         return []
     nodes, meshes, found = scene.nodes, scene.meshes, []
-    for mesh_id in asked:
+    world_from_node = _linear_maps(nodes)[[meshes[mesh_id].node for mesh_id in asked]]
+    stretches = np.linalg.svd(world_from_node, compute_uv=False)
+    for mesh_id, linear, stretch in zip(asked, world_from_node, stretches):
         mesh = meshes[mesh_id]
-        measured = _measured(mesh.mesh)
+        is_even = stretch[0] - stretch[2] <= EVEN * stretch[0]
+        measured = _scaled(_measured(mesh.mesh), float(stretch.mean())) if is_even else _measured(mesh.mesh, linear)
         if measured is None:
             continue
         smooth = nodes[mesh.node].smooth
@@ -115,16 +119,35 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
     return found
 
 
-_known = _core.MeshTable()  # tessellations, each as long as its mesh lives
+def _linear_maps(nodes) -> np.ndarray:
+    """[N, 3, 3], by which nodes, parents first, turn and scale the axes of their meshes at rest. Motions do not scale."""
+    maps: list[np.ndarray] = []
+    for node in nodes:
+        own = node.placement[:3, :3]
+        maps.append(own if node.parent < 0 else maps[node.parent] @ own)
+    return np.array(maps)
 
 
-def _measured(mesh) -> Tessellation | None:
-    """The tessellation of a mesh, measured once."""
-    measured = _known.get(mesh, _known)
-    if measured is _known:
-        measured = _tessellation_of(without_seams(mesh) if is_soup(mesh) else mesh)
-        _known.set(mesh, measured)
-    return measured
+_known = _core.MeshTable()  # {linear map as bytes, b"" for none: tessellation} of meshes, each as long as its mesh lives
+
+
+def _measured(mesh, linear: np.ndarray | None = None) -> Tessellation | None:
+    """The tessellation of a mesh, measured once; linear: [3, 3] that stretches it unevenly, None: none."""
+    known = _known.get(mesh, None)
+    if known is None:
+        _known.set(mesh, known := {})
+    key = b"" if linear is None else linear.tobytes()
+    if key not in known:
+        stretched = mesh if linear is None else _core.Mesh(mesh.vertices @ linear.T, mesh.triangles)
+        known[key] = _tessellation_of(without_seams(stretched) if is_soup(stretched) else stretched)
+    return known[key]
+
+
+def _scaled(measured: Tessellation | None, scale: float) -> Tessellation | None:
+    """That of a mesh whose lengths are so many times as large."""
+    if measured is None:
+        return None
+    return Tessellation(scale * measured.edge, scale * measured.radius, scale**2 * measured.curved_area, scale**2 * measured.area)
 
 
 def _fault(measured: Tessellation, wavelength: float, smooth: bool) -> str:

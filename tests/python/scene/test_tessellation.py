@@ -51,6 +51,19 @@ def test_icospheres_have_their_radius_and_their_known_error(subdivisions):
     assert tessellation.facet_error_db(found.ratio(WAVELENGTH)) == pytest.approx(error, rel=ERROR_TOLERANCE, abs=0)
 
 
+@pytest.mark.parametrize("smooth", [False, True])
+@pytest.mark.parametrize("scales", [(10.0, 10.0, 10.0), (0.1, 0.1, 0.1), (4.0, -4.0, 4.0), (2.0, 8.0, 1.0)])
+def test_objects_that_are_scaled_are_told_as_their_larger_meshes(scales, smooth):
+    mesh = as_mesh(icosphere(12))
+    half = np.diag([*np.sqrt(np.abs(scales)), 1.0])
+    placed, larger = ep.Scene(), ep.Scene()
+    placed.add(None, name="group", transform=half, position=(0, 0, 0))
+    placed.add(mesh, name="ball", parent="group", material="metal", transform=half * np.sign([*scales, 1.0]), smooth=smooth)
+    larger.add(ep.Mesh(mesh.vertices * np.abs(scales), mesh.triangles), name="ball", material="metal", smooth=smooth)
+    told, expected = ([one.fault for one in tessellation.coarse_meshes(scene, 77e9)] for scene in (placed, larger))
+    assert told == expected
+
+
 def with_road(mesh, side=40.0):
     """One mesh of a body and a square below it, as foreign files have them."""
     vertices = np.array([(x, y, -1.0) for x in (-side, side) for y in (-side, side)])

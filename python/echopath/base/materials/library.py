@@ -33,8 +33,8 @@ class MaterialLibrary(Mapping[str, _core.Material]):
         They follow the laws that their sources give (`source`): building materials by Recommendation ITU-R P.2040, water and
         skin by their relaxations, foliage and grounds as their echoes go over frequency. What has no law there keeps its
         values at 77 GHz, and `not_given` names it. At 77 GHz, too, these are the values of the laws, from which those of concrete
-        and glass in `ep.materials` differ by 0.3 dB of the reflected power at most. Raises TypeError or ValueError naming the
-        argument.
+        and glass in `ep.materials` differ by 0.3 dB of the reflected power at most; of a glass pane, whose glass has less loss by
+        the law, 1.7 dB more passes. Raises TypeError or ValueError naming the argument.
         """
         return _library_at(frequency)
 

@@ -39,8 +39,8 @@ class Cavity:
 
     def meshes_in(self, scene: _core.Scene) -> list[_core.SceneMesh]:
         """Its walls in a scene, a list of SceneMesh. Raises KeyError naming what the scene does not have."""
-        found = {mesh.id: mesh for name in self.walls for mesh in scene[name].meshes}
-        return [found[number] for number in sorted(found)]
+        names = [scene[name].name for name in self.walls]
+        return [mesh for mesh in scene.meshes if any(f"{mesh.name}/".startswith(f"{name}/") for name in names)]
 
     @property
     def triangles_of_mouth(self) -> np.ndarray:

@@ -4,10 +4,10 @@ from __future__ import annotations
 from .. import _core
 from ..arguments.checks import an, checked
 from ..base.materials import materials
-from .scene import Scene
+from .scene import Scene, changed_scene
 
 
-@checked(scene=an(Scene), radar=an(_core.Radar))
+@checked(scene=changed_scene, radar=an(_core.Radar))
 def adapt_materials(scene: Scene, radar: _core.Radar) -> tuple[str, ...]:
     """Gives materials by name their values at the middle of the radar's band, in the place of those at 77 GHz.
 

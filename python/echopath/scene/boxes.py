@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .. import _core
 
 
-def box_of(scene: Scene, time: float = 0.0, mesh_ids: Iterable[int] | None = None) -> tuple[np.ndarray, np.ndarray]:
+def box_of(scene: _core.Scene, time: float = 0.0, mesh_ids: Iterable[int] | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Least and greatest coordinates [3] in m of meshes of a scene at `time` in s; zeros where there are none.
 
     mesh_ids: of those that count, None: all

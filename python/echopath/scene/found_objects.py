@@ -11,7 +11,6 @@ from ..arguments.checks import an, checked, optional, real
 from ..arguments.frame_times import require_motion
 from .boxes import box_of
 from .large_planes import VEHICLE_LENGTH, large_planes
-from .scene import Scene
 
 THICKEST = 4.5  # m, of the second longest side: what stands yawed takes more than the 4 m of a lorry
 GAP = 0.1    # m, along the axis that separates two boxes most: parts of one body touch
@@ -20,8 +19,8 @@ Box = tuple[np.ndarray, np.ndarray]  # least and greatest coordinates [3], m
 Things = dict[str, list[int]]        # {name of a node: IDs of the meshes below it}
 
 
-@checked(scene=an(Scene), radar=an(_core.Radar), time=optional(real(unit="s")))
-def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None) -> dict[str, str]:
+@checked(scene=an(_core.Scene), radar=an(_core.Radar), time=optional(real(unit="s")))
+def find_objects(scene: _core.Scene, radar: _core.Radar, *, time: float | None = None) -> dict[str, str]:
     """Finds what labels of a scene tell apart: its usual objects, and what stands in a town that was read as one.
 
     Usual objects are those that `families` has by itself, children of the scene's root. One that is larger than a road vehicle
@@ -31,7 +30,7 @@ def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None)
     below a larger one whose parts stand apart, as far as they are no larger than a vehicle. What carries the radar is no larger
     itself, and has no things. No thing or part is what is a mirror or such as `mark_mirrors` would flag.
 
-    scene: of `Scene` or `load_scene`; radar: with its antennas in the scene
+    scene: of `Scene`, of `load_scene` or of a record; radar: with its antennas in the scene
     time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0.
         What is absent then (`SceneNode.lifetime`) surrounds nothing, but is named: other frames may have it
     Returns {name: glob}, to be given as `objects` of `families`, `annotate`, `simulate` and others: names of children of the
@@ -46,13 +45,13 @@ def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None)
     return {name if lasts[last := name.split("/")[-1]] > 1 else last: name for name in names}
 
 
-def things_of(scene: Scene) -> Things:
+def things_of(scene: _core.Scene) -> Things:
     """The nodes that are no larger than a vehicle at time 0, of those below the first node that has several, and of those below
     larger ones of these whose parts stand apart, as the cars of a group do and the walls of a house do not."""
     return {part.name: list(part.meshes) for part in _things_among(_everything(scene, 0.0).parts())}
 
 
-def _names_of(scene: Scene, radar: _core.Radar, usual: Things, time: float) -> list[str]:
+def _names_of(scene: _core.Scene, radar: _core.Radar, usual: Things, time: float) -> list[str]:
     """Names of the usual objects, or of their parts, and of the things in what surrounds the radar."""
     of_usual = {mesh: name for name, meshes in usual.items() for mesh in meshes}
     found = []
@@ -111,7 +110,7 @@ class _Part(NamedTuple):
         return bool(sides[2] <= VEHICLE_LENGTH and sides[1] <= THICKEST)
 
 
-def _everything(scene: Scene, time: float) -> _Part:
+def _everything(scene: _core.Scene, time: float) -> _Part:
     return _Part("", {mesh.id: mesh.name.split("/") for mesh in scene.meshes},
                  {mesh.id: box_of(scene, time, [mesh.id]) for mesh in scene.meshes})
 

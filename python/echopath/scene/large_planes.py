@@ -6,7 +6,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked, real
 from ..base.text.node_names import unique
-from .scene import Scene
+from .scene import Scene, changed_scene
 
 LEAST_COHERENT = 0.1  # share of the reflected power that keeps its phase: rougher walls have next to no images
 LEAST_AREA = 0.8      # share of a mesh's area that large planes make up: the rest, such as the ends of a wall, mirrors with it
@@ -17,7 +17,7 @@ MOST_SMALL_PLANES = 8  # that mirror with the large ones; more would cost time, 
 SMALL_PLANES = "small_planes"  # the mesh that they become
 
 
-@checked(scene=an(Scene), radar=an(_core.Radar), time=real(unit="s"))
+@checked(scene=changed_scene, radar=an(_core.Radar), time=real(unit="s"))
 def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tuple[str, ...]:
     """Flags what is made of planes larger than their Fresnel zone as mirrors, as `Material(mirror=True)` does one by one.
 

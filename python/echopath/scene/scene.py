@@ -204,6 +204,10 @@ class Scene(_core.Scene):
             raise ValueError(error.args[0].replace("name:", "parent:", 1)) from None
 
 
+# Of what changes a scene: those of records are of the core, and print alike.
+changed_scene = an(Scene, called="a Scene that can be changed (ep.Scene(scene) copies one of a record)")
+
+
 class _Batch:
     """The nodes of one `add`, made before any of them is added."""
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from .. import _core, actors
 from ..actors.laid_line import usual_speed
-from ..arguments.checks import an, checked, optional, real, refused, text
+from ..arguments.checks import checked, optional, real, refused, text
 from ..arguments.names import first_names
 from ..arguments.objects import listed
 from ..arguments.shown import writable
@@ -20,7 +20,7 @@ from ..trajectories.arguments import optional_span
 from ..trajectories.files.track_file import W, on_the_way, warn_of_nobody
 from ..trajectories.kinds import of_kind, usual_kind, warn_of_unused_kinds
 from ..trajectories.trajectory import Trajectory
-from .scene import Scene
+from .scene import Scene, changed_scene
 
 ActorOf = Callable[[str, Trajectory], Any]
 ActorOfKinds = Mapping[str, ActorOf | Model | str | None]
@@ -148,7 +148,7 @@ def _globs_rule(argument: str, value) -> list[str]:
     return globs
 
 
-@checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, exclude=_globs_rule,
+@checked(scene=changed_scene, trajectories=_trajectories_rule, actor_of=_maker_rule, exclude=_globs_rule,
          during=optional_span, parent=optional(text), time=optional(real(unit="s")))
 def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | ActorOfKinds | None = None,
                 exclude: str | Iterable[str] = (), during: tuple[float, float] | None = None, parent: str | None = None,

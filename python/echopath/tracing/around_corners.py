@@ -1,7 +1,6 @@
 """What hidden objects would send around a corner: diffraction into shadows, which no trace follows."""
 from __future__ import annotations
 
-import copy
 import dataclasses
 from typing import NamedTuple
 
@@ -18,6 +17,7 @@ from ..paths.absent import NO_MESH
 from ..paths.resolution import Interval, interval_of
 from ..paths.surface_points import SurfacePoints, surface_points
 from ..scene.lifetimes import scene_in_frame
+from ..scene.scene import Scene
 from .traces import trace
 
 NUM_POINTS = 256  # of an object's surface that are looked at
@@ -164,7 +164,7 @@ def _decibels(ratio) -> float:
 
 def _alone(scene, name, names):
     """The scene without the other objects."""
-    alone = copy.deepcopy(scene)
+    alone = Scene(scene)  # those of records cannot be changed
     for other in names:
         if other != name:
             alone[other].visible = False

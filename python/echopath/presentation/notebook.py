@@ -10,9 +10,11 @@ import html
 import numpy as np
 
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
+from ..base.numerics.triangles import areas_of
 from ..base.text.counts import counted
 from ..receiver.settings import receiver_text
 from ..scene.interferers import interferers_of, interferers_text
+from ..scene.scales import linear_maps
 from ..signals.same_radar import WAVEFORM_LISTS
 from ..weather.weather import weather_of, weather_text
 
@@ -21,9 +23,9 @@ _LEFT = "text-align:left"
 
 
 def scene_html(scene) -> str:
-    """The meshes of a scene with their size and material."""
-    meshes = list(scene.meshes)
-    rows = [(mesh.name, len(mesh.triangles), _number(mesh.mesh.area), _material(mesh),
+    """The meshes of a scene with their size, as objects are scaled, and material."""
+    meshes, maps = list(scene.meshes), linear_maps(scene.nodes)
+    rows = [(mesh.name, len(mesh.triangles), _number(_area(mesh.mesh, maps[mesh.node])), _material(mesh),
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
     weather = weather_of(scene)
     air = "" if weather is None else f", weather: {weather_text(weather)}"
@@ -31,6 +33,11 @@ def scene_html(scene) -> str:
     return _table(f"Scene: {counted(len(scene.nodes), 'node')}, {counted(len(meshes), 'mesh')}, "
                   f"{counted(scene.num_triangles, 'triangle')}{air}{others}",
                   ("mesh", "triangles", "area in m²", "material", "motion"), rows, len(meshes))
+
+
+def _area(mesh, world_from_mesh) -> float:
+    """m^2, of a mesh whose axes are turned and scaled by [3, 3]."""
+    return float(areas_of((mesh.vertices @ world_from_mesh.T)[mesh.triangles]).sum())
 
 
 def _material(mesh) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core
 from ..base.process.callers import warn_user
 from ..base.text.lengths import length_text
+from ..scene.scales import linear_maps
 from ..scene.seams import is_soup, without_seams
 from .polarization import COHERENT_SHARE
 
@@ -104,7 +105,7 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
     if not asked:
         return []
     nodes, meshes, found = scene.nodes, scene.meshes, []
-    world_from_node = _linear_maps(nodes)[[meshes[mesh_id].node for mesh_id in asked]]
+    world_from_node = linear_maps(nodes)[[meshes[mesh_id].node for mesh_id in asked]]
     stretches = np.linalg.svd(world_from_node, compute_uv=False)
     for mesh_id, linear, stretch in zip(asked, world_from_node, stretches):
         mesh = meshes[mesh_id]
@@ -117,15 +118,6 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
         if ratio > MAX_RATIO:
             found.append(CoarseMesh(mesh_id, mesh.name, ratio, _fault(measured, wavelength, smooth)))
     return found
-
-
-def _linear_maps(nodes) -> np.ndarray:
-    """[N, 3, 3], by which nodes, parents first, turn and scale the axes of their meshes at rest. Motions do not scale."""
-    maps: list[np.ndarray] = []
-    for node in nodes:
-        own = node.placement[:3, :3]
-        maps.append(own if node.parent < 0 else maps[node.parent] @ own)
-    return np.array(maps)
 
 
 _known = _core.MeshTable()  # {linear map as bytes, b"" for none: tessellation} of meshes, each as long as its mesh lives

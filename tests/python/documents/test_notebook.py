@@ -88,6 +88,14 @@ def test_the_peak_of_a_map_is_told_where_it_is(frame):
                     f"{frame.spectrum.velocity[row]:+.4g} m/s")
 
 
+def test_areas_of_a_scene_are_those_of_objects_as_they_are_scaled():
+    scene = ep.Scene()
+    scene.add(None, name="in_cm", transform=np.diag([0.01, 0.01, 0.01, 1.0]))
+    scene.add(ep.actors.plate(200.0, 300.0), name="wall", parent="in_cm", material="metal")
+    scene.add(ep.actors.plate(2.0, 3.0), name="long", transform=np.diag([1.0, 5.0, 1.0, 1.0]), material="metal")
+    assert [row[2] for row in Reader(scene._repr_html_()).rows[1:]] == ["6", "30"]
+
+
 def test_long_scenes_are_cut_and_say_so():
     scene = ep.Scene()
     for index in range(25):

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from .. import _core
+from ..base.numerics.triangles import areas_of
 from ..base.process.callers import warn_user
 from ..base.text.lengths import length_text
 from ..scene.scales import linear_maps
@@ -104,15 +105,16 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
     asked = _core.coherent_meshes(scene, wavelength, COHERENT_SHARE, without_planes=True)
     if not asked:
         return []
-    nodes, meshes, found = scene.nodes, scene.meshes, []
+    nodes, meshes, found, moved = scene.nodes, scene.meshes, [], {}
     world_from_node = linear_maps(nodes)[[meshes[mesh_id].node for mesh_id in asked]]
     stretches = np.linalg.svd(world_from_node, compute_uv=False)
     for mesh_id, linear, stretch in zip(asked, world_from_node, stretches):
         mesh = meshes[mesh_id]
         is_even = stretch[0] - stretch[2] <= EVEN * stretch[0]
-        measured = _scaled(_measured(mesh.mesh), float(stretch.mean())) if is_even else _measured(mesh.mesh, linear)
+        measured = _measured(mesh.mesh, None if is_even else linear)
         if measured is None:
             continue
+        measured = _scaled(measured, _scale_of_skin(mesh, nodes, moved) * (float(stretch.mean()) if is_even else 1.0))
         smooth = nodes[mesh.node].smooth
         ratio = measured.ratio(wavelength) / (SMOOTH_GAIN if smooth else 1.0)
         if ratio > MAX_RATIO:
@@ -135,10 +137,29 @@ def _measured(mesh, linear: np.ndarray | None = None) -> Tessellation | None:
     return known[key]
 
 
-def _scaled(measured: Tessellation | None, scale: float) -> Tessellation | None:
+_scales_of_skins = _core.MeshTable()  # of the meshes that have one
+
+
+def _scale_of_skin(scene_mesh, nodes, moved: dict[int, np.ndarray]) -> float:
+    """By how much a Skin makes a mesh larger, as in files of figures in cm; 1 without one.
+
+    moved: {id of a Skin: its vertices [V, 3]}, of those that were asked before
+    """
+    mesh, skin = scene_mesh.mesh, nodes[scene_mesh.node].deformation
+    if not isinstance(skin, _core.Skin):
+        return 1.0
+    scale = _scales_of_skins.get(mesh, None)
+    if scale is None:
+        if id(skin) not in moved:
+            moved[id(skin)] = skin.at(float(np.clip(0.0, *skin.span)))
+        corners = moved[id(skin)][mesh.original_vertex][mesh.triangles]
+        scale = math.sqrt(areas_of(corners).sum() / mesh.area)
+        _scales_of_skins.set(mesh, scale)
+    return scale
+
+
+def _scaled(measured: Tessellation, scale: float) -> Tessellation:
     """That of a mesh whose lengths are so many times as large."""
-    if measured is None:
-        return None
     return Tessellation(scale * measured.edge, scale * measured.radius, scale**2 * measured.curved_area, scale**2 * measured.area)
 
 

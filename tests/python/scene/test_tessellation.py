@@ -64,6 +64,18 @@ def test_objects_that_are_scaled_are_told_as_their_larger_meshes(scales, smooth)
     assert told == expected
 
 
+def test_figures_whose_skins_scale_them_are_told_as_they_stand():
+    """Files of figures in cm have joints that make metres of them."""
+    mesh, told = as_mesh(icosphere(12)), []
+    for unit in (1.0, 100.0):
+        joint = ep.Joint("hip", transform=np.eye(4), inverse_bind=np.diag([1.0 / unit] * 3 + [1.0]))
+        skin = ep.Skin(unit * mesh.vertices, [joint], np.ones((len(mesh.vertices), 1)))
+        scene = ep.Scene()
+        scene.add(ep.Mesh(unit * mesh.vertices, mesh.triangles), name="figure", material="metal", motion=skin)
+        told.append([one.fault for one in tessellation.coarse_meshes(scene, 77e9)])
+    assert told[0] == told[1] != []
+
+
 def with_road(mesh, side=40.0):
     """One mesh of a body and a square below it, as foreign files have them."""
     vertices = np.array([(x, y, -1.0) for x in (-side, side) for y in (-side, side)])

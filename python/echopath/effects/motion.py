@@ -43,7 +43,7 @@ def _renewed(case: Case):
 
 @rule("deforming meshes", "Node.deformation")
 def _deforming(case: Case):
-    return case.meshes_or(case.deforming, "no mesh has a vertex sequence or a skin")
+    return case.meshes_or(case.deforming, "no mesh has a vertex sequence, morph targets or a skin")
 
 
 @rule("paths at rest evaluated once")

@@ -53,7 +53,7 @@ struct CfarResult {
 // about a quarter of its training cells. Runs in parallel over velocities; the result does not depend on the number of
 // threads. The thresholds are computed once for each design (the last 8 are kept), at a cost that is cubic in the number of
 // cells of the window, counted without padding. CA takes 0.1 s on one core for the defaults and 3 s for 12 x 24 training
-// cells on each side; the others three to six times that. Raises invalid_argument naming the argument, also when the map is
+// cells on each side; the others three to nine times that. Raises invalid_argument naming the argument, also when the map is
 // not the radar's and for windows of more than 2000 cells, counted without padding; raises Cancelled within half a second
 // after the job is cancelled.
 CfarResult cfar(const RangeDoppler& map, const Radar& radar, const CfarOptions& options = {}, Job* job = nullptr);

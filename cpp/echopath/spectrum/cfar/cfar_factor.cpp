@@ -18,6 +18,8 @@ constexpr int kMaxChannels = 4096;
 constexpr Eigen::Index kFewDegrees = 400;  // of freedom: up to these the factors of every column are computed
 constexpr int kMaxCells = 2000;            // of a window, counted without padding: beyond, a step takes too long to cancel
 constexpr int kManyDraws = 8192, kFewDraws = 512;
+constexpr int64_t kMostChosenFrom = 128;  // training cells of an ordered statistic; of more, all are tilted alike
+constexpr int kPilotShare = 8;            // of the draws, that find where the others are to come from
 
 // Returns the log of the probability that a sum of n unit exponential powers exceeds x: e^-x sum_{k < n} x^k / k!
 double log_tail(int n, double x) {
@@ -80,13 +82,16 @@ struct TridiagonalForm {
     beside = solver.subDiagonal();
   }
 
-  // Returns the eigenvalues, ascending, of weight times the power of the cell - alpha times the sum of training powers.
+  // Returns the eigenvalues, ascending, of weight times the power of the cell - alpha times the sum of training powers. The
+  // solver takes what is far below 1 for nothing and does not end where entries are far above it.
   std::vector<double> eigenvalues(double weight, double alpha) const {
     Eigen::VectorXd middle = -alpha * diagonal;
     middle[0] += weight;
+    const double scale = middle.cwiseAbs().maxCoeff();
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.computeFromTridiagonal(middle, -alpha * beside, Eigen::EigenvaluesOnly);
-    return {solver.eigenvalues().begin(), solver.eigenvalues().end()};
+    solver.computeFromTridiagonal(middle / scale, -alpha / scale * beside, Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd values = scale * solver.eigenvalues();
+    return {values.begin(), values.end()};
   }
 };
 
@@ -172,13 +177,6 @@ std::vector<double> averaging_factors(const CfarDesign& design, const TrainingNo
   return interpolated(columns, factors);
 }
 
-// Holds the multipliers of a statistic other than the mean and of the mean, for a cell in the middle that is independent of
-// the training cells, and what the statistic is for noise of unit mean power.
-struct DrawnMultipliers {
-  double drawn = 0.0, mean = 0.0;
-  double statistic = 1.0;
-};
-
 // Returns the quantile of the mean power of `num_channels` channels that the order statistic estimates.
 double expected_quantile(const CfarDesign& design) {
   const int channels = design.noise.num_channels;
@@ -186,29 +184,99 @@ double expected_quantile(const CfarDesign& design) {
   return solve_decreasing([&](double x) { return std::exp(log_tail(channels, x)); }, above) / channels;
 }
 
-double mean_of_draws(const std::vector<TrainingDraw>& draws) {
+double mean_statistic(const std::vector<TrainingDraw>& draws) {
   double sum = 0.0;
   for (const TrainingDraw& draw : draws) sum += draw.statistic;
   return sum / static_cast<double>(draws.size());
 }
 
-DrawnMultipliers drawn_multipliers(const CfarDesign& design, const TrainingNoise& noise, Job* job) {
-  const int channels = design.noise.num_channels, middle = design.cells.reach_range();
-  const int count = std::max(kFewDraws, kManyDraws / channels);
-  const double number = static_cast<double>(design.cells.num_training());
-  const Eigen::MatrixXd form = noise.quadratic_form(middle);
-  const std::vector<double> eigenvalues = covariance_eigenvalues(ColumnForm(noise, middle, job));
-  const double of_sum = alone_multiplier(eigenvalues, design);
-  const auto draw = [&](double tilt) { return TrainingDraws(design, noise, form, eigenvalues, tilt).draw(count, job); };
-  const std::vector<TrainingDraw> draws = draw(hazard(channels, of_sum * number * channels) * of_sum);
-  const double drawn = solve_decreasing([&](double alpha) {
-    double sum = 0.0;
-    for (const TrainingDraw& one : draws) sum += std::exp(one.log_weight + log_tail(channels, alpha * one.statistic));
-    return sum / count;
-  }, design.false_alarm_rate);
-  const bool is_ordered = design.method == CfarMethod::kOrderedStatistic;
-  return {drawn, number * of_sum, is_ordered ? expected_quantile(design) : mean_of_draws(draw(0.0)) / channels};
+// Returns the x in (0, most] where a decreasing function falls through 0.
+double falls_through_zero(const std::function<double(double)>& function, double most) {
+  double low = 0.0, high = most;
+  for (int halving = 0; halving < 100; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (function(middle) > 0.0 ? low : high) = middle;
+  }
+  return high;
 }
+
+// Returns the tilt of a sum over cells that falls as the probability of a false alarm does, of a cell beyond alpha times the
+// statistic, where false alarms are likeliest: at the mean s of the cells at which s times that probability is the greatest.
+// The mean of d free cells has the density s^(d n) e^(-d s) for n channels. `over_mean` is what the statistic is over the mean.
+double tilt_of(double num_cells, double free_cells, double alpha, double over_mean, int num_channels) {
+  const double steepness = alpha * over_mean;
+  const double mean = falls_through_zero([&](double s) {
+    return free_cells * (num_channels / s - 1.0) - steepness * hazard(num_channels, steepness * s);
+  }, num_channels);
+  return steepness * hazard(num_channels, steepness * mean) / num_cells;
+}
+
+// Finds the factor of a statistic other than the mean for a cell in the middle that is independent of the training cells.
+class DrawnFactor {
+ public:
+  DrawnFactor(const CfarDesign& design, const TrainingNoise& noise)
+      : design_(design), noise_(noise),
+        cells_are_chosen_(design.method == CfarMethod::kOrderedStatistic && design.cells.num_training() <= kMostChosenFrom) {
+    const auto [first, second] = halves_of_training_cells(design.cells);
+    const Eigen::MatrixXd of_first = noise.form_of_half(0), of_second = noise.form_of_half(1);
+    if (design.method == CfarMethod::kOrderedStatistic) {
+      groups_ = {{training_cells(design.cells), noise.quadratic_form(design.cells.reach_range())}};
+    } else if (design.method == CfarMethod::kSmallestOf) {
+      groups_ = {{first, of_first}, {second, of_second}};
+    } else {
+      groups_ = {{first, of_first + of_second}};
+      groups_[0].cells.insert(groups_[0].cells.end(), second.begin(), second.end());
+    }
+  }
+
+  // Few draws find where false alarms happen, from a first guess on; the last ones come from there.
+  double factor(double guess, Job* job) {
+    for (const int share : {kPilotShare, 1}) guess = factor_of(draws_at(guess, share, job));
+    return guess;
+  }
+
+  // Returns the statistic for noise of unit mean power: the mean, or the quantile that an ordered one estimates.
+  double statistic(Job* job) const {
+    if (design_.method == CfarMethod::kOrderedStatistic) return expected_quantile(design_);
+    std::vector<TiltedGroup> untilted = {groups_.front()};
+    untilted.front().tilt = 0.0;
+    return mean_statistic(draws_of_groups(design_, noise_, untilted, count(2), job)) / num_channels();
+  }
+
+ private:
+  int num_channels() const { return design_.noise.num_channels; }
+  int count(int share) const { return std::max(kFewDraws, kManyDraws / num_channels() / share); }
+
+  // Returns draws from where false alarms of a factor happen.
+  std::vector<TrainingDraw> draws_at(double factor, int share, Job* job) {
+    if (cells_are_chosen_) {
+      // Low cells lie all over what is below the ordered statistic.
+      const double over_mean = (num_channels() + 1.0) / num_channels(), order = static_cast<double>(design_.order());
+      return draws_of_chosen_cells(design_, noise_, tilt_of(order, order, factor, over_mean, num_channels()), count(share),
+                                   job);
+    }
+    const double over_mean = design_.method == CfarMethod::kOrderedStatistic ? expected_quantile(design_) : 1.0;
+    for (TiltedGroup& group : groups_) {
+      const double free_cells = std::pow(group.form.trace(), 2) / group.form.squaredNorm();
+      group.tilt = tilt_of(static_cast<double>(group.cells.size()), free_cells, factor, over_mean, num_channels());
+    }
+    return draws_of_groups(design_, noise_, groups_, count(share), job);
+  }
+
+  double factor_of(const std::vector<TrainingDraw>& draws) const {
+    return solve_decreasing([&](double alpha) {
+      double sum = 0.0;
+      for (const TrainingDraw& one : draws)
+        sum += std::exp(one.log_weight + log_tail(num_channels(), alpha * one.statistic));
+      return sum / static_cast<double>(draws.size());
+    }, design_.false_alarm_rate);
+  }
+
+  const CfarDesign& design_;
+  const TrainingNoise& noise_;
+  const bool cells_are_chosen_;
+  std::vector<TiltedGroup> groups_;
+};
 
 void require_guard(int guard, int training, int lobe, const char* name) {
   require(training == 0 || guard >= lobe, name, "must cover the main lobe of the window, " + std::to_string(lobe) + " cells",
@@ -271,9 +339,13 @@ CfarFactors cfar_factors(const CfarDesign& design, Job* job) {
   const TrainingNoise noise(design);
   CfarFactors result{averaging_factors(design, noise, job)};
   if (design.method == CfarMethod::kCellAveraging) return result;
-  const DrawnMultipliers independent = drawn_multipliers(design, noise, job);
-  for (double& factor : result.factor) factor *= independent.drawn / independent.mean;
-  result.statistic = independent.statistic;
+  const double number = static_cast<double>(design.cells.num_training());
+  const double of_mean =
+      number * alone_multiplier(covariance_eigenvalues(ColumnForm(noise, design.cells.reach_range(), job)), design);
+  DrawnFactor drawn(design, noise);
+  const double of_statistic = drawn.factor(of_mean, job);
+  for (double& factor : result.factor) factor *= of_statistic / of_mean;
+  result.statistic = drawn.statistic(job);
   return result;
 }
 

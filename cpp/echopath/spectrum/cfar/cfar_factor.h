@@ -56,8 +56,9 @@ double false_alarm_probability(double alpha, const std::vector<double>& eigenval
 // guard cells of the end of the range axis, for those in the middle, and at distances between that double each time;
 // elsewhere factors lie on straight lines, where the rate is right to 0.2 % (without taper, padded: 1 %).
 // The others take the mean over 8192 / num_channels (at least 512) draws of the training cells; given a draw, the
-// probability has a closed form. Draws come from the tilted distribution in which false alarms happen: the standard error is
-// about 1 % of a false-alarm rate of 1e-3, 2 % of 1e-6. They take from CA how the factor changes near the ends of the range
+// probability has a closed form. Draws come from tilted distributions in which false alarms happen (training_draws.h): the
+// standard error is about 1 % of a false-alarm rate of 1e-3 and 2 % of 1e-6, of few cells 3 % down to 1e-9; of more than 128
+// cells at ranks below a half it grows as rates fall. They take from CA how the factor changes near the ends of the range
 // axis, and the correlation with the cell under test that remains beyond the guard cells. The result does not depend on the
 // number of threads. Raises as CfarDesign::validate.
 CfarFactors cfar_factors(const CfarDesign& design, Job* job = nullptr);

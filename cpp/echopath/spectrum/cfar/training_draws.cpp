@@ -1,12 +1,9 @@
 #include "echopath/spectrum/cfar/training_draws.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
-#include "echopath/base/constants.h"
 #include "echopath/base/random.h"
 #include "echopath/base/threads/parallel.h"
 
@@ -14,18 +11,10 @@ namespace echopath {
 namespace {
 
 constexpr int kDrawsPerTask = 16;
-constexpr uint64_t kSeed = 1;
+constexpr uint64_t kSeedOfChoices = 2;
 
-}  // namespace
-
-TrainingDraws::TrainingDraws(const CfarDesign& design, const TrainingNoise& noise, const Eigen::MatrixXd& form,
-                             const std::vector<double>& eigenvalues, double tilt)
-    : design_(design), noise_(noise), tilt_(tilt),
-      root_(Eigen::LLT<Eigen::MatrixXd>(Eigen::MatrixXd::Identity(form.rows(), form.rows()) + tilt * form)) {
-  for (const double value : eigenvalues) log_mean_ -= design.noise.num_channels * std::log1p(tilt * value);
-}
-
-std::vector<TrainingDraw> TrainingDraws::draw(int count, Job* job) const {
+template <class One>
+std::vector<TrainingDraw> draws_of(int count, Job* job, const One& one) {
   std::vector<TrainingDraw> draws(count);
   parallel_for_chunks(count, kDrawsPerTask, [&](int64_t begin, int64_t end) {
     if (job) job->throw_if_cancelled();
@@ -34,59 +23,75 @@ std::vector<TrainingDraw> TrainingDraws::draw(int count, Job* job) const {
   return draws;
 }
 
-// The columns are the real and imaginary parts of every channel.
-Eigen::MatrixXd TrainingDraws::white_numbers(int64_t index) const {
-  Eigen::MatrixXd numbers(root_.rows(), 2 * design_.noise.num_channels);
-  for (Eigen::Index c = 0; c < numbers.cols(); c += 2) {
-    for (Eigen::Index i = 0; i < numbers.rows(); ++i) {
-      const auto [u, v] = uniform2(kSeed, Stream::kTraining, static_cast<uint64_t>(index),
-                                   static_cast<uint32_t>(c / 2 * numbers.rows() + i));
-      const double radius = std::sqrt(-std::log1p(-u));  // parts of variance 1/2
-      numbers(i, c) = radius * std::cos(kTwoPi * v);
-      numbers(i, c + 1) = radius * std::sin(kTwoPi * v);
-    }
-  }
-  return numbers;
-}
-
-TrainingDraw TrainingDraws::one(int64_t index) const {
-  Eigen::MatrixXd numbers = white_numbers(index);
-  root_.matrixU().solveInPlace(numbers);
-  const Eigen::MatrixXd &left = noise_.velocity_factor(), &right = noise_.range_factor();
-  RowMatrix power = RowMatrix::Zero(left.rows(), right.rows());
-  for (Eigen::Index c = 0; c < numbers.cols(); ++c) {
-    const Eigen::Map<const RowMatrix> field(numbers.col(c).data(), left.cols(), right.cols());
-    power += (left * field * right.transpose()).cwiseAbs2();
-  }
-  return summed_up(power);
-}
-
-TrainingDraw TrainingDraws::summed_up(const RowMatrix& power) const {
-  const CfarWindow& cells = design_.cells;
-  std::vector<double> training;
+double log_mean_exp(const std::vector<double>& values) {
+  const double largest = std::ranges::max(values);
   double sum = 0.0;
-  std::array<double, 2> half_means{};
-  for (int row = -cells.reach_velocity(); row <= cells.reach_velocity(); ++row) {
-    for (int column = -cells.reach_range(); column <= cells.reach_range(); ++column) {
-      if (std::abs(row) <= cells.guard_velocity && std::abs(column) <= cells.guard_range) continue;
-      const double value = power(row + cells.reach_velocity(), column + cells.reach_range());
-      training.push_back(value);
-      sum += value;
-      if (const auto half = cells.half_of(row, column))
-        half_means[*half] += value / static_cast<double>(cells.num_in_half());
-    }
-  }
-  const auto [least, greatest] = std::ranges::minmax(half_means);
-  const double statistic = design_.method == CfarMethod::kGreatestOf   ? greatest
-                           : design_.method == CfarMethod::kSmallestOf ? least
-                                                                       : ordered(std::move(training));
-  return {statistic, tilt_ * sum + log_mean_};
+  for (const double value : values) sum += std::exp(value - largest);
+  return largest + std::log(sum / static_cast<double>(values.size()));
 }
 
-double TrainingDraws::ordered(std::vector<double> training) const {
-  const auto place = training.begin() + (design_.order() - 1);
-  std::nth_element(training.begin(), place, training.end());
-  return *place;
+// Returns `count` of the cells by chance (Fisher, Yates), other ones for each index.
+CellGroup chosen(CellGroup cells, int64_t count, int64_t index) {
+  for (int64_t i = 0; i < count; ++i) {
+    const double u = uniform2(kSeedOfChoices, Stream::kTraining, static_cast<uint64_t>(index), static_cast<uint32_t>(i))[0];
+    const auto rest = std::ssize(cells) - i;
+    std::swap(cells[i], cells[i + std::min(static_cast<int64_t>(u * static_cast<double>(rest)), rest - 1)]);
+  }
+  cells.resize(count);
+  return cells;
+}
+
+// Returns the log of the mean, over all choices of `order` of the values x, of e^{-tilt times their sum}: of the elementary
+// symmetric polynomial over the number of its terms.
+double log_mean_over_choices(std::vector<double> values, int64_t order, double tilt) {
+  std::ranges::nth_element(values, values.begin() + (order - 1));
+  double shift = 0.0;  // the mean of the smallest values, which make the largest term
+  for (int64_t i = 0; i < order; ++i) shift += values[i] / static_cast<double>(order);
+  std::vector<double> mean(order + 1, 0.0);  // of the terms over the values so far, by how many each has
+  mean[0] = 1.0;
+  for (size_t number = 1; number <= values.size(); ++number) {
+    const double factor = std::exp(-tilt * (values[number - 1] - shift));
+    for (int64_t k = std::min<int64_t>(order, static_cast<int64_t>(number)); k >= 1; --k) {
+      const double share = static_cast<double>(k) / static_cast<double>(number);  // of the choices that have this value
+      mean[k] = share * factor * mean[k - 1] + (1.0 - share) * mean[k];
+    }
+  }
+  return std::log(mean[order]) - tilt * shift * static_cast<double>(order);
+}
+
+}  // namespace
+
+// The density of the mixture over that of the noise is the mean over the groups of e^{-tilt times their sum} over its mean.
+std::vector<TrainingDraw> draws_of_groups(const CfarDesign& design, const TrainingNoise& noise,
+                                          const std::vector<TiltedGroup>& groups, int count, Job* job) {
+  const DrawnPowers drawn(design, noise);
+  std::vector<TiltedNoise> tilted;
+  for (const TiltedGroup& group : groups) tilted.emplace_back(group.form, group.tilt, design.noise.num_channels);
+  return draws_of(count, job, [&](int64_t index) {
+    const CellPowers powers = drawn.draw(index, tilted[index % std::ssize(tilted)]);
+    std::vector<double> log_ratios;
+    for (size_t i = 0; i < groups.size(); ++i)
+      log_ratios.push_back(-groups[i].tilt * sum_of(powers, groups[i].cells) - tilted[i].log_mean);
+    return TrainingDraw{drawn.statistic(powers), -log_mean_exp(log_ratios)};
+  });
+}
+
+// Think of pairs of powers and chosen cells. Draws choose all cells alike and then have the density of noise times e^{-tilt
+// times the sum of those chosen} over its mean. Were cells chosen in proportion to that exponential, given the powers, the
+// powers would be those of noise: the ratio is the weight.
+std::vector<TrainingDraw> draws_of_chosen_cells(const CfarDesign& design, const TrainingNoise& noise, double tilt, int count,
+                                                Job* job) {
+  const DrawnPowers drawn(design, noise);
+  const CellGroup training = training_cells(design.cells);
+  return draws_of(count, job, [&](int64_t index) {
+    const CellGroup cells = chosen(training, design.order(), index);
+    const TiltedNoise tilted(noise.form_of_cells(cells), tilt, design.noise.num_channels);
+    const CellPowers powers = drawn.draw(index, tilted);
+    std::vector<double> values;
+    for (const int cell : training) values.push_back(powers.data()[cell]);
+    const double log_weight = tilted.log_mean - log_mean_over_choices(std::move(values), design.order(), tilt);
+    return TrainingDraw{drawn.statistic(powers), log_weight};
+  });
 }
 
 }  // namespace echopath

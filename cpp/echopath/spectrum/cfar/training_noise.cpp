@@ -108,6 +108,25 @@ MatrixXd TrainingNoise::quadratic_form(int column, Rows rows) const {
   return kronecker(of(inner_rows_, rows), inner) + kronecker(of(outer_rows_, rows), whole);
 }
 
+MatrixXd TrainingNoise::form_of_half(int half) const {
+  const int rows = cells_.num_rows(), columns = cells_.num_columns();
+  if (cells_.training_range == 0) {
+    const CellSpan side{half == 0 ? 0 : rows - cells_.training_velocity, cells_.training_velocity};
+    return kronecker(form_of(velocity_factor_, side), form_of(range_factor_, {0, columns}));
+  }
+  const auto side = [&](int count) { return form_of(range_factor_, {half == 0 ? 0 : columns - count, count}); };
+  return kronecker(inner_rows_, side(cells_.training_range)) + kronecker(outer_rows_, side(cells_.reach_range()));
+}
+
+MatrixXd TrainingNoise::form_of_cells(const std::vector<int>& cells) const {
+  MatrixXd factors(std::ssize(cells), velocity_factor_.cols() * range_factor_.cols());
+  for (Eigen::Index i = 0; i < factors.rows(); ++i) {
+    const int row = cells[i] / cells_.num_columns(), column = cells[i] % cells_.num_columns();
+    factors.row(i) = kronecker(velocity_factor_.row(row), range_factor_.row(column));
+  }
+  return factors.transpose() * factors;
+}
+
 Eigen::VectorXd TrainingNoise::cell(int column) const {
   return kronecker(velocity_factor_.row(cells_.reach_velocity()).head(num_even_), range_factor_.row(column)).transpose();
 }

@@ -21,6 +21,11 @@ class TrainingNoise {
   // the numbers of even and of odd patterns of its rows, and the cell under test has only the even ones.
   Eigen::MatrixXd quadratic_form(int column, Rows rows = Rows::kAll) const;
   Eigen::VectorXd cell(int column) const;  // unit f of the even ones: the cell under test is f^T g
+  // Returns B for the sum over a half of the training cells of a cell in the middle (CfarWindow::half_of).
+  Eigen::MatrixXd form_of_half(int half) const;
+  // Returns B for the sum of the powers of some cells of the rectangle, given by row * num_columns + column. Costs their
+  // number times the square of the degrees of freedom.
+  Eigen::MatrixXd form_of_cells(const std::vector<int>& cells) const;
 
   // [rows, degrees of freedom], even ones first
   const Eigen::MatrixXd& velocity_factor() const { return velocity_factor_; }

@@ -90,6 +90,12 @@ class Case:
         return np.flatnonzero(np.array([bool(takes(material)) for material in self.materials], bool)[self._of_mesh])
 
     @cached_property
+    def named_materials(self) -> list[tuple[str, _core.Material]]:
+        """(name under which it was given or "", material), each once."""
+        found = set(zip((mesh.material_name for mesh in self.scene.meshes), self._of_mesh.tolist()))
+        return [(name, self.materials[index]) for name, index in sorted(found)]
+
+    @cached_property
     def mirrors(self) -> NDArray[np.intp]:
         return self.of_material(lambda material: material.mirror)
 

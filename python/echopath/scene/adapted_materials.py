@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from .. import _core
 from ..arguments.checks import an, checked
-from ..base.materials import materials
+from ..base.materials import MaterialLibrary, materials
 from .scene import Scene, changed_scene
 
 
@@ -23,19 +23,22 @@ def adapt_materials(scene: Scene, radar: _core.Radar) -> tuple[str, ...]:
     """
     library = materials.at(radar.waveform.centre_frequency)
     with scene._edit():
-        named = {index: name for index, node in enumerate(scene.nodes) if (name := library_name(node))}
+        named = {index: name for index, node in enumerate(scene.nodes)
+                 if node.mesh is not None and (name := library_name(node.material_name, node.material))}
         for index, name in named.items():
             node = scene.nodes[index]
-            material = library[name].replace(mirror=True) if node.material.mirror else library[name]
-            scene._change(index, node.replace(material=material, material_name=name))
+            scene._change(index, node.replace(material=as_in(library, name, node.material.mirror), material_name=name))
     return tuple(sorted(set(named.values()).intersection(library.not_given)))
 
 
-def library_name(node: _core.Node) -> str:
-    """The name in `ep.materials` of the material of a node's mesh, "" for any other and for none."""
-    if node.mesh is None:
-        return ""
-    if node.material_name or not node.material.mirror:
-        return node.material_name if node.material_name in materials else ""
-    as_object = node.material.replace(mirror=False)
-    return next((name for name, material in materials.items() if material == as_object), "")
+def as_in(library: MaterialLibrary, name: str, mirror: bool) -> _core.Material:
+    """The material of a name in a library, also as a mirror."""
+    return library[name].replace(mirror=True) if mirror else library[name]
+
+
+def library_name(material_name: str, material: _core.Material) -> str:
+    """The name in `ep.materials` of a material that a scene has under a name, "" for any other."""
+    if material_name or not material.mirror:
+        return material_name if material_name in materials else ""
+    as_object = material.replace(mirror=False)
+    return next((name for name, known in materials.items() if known == as_object), "")

@@ -184,15 +184,19 @@ def test_materials_that_do_not_go_with_the_radar_are_named():
     assert not unknown.modelled and "nobody gives rubber at 24.1 GHz" in unknown.reason
 
 
-def test_each_mesh_of_a_named_material_needs_the_values_of_the_radar():
-    scene, radar = make_scene("concrete"), make_radar()
-    scene.add(ep.actors.plate(0.3, 0.3), name="second", material="concrete", position=(6, 1, 0))
-    ep.adapt_materials(scene, radar.replace(waveform=LOW))
-    far = found(scene, radar)["materials over frequency"]  # of a radar at 77 GHz, whose library the scene has left
-    assert not far.modelled and "gives concrete the values" in far.reason
-    scene[next(iter(scene))].material = "concrete"
-    mixed = found(scene, radar.replace(waveform=LOW))["materials over frequency"]
-    assert not mixed.modelled and "gives concrete the values at 24.1 GHz" in mixed.reason
+def test_materials_of_another_radar_are_named():
+    """Those of one at 24 GHz before one at 77 GHz, and of one plate of two that was given its material anew."""
+    scene, low = make_scene("skin"), make_radar().replace(waveform=LOW)
+    scene.add(ep.actors.plate(1.0, 1.0), name="first", material="skin", position=(9, 0, 0))
+    ep.adapt_materials(scene, low)
+    at_77 = found(scene)["materials over frequency"]
+    assert not at_77.modelled and "gives skin the values at 77.5 GHz" in at_77.reason
+    scene["plate"].material = "skin"
+    assert not found(scene, low)["materials over frequency"].modelled and not found(scene)["materials over frequency"].modelled
+    scene["plate"].visible = False
+    assert found(scene, low)["materials over frequency"].modelled
+    ep.adapt_materials(scene, make_radar())
+    assert found(scene)["materials over frequency"].modelled
 
 
 def test_every_rule_has_a_case():

@@ -23,11 +23,13 @@ def adapt_materials(scene: Scene, radar: _core.Radar) -> tuple[str, ...]:
     """
     library = materials.at(radar.waveform.centre_frequency)
     with scene._edit():
-        named = {index: name for index, node in enumerate(scene.nodes)
-                 if node.mesh is not None and (name := library_name(node.material_name, node.material))}
-        for index, name in named.items():
-            node = scene.nodes[index]
-            scene._change(index, node.replace(material=as_in(library, name, node.material.mirror), material_name=name))
+        nodes = scene.nodes
+        kinds = {index: (node.material_name, node.material) for index, node in enumerate(nodes) if node.mesh is not None}
+        named = {kind: name for kind in set(kinds.values()) if (name := library_name(*kind))}
+        adapted = {kind: as_in(library, name, kind[1].mirror) for kind, name in named.items()}
+        for index, kind in kinds.items():
+            if kind in named:
+                scene._change(index, nodes[index].replace(material=adapted[kind], material_name=named[kind]))
     return tuple(sorted(set(named.values()).intersection(library.not_given)))
 
 

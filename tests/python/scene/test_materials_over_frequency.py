@@ -94,6 +94,28 @@ def test_a_whole_scene_gets_the_values_at_its_radar():
     assert scene["person/head"].material == ep.materials.at(24e9)["skin"]
 
 
+class ReadScene(ep.Scene):
+    """Counts how often all of its nodes are read."""
+
+    num_reads = 0
+
+    @property
+    def nodes(self):
+        ReadScene.num_reads += 1
+        return super().nodes
+
+
+def test_a_scene_of_many_objects_is_read_once():
+    """Once for each object, two thousand took 10 s."""
+    scene = ReadScene()
+    for number in range(20):
+        scene.add(ep.actors.plate(1.0, 1.0), name=f"plate_{number}", material="brick")
+    ReadScene.num_reads = 0
+    ep.adapt_materials(scene, radar_at(24e9))
+    assert ReadScene.num_reads == 1
+    assert {node.material for node in scene.nodes} == {ep.materials.at(24e9)["brick"]}
+
+
 def test_an_adapted_plate_has_the_echo_of_its_permittivity():
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="concrete", position=(0, 0, 0))

@@ -1,6 +1,8 @@
 """Named materials at other frequencies than 77 GHz, against what their sources say there."""
+import gc
 import math
 import re
+import weakref
 
 import numpy as np
 import pytest
@@ -92,6 +94,13 @@ def test_what_nobody_gives_keeps_its_values_and_is_named():
     assert list(library) == list(ep.materials) and ep.materials.at(24e9) is library
     with pytest.raises(ValueError, match="frequency: must be"):
         ep.materials.at(24.0)
+
+
+def test_a_run_over_many_frequencies_does_not_keep_them_all():
+    """As of a data set whose radars all have others: each library was kept for good."""
+    libraries = [weakref.ref(ep.materials.at(20e9 + 1e6 * number)) for number in range(200)]
+    gc.collect()
+    assert 0 < sum(library() is not None for library in libraries) < 100
 
 
 def radar_at(frequency):

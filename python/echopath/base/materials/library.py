@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 from ... import _core
@@ -11,6 +11,8 @@ from ...arguments.checks import anything, carrier, checked, refused
 from ...arguments.shown import writable
 from ..storage.data_folder import data_folder
 from .over_frequency import holds_at, is_near_library, values_at
+
+KEPT = 64  # libraries of other frequencies, of those that were asked for last
 
 
 class MaterialLibrary(Mapping[str, _core.Material]):
@@ -77,7 +79,7 @@ class MaterialLibrary(Mapping[str, _core.Material]):
                 for name, table in _tables().items()}
 
 
-@cache
+@lru_cache(maxsize=KEPT)
 def _library_at(frequency: float) -> MaterialLibrary:
     return MaterialLibrary(frequency)
 

@@ -33,6 +33,7 @@ ROUNDING = 1e-9  # of a cell of velocity, at the end of the axis
 
 _ANGLES = optional(array("[]", "[N]"))
 _CELLS = array("[N, 2]", kind="whole")
+_OF_CELLS = optional(array("[N]", finite=True))
 _BEAM_RULES = {
     "azimuth": _ANGLES, "elevation": _ANGLES, "method": one_of(BeamMethod), "overlaps": one_of(Overlaps), "compensate": flag,
     "diagonal_loading": real(1e-9, 1e3), "forward_backward": flag, "window": window_rule}
@@ -179,8 +180,8 @@ def _folded_to_first(spectrum, radar, velocity: float, compensate: bool) -> tupl
     return spectrum, velocity - len(axis) * step
 
 
-@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), range=optional(array("[N]")),
-         peak_range_db=real(0.0, 200.0, unit="dB"), folds=count(0, LARGEST_COUNT))
+@checked(**_BEAM_RULES, cells=_CELLS, velocity=_OF_CELLS, range=_OF_CELLS, peak_range_db=real(0.0, 200.0, unit="dB"),
+         folds=count(0, LARGEST_COUNT))
 def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
                     elevation: ArrayLike | None = None, *, cells: ArrayLike, velocity: ArrayLike | None = None,
                     range: ArrayLike | None = None, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0,

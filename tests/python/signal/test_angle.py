@@ -365,6 +365,16 @@ def test_carriers_of_their_own_turn_echoes_between_range_cells_as_those_within(d
         assert told.azimuth[0] == pytest.approx(azimuth, abs=OF_CARRIERS)
 
 
+@pytest.mark.parametrize("name", ["velocity", "range"])
+@pytest.mark.parametrize("wrong", [[np.nan], [np.inf], [1.0, 2.0]])
+def test_places_of_echoes_that_are_none_are_refused_by_name(name, wrong):
+    """What is no number had no peaks, as if nothing were there."""
+    radar = radar_that_hops()
+    spectrum = ep.range_doppler(ep.point_targets(radar, positions=[(12.0, 4.0, 0.0)], rcs=1.0), radar)
+    with pytest.raises(ValueError, match=f"^{name}: must "):
+        ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)], **{name: wrong})
+
+
 def test_carriers_that_are_listed_twice_are_the_same():
     radars = [radar_that_hops(steps) for steps in (HOPS, HOPS + HOPS)]
     cubes = [ep.point_targets(radar, positions=[(12.0, 4.0, 0.0)], rcs=1.0) for radar in radars]

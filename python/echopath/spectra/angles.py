@@ -61,7 +61,8 @@ def compensate_tdm(spectrum: _core.RangeDoppler, radar: _core.Radar, fold: int =
     (receding positive) is turned by e^{j 2 pi (2 v / wavelength) t_m}. M transmitters divide the unambiguous velocity by M;
     an echo of v + 2 fold v_max, with v_max = waveform.max_velocity(M), appears at v and needs its `fold`. Where transmitters
     have carriers of their own (frequency_steps and bandwidth_steps that repeat with them), the phase that the delay of a
-    cell's range makes of the difference is taken out, too.
+    cell's range makes of the difference is taken out, too: an echo between two cells keeps up to pi f / bandwidth of it, with a
+    carrier f above the first one, by which maps of angles show it aside (`estimate_angles` takes its `range`).
     spectrum: RangeDoppler of that radar, with values [tx, rx, velocity, range]
     radar: that of the spectrum
     fold: whole number; the velocities of the result are those assumed, v + 2 fold v_max in m/s

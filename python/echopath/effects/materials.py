@@ -1,10 +1,14 @@
 """Whether materials by name have their values at the frequency of the radar."""
 from __future__ import annotations
 
+import numpy as np
+
 from ..arguments.names import first_names
 from ..base.materials import LIBRARY_FREQUENCY, is_near_library, materials
 from ..scene.adapted_materials import as_in, library_name
 from .rules import Case, rule
+
+ALIKE = 0.02  # share by which values may differ, as they do a hundredth of the frequency beside
 
 
 @rule("materials over frequency")
@@ -26,6 +30,18 @@ def _over_frequency(case: Case):
 
 
 def _in_none_of(libraries: list, named: list) -> list[str]:
-    """Names of materials that none of the libraries has so, in order. named: [(name, Material)]"""
+    """Names of materials that none of the libraries has alike, in order. named: [(name, Material)]"""
     return sorted({name for name, material in named
-                   if all(material != as_in(library, name, material.mirror) for library in libraries)})
+                   if not any(_are_alike(material, as_in(library, name, material.mirror)) for library in libraries)})
+
+
+def _are_alike(one, other) -> bool:
+    mine, theirs = _numbers(one), _numbers(other)
+    return mine.shape == theirs.shape and np.allclose(mine, theirs, rtol=ALIKE, atol=0.0)
+
+
+def _numbers(material) -> np.ndarray:
+    """What laws over frequency change of a material."""
+    layers = [layer.permittivity for layer in material.layers]
+    values = [material.permittivity or 0.0, material.roughness_height, material.backscatter_share, *layers]
+    return np.array(values, complex).view(float)

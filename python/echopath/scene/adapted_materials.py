@@ -11,10 +11,10 @@ from .scene import Scene, changed_scene
 def adapt_materials(scene: Scene, radar: _core.Radar) -> tuple[str, ...]:
     """Gives materials by name their values at the middle of the radar's band, in the place of those at 77 GHz.
 
-    These are the materials of `ep.materials` that were given by their name or as they are there, by actors and readers, too,
-    and the same as mirrors. What was made of them by other changes, as a roughness of one's own, stays as it is:
-    `ep.materials.at(frequency)` has them to start from, and `frequency` beside `base` in a table of a scene file. Names are
-    kept, from which a second call, for another radar, starts again.
+    These are the materials of `ep.materials` that were given by their name or as they are there or in `ep.materials.at`, by
+    actors and readers, too, and those at 77 GHz as mirrors. What was made of them by other changes, as a roughness of one's
+    own, stays as it is: `ep.materials.at(frequency)` has them to start from, and `frequency` beside `base` in a table of a
+    scene file. Names are kept, from which a second call, for another radar, starts again.
 
     scene: is changed
     radar: its waveform says the frequency

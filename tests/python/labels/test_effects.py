@@ -199,6 +199,14 @@ def test_materials_of_another_radar_are_named():
     assert found(scene)["materials over frequency"].modelled
 
 
+def test_materials_of_a_frequency_go_with_radars_right_beside_it():
+    """Those of ep.materials.at and of models that were read for 24 GHz, before a radar from 24 to 24.15 GHz."""
+    scene, low = make_scene(ep.materials.at(24e9)["snow"]), make_radar().replace(waveform=LOW)
+    assert found(scene, low)["materials over frequency"].modelled
+    assert not found(scene, low.replace(waveform=LOW.replace(start_frequency=26e9)))["materials over frequency"].modelled
+    assert not found(scene)["materials over frequency"].modelled
+
+
 def test_every_rule_has_a_case():
     assert set(CASES) == {rule.name for rule in rules.RULES}
 

@@ -129,6 +129,17 @@ def test_a_whole_scene_gets_the_values_at_its_radar():
     assert scene["person/head"].material == ep.materials.at(24e9)["skin"]
 
 
+def test_what_was_read_for_another_frequency_gets_the_values_at_the_radar(tmp_path):
+    """Models that were read for 24 GHz lost their names, so that the values stayed before a radar at 60 GHz, and nothing told."""
+    (tmp_path / "wall.obj").write_text("v 5 0 0\nv 5 1 0\nv 5 0 1\nusemtl itu_concrete\nf 1 2 3\n", encoding="utf-8")
+    scene = ep.Scene()
+    scene.add(ep.load_model(tmp_path / "wall.obj", frequency=24e9), name="wall")
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material=ep.materials.at(24e9)["skin"])
+    assert {mesh.material_name for mesh in scene.meshes} == {"concrete", "skin"}
+    ep.adapt_materials(scene, radar_at(60e9))
+    assert {mesh.material for mesh in scene.meshes} == {ep.materials.at(60e9)[name] for name in ("concrete", "skin")}
+
+
 class ReadScene(ep.Scene):
     """Counts how often all of its nodes are read."""
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 from typing import Any
 
 from ... import _core
@@ -60,8 +60,10 @@ class MaterialLibrary(Mapping[str, _core.Material]):
         return self._entry(name)[1]
 
     def name_of(self, material: object) -> str:
-        """The name under which this very object is in the library, "" for any other."""
-        return next((name for name, (known, _) in self._entries.items() if known is material), "")
+        """The name under which this very object is in the library, or in one of those of `at` that were asked for last, "" for
+        any other."""
+        return next((name for library in (self, *tuple(_kept.values())) for name, (known, _) in library._entries.items()
+                     if known is material), "")
 
     def __repr__(self) -> str:
         return f"materials({', '.join(self)})"
@@ -79,9 +81,15 @@ class MaterialLibrary(Mapping[str, _core.Material]):
                 for name, table in _tables().items()}
 
 
-@lru_cache(maxsize=KEPT)
+_kept: dict[float, MaterialLibrary] = {}  # by frequency in Hz, what was asked for last at the end
+
+
 def _library_at(frequency: float) -> MaterialLibrary:
-    return MaterialLibrary(frequency)
+    library = _kept.pop(frequency, None)
+    _kept[frequency] = MaterialLibrary(frequency) if library is None else library
+    if len(_kept) > KEPT:
+        _kept.pop(next(iter(_kept)))
+    return _kept[frequency]
 
 
 @cache

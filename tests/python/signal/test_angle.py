@@ -355,8 +355,11 @@ def test_carriers_of_their_own_turn_echoes_between_range_cells_as_those_within(d
     radar, toward = radar_that_hops(), np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     cube = ep.point_targets(radar, positions=[distance * toward], velocities=[speed * toward], rcs=1e3)
     spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=1), radar)
-    found = ep.detect(spectrum, radar, false_alarm_rate=1e-9, angles=settings)
-    assert found.azimuth[found.power.argmax()] == pytest.approx(azimuth, abs=OF_CARRIERS)
+    for one, beams in ((spectrum, False), (spectrum, True), (ep.compensate_tdm(spectrum, radar), False)):
+        found = ep.detect(one, radar, false_alarm_rate=1e-9, angles=settings, beams=beams)
+        strongest = found.power.argmax()
+        assert found.azimuth[strongest] == pytest.approx(azimuth, abs=OF_CARRIERS)
+        assert found.range[strongest] == pytest.approx(distance + 0.5 * speed * radar.frame_duration, abs=0.01)
     if distance != 7.4:  # which lies near the middle of its cell
         assert abs(ep.estimate_angles(spectrum, radar, cells=[strongest_cell(spectrum)]).azimuth[0] - azimuth) > 0.02
     shown = distance + speed * (0.5 * radar.frame_duration + 77.25e9 / radar.waveform.slope)

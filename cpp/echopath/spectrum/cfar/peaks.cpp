@@ -42,13 +42,18 @@ class CellPlaces {
 // Reads the channels of cells, and their power.
 class ChannelReader {
  public:
-  ChannelReader(const RangeDoppler& map, const CellPlaces& places, const CfarResult& found)
-      : map_(map), places_(places), power_(found.power) {}
+  ChannelReader(const RangeDoppler& map, const Radar& radar, const CellPlaces& places, const CfarResult& found)
+      : map_(map), places_(places), power_(found.power),
+        taken_turns_(map.is_tdm_compensated ? carrier_turns(radar) : std::vector<double>()) {}
 
-  Fields fields(int64_t, const Cell&, const Cell& other) const {
+  Fields fields(int64_t, const Cell& cell, const Cell& other) const {
     Fields values(map_.num_transmitters * map_.num_receivers);
     for (size_t c = 0; c < values.size(); ++c)
       values[c] = map_.values[static_cast<int64_t>(c) * places_.num_cells() + places_.place(other)];
+    if (taken_turns_.empty()) return values;
+    // Phases of carriers were taken out by the range of each cell; the echo of one has that of its own in its neighbours.
+    const double away = map_.range[other[1]] - map_.range[cell[1]];
+    for (size_t c = 0; c < values.size(); ++c) values[c] *= std::polar(1.0, taken_turns_[c / map_.num_receivers] * away);
     return values;
   }
   double power(int64_t, const Cell&, const Cell& other) const { return power_[places_.place(other)]; }
@@ -58,20 +63,21 @@ class ChannelReader {
   const RangeDoppler& map_;
   const CellPlaces& places_;
   const std::vector<double>& power_;
+  const std::vector<double> taken_turns_;  // [tx] rad/m, of carriers (tdm.h) that the map was compensated for; empty: none
 };
 
 // Reads the beam in which a cell was found, also in other cells.
 class BeamReader {
  public:
   BeamReader(const RangeDoppler& map, const Radar& radar, const CellPlaces& places, const CfarResult& found)
-      : array_(virtual_array(radar)), reader_(map, array_, radar, Overlaps::kAverage, true), places_(places),
+      : map_(map), array_(virtual_array(radar)), reader_(map, array_, radar, Overlaps::kAverage, true), places_(places),
         directions_(found.beams) {}
 
   Fields fields(int64_t index, const Cell& cell, const Cell& other) const {
     Eigen::MatrixXcd values(reader_.num_elements(), 1);
-    // The echo of the cell lies in its neighbours, too, with the phase between slots of its own velocity.
+    // The echo of the cell lies in its neighbours, too, with the phases between slots of its own velocity and range.
     const double turns = static_cast<double>(cell[0] - other[0]) / static_cast<double>(places_.num_velocities());
-    reader_.read(other[0], other[1], 1, values, {turns, {}});
+    reader_.read(other[0], other[1], 1, values, {turns, map_.range[cell[1]]});
     return {of_elements(index).cwiseProduct(values.col(0)).sum()};
   }
   double power(int64_t index, const Cell& cell, const Cell& other) const {
@@ -87,6 +93,7 @@ class BeamReader {
     return steering_vectors(array_, {directions_[index]}).col(0).conjugate() / static_cast<double>(reader_.num_elements());
   }
 
+  const RangeDoppler& map_;
   const VirtualArray array_;
   const ElementReader reader_;
   const CellPlaces& places_;
@@ -201,7 +208,7 @@ Peaks find_peaks(const RangeDoppler& map, const Radar& radar, const CfarResult& 
   require(found.power.size() == map.velocity.size() * map.range.size(), "found", "must be of the spectrum's cells",
           found.power.size());
   const CellPlaces places(map, !radar.waveform.real);
-  if (found.num_beams == 0) return peaks_of(map, radar, found, places, ChannelReader(map, places, found), job);
+  if (found.num_beams == 0) return peaks_of(map, radar, found, places, ChannelReader(map, radar, places, found), job);
   return peaks_of(map, radar, found, places, BeamReader(map, radar, places, found), job);
 }
 

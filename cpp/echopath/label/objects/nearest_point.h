@@ -7,8 +7,7 @@
 
 namespace echopath {
 
-// Finds the nearest point of objects. The boxes about runs of triangles tell which of these need not be looked at, and they
-// are most of them.
+// Finds the nearest point of objects, mesh by mesh, the one with the nearest box first (scene/mesh/nearest_of_runs.h).
 class NearestPoints {
  public:
   // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose.

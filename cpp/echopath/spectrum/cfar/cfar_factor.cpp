@@ -202,7 +202,8 @@ double falls_through_zero(const std::function<double(double)>& function, double 
 
 // Returns the tilt of a sum over cells that falls as the probability of a false alarm does, of a cell beyond alpha times the
 // statistic, where false alarms are likeliest: at the mean s of the cells at which s times that probability is the greatest.
-// The mean of d free cells has the density s^(d n) e^(-d s) for n channels. `over_mean` is what the statistic is over the mean.
+// The mean of d free cells has the density s^(d n) e^(-d s) for n channels. `over_mean` is what the statistic is over the
+// mean.
 double tilt_of(double num_cells, double free_cells, double alpha, double over_mean, int num_channels) {
   const double steepness = alpha * over_mean;
   const double mean = falls_through_zero([&](double s) {

@@ -9,11 +9,12 @@
 
 namespace echopath {
 
-// Holds the powers of the cells of the window's rectangle, summed over the channels, for cells of unit mean power per channel.
+// Holds the powers of the cells of the window's rectangle, summed over the channels, for cells of unit mean power per
+// channel.
 using CellPowers = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Noise that is tilted by e^{-tilt times the sum of the powers of some cells} is Gaussian again, of covariance (1 + tilt B)^-1
-// with B the quadratic form of the sum.
+// Noise that is tilted by e^{-tilt times the sum of the powers of some cells} is Gaussian again, of covariance (1 + tilt
+// B)^-1 with B the quadratic form of the sum.
 struct TiltedNoise {
   Eigen::LLT<Eigen::MatrixXd> root;  // of 1 + tilt B
   double log_mean = 0.0;             // of e^{-tilt times the sum} over the noise

@@ -20,8 +20,8 @@ struct TiltedGroup {
   double tilt = 0.0;
 };
 
-// Returns `count` draws from a mixture over groups, in equal shares; weights undo it exactly. Draws are always the same and do
-// not depend on the number of threads. Raises Cancelled.
+// Returns `count` draws from a mixture over groups, in equal shares; weights undo it exactly. Draws are always the same and
+// do not depend on the number of threads. Raises Cancelled.
 std::vector<TrainingDraw> draws_of_groups(const CfarDesign& design, const TrainingNoise& noise,
                                           const std::vector<TiltedGroup>& groups, int count, Job* job);
 

@@ -76,11 +76,12 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         Where the strongest edge stands out of the noise of a cell of the map, those 40 dB below that noise are left out.
         Dielectrics, and meshes that deform or change their scale, have none. "auto": where the strongest edge, were nothing
         in its way, stands out of the noise of a cell of the map; `paths.effects` says how strong it is
-    faint_power: W; of diffuse paths that carry at most a quarter of it, one in 4, 16 or 64 is kept at random, with the power of
-        all (`paths.frame.statistics.num_faint_paths` were left out): the expected power of every cell stays what it is, and
-        cells that are stronger than a few faint paths fluctuate as with all of them. 0: all paths are kept; "auto": a fortieth
-        of the noise of a cell of the map, once all channels of the array are added in phase. "auto" saves most of the time of
-        signals and labels where rough bodies stand among mirrors, and is not for levels below the noise
+    faint_power: W; of diffuse paths that carry at most a quarter of it, one in 4, 16 or 64 is kept at random, with the power
+        of all (`paths.frame.statistics.num_faint_paths` were left out): the expected power of every cell stays what it is, but
+        for what several paths over one hit add in phase that are no reversals of each other, and cells that are stronger than
+        a few faint paths fluctuate as with all of them. 0: all paths are kept; "auto": a fortieth of the noise of a cell of
+        the map, once all channels of the array are added in phase. "auto" saves most of the time of signals and labels where
+        rough bodies stand among mirrors, and is not for levels below the noise
     effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"
         (of `simulate`); those that are left out are "auto", on where the weather has them
     settings: TraceSettings that give the keywords which the call leaves out, or None

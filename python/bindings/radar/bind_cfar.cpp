@@ -146,7 +146,8 @@ void bind_cfar(py::module_& m) {
           "are")
       .def_readonly("num_beams", &CfarResult::num_beams, "in which each cell was tested, 0: its channels were summed")
       .def_property_readonly(
-          "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); }, "\"ca\", \"os\", \"go\" or \"so\"")
+          "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); },
+          "\"ca\", \"os\", \"go\" or \"so\"")
       .def_property_readonly(
           "false_alarm_rate", [](const CfarResult& self) { return self.design.false_alarm_rate; }, "of one cell")
       .def_property_readonly(

@@ -19,6 +19,8 @@ VIEWS = ("radar", "world")
 SIZE = 6.6, 5.4      # inches
 COLOUR = "0.25"      # of all: their names tell them apart, also over the colours of detections
 RIM = 2.5            # points, white around what is dark: maps from above are dark themselves
+RIMS, LINES = 2.0, 2.1  # orders of drawing: all rims lie below all lines, which they would cut into dashes where boxes overlap
+HEAD = 10.0          # points, of arrows
 WAY = 1.0            # s, whose way an arrow shows
 SHORTEST = 0.1       # m, of arrows: what stands has none
 MOST_NAMES = 30      # beside boxes, of those that the radar sees most of; more would hide one another
@@ -60,18 +62,35 @@ def _draw_object(ax, rows, view: str, label: str | None) -> None:
     in_radar = view == "radar"
     corners = rows.corners_in_radar if in_radar else rows.corners
     centre = rows.position_in_radar if in_radar else rows.position
-    way, look = _ways(rows, view), {"color": COLOUR, "path_effects": _rim()}
-    ax.plot(centre[:, 1], centre[:, 0], "-", linewidth=0.6, **look)
-    for box, middle, along, share in zip(corners, centre, way, rows.visible_share):
-        for face in FACES:
-            ax.plot(box[face, 1], box[face, 0], "-" if share > 0.0 else "--", linewidth=1.0, **look)
+    way = _ways(rows, view)
+    faces = [(box[face, 1::-1], "-" if share > 0.0 else "--", 1.0)
+             for box, share in zip(corners, rows.visible_share) for face in FACES]
+    _draw_lines(ax, [(centre[:, 1::-1], "-", 0.6), *faces])
+    for middle, along in zip(centre, way):
         if np.hypot(*along[:2]) > SHORTEST:
-            ax.annotate("", middle[1::-1] + along[1::-1], middle[1::-1], annotation_clip=False,
-                        arrowprops={"arrowstyle": "->", "shrinkA": 0.0, "shrinkB": 0.0, **look})
+            _draw_arrow(ax, middle[1::-1], (middle + along)[1::-1])
     ax.update_datalim(np.stack([centre + way, centre])[..., 1::-1].reshape(-1, 2))
     if label is not None:
         ax.annotate(label, centre[-1, 1::-1], xytext=(5, 5), textcoords="offset points", color="0.1", fontsize=7,
                     path_effects=_rim())
+
+
+def _draw_lines(ax, lines: list) -> None:
+    """Lines of points [N, 2], each with its style and its width in points, above white ones."""
+    from matplotlib.collections import LineCollection
+
+    rims = LineCollection([points for points, *_ in lines], colors="white", linewidths=RIM, zorder=RIMS)
+    ax.add_collection(rims, autolim=False)
+    for points, style, width in lines:
+        ax.plot(*points.T, style, linewidth=width, color=COLOUR, zorder=LINES)
+
+
+def _draw_arrow(ax, begin, end) -> None:
+    from matplotlib.patches import FancyArrowPatch
+
+    shape = {"arrowstyle": "->", "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": HEAD}
+    ax.add_artist(FancyArrowPatch(begin, end, color="white", linewidth=RIM, zorder=RIMS, **shape))
+    ax.annotate("", end, begin, annotation_clip=False, zorder=LINES, arrowprops={"color": COLOUR, **shape})
 
 
 def _rim() -> list:

@@ -399,12 +399,40 @@ def test_the_truth_of_files_without_directions_in_the_radar_tells_of_no_arrows(f
 
 
 def test_the_boxes_of_the_truth_stand_out_of_a_dark_map(frame, ax):
-    """Each stroke has white beside it, as the darkest colours of a map are black."""
-    frame.range_azimuth.plot(ax=ax)
-    drawn = list(ax.lines)
+    """Beside each stroke is white, as the darkest colours of a map are black."""
+    ax.set_facecolor("black")
     frame.truth.plot(ax=ax)
-    new = [line for line in ax.lines if line not in drawn]
-    assert new and all(line.get_path_effects() for line in new)
+    drawn = painted(ax)
+    for line in ax.lines:
+        for row, column in pixels(ax, line.get_xydata()):
+            assert drawn[row - 3:row + 4, column - 3:column + 4].max() > 0.8
+
+
+def test_boxes_of_frames_in_a_row_do_not_cut_each_other_into_dashes(ax):
+    """What is dashed says that the radar sees nothing of a box, while it sees this one in each frame, 0.4 m farther each."""
+    scene, radar = ep.Scene(), build_radar(num_samples=64, num_chirps=4)
+    scene.add(ep.actors.box((2.0, 1.0, 1.0)), name="box", position=(9.0, 0.5, 0.0), material="metal", speed=4.0)
+    truth = ep.truth([ep.trace(scene, radar, num_rays=200, start_time=start) for start in (0.0, 0.1, 0.2)])
+    ax.figure.set_dpi(300)
+    truth.plot(ax=ax)
+    drawn = painted(ax)
+    along = np.linspace(8.1, 10.7, 200)  # m, from the rear of the first box to the front of the last
+    assert np.all(truth.visible_share > 0.0)
+    for side in (0.0, 1.0):
+        assert all(drawn[row, column - 3:column + 4].min() < 0.6
+                   for row, column in pixels(ax, np.stack([np.full_like(along, side), along], axis=1)))
+
+
+def painted(ax) -> np.ndarray:
+    """The picture of axes in grey, 0 black to 1 white, [row, column]."""
+    ax.figure.canvas.draw()
+    return np.asarray(ax.figure.canvas.buffer_rgba())[..., :3].mean(axis=-1) / 255.0
+
+
+def pixels(ax, points) -> np.ndarray:
+    """(row, column) of places [N, 2] of axes in their picture."""
+    across, up = ax.transData.transform(points).T
+    return np.stack([ax.figure.bbox.height - up, across], axis=1).astype(int)
 
 
 def test_the_velocity_of_one_chirp_has_no_other_tick_than_its_own(ax):

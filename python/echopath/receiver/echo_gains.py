@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._core import speed_of_light
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RESIDUE
 from .channels import receiver_factors, require_channels, transmitter_factors
 from .filters import NEGATIVE_SHARE, has_filters, response
@@ -18,8 +19,9 @@ class EchoGains:
 
     Model: errors of the chains, of the receivers as the root of their mean square over the frame; the filters at the beat
     frequency of the range, in the first cell at half a bin, because an echo that shows there need not beat at 0, where
-    high-passes let nothing through; the share that the imbalance leaves where it was. Coupling, phase noise and compression
-    count for nothing.
+    high-passes let nothing through, and of leakage, whose sidelobes and what is left of it by a code reach far, at its own
+    frequency everywhere; the share that the imbalance leaves where it was. Coupling, phase noise and compression count for
+    nothing.
     radar: that has the receiver; ranges: [R] m, of the map; start_time: s, of the frame
     of_filters: [R], in the middle of the cells, as that of noise
     """
@@ -30,6 +32,8 @@ class EchoGains:
         self.of_filters = _filter_gains(receiver, radar.waveform, ranges)
         half_bin = 0.5 * radar.waveform.range_resolution
         self._of_echoes = _filter_gains(receiver, radar.waveform, np.maximum(ranges, half_bin))
+        leaked = np.full(len(ranges), 0.5 * speed_of_light * receiver.leakage_delay)
+        self._of_leakage = _filter_gains(receiver, radar.waveform, leaked)
         self._of_receivers = _kept(receiver, radar.waveform) * _mean_of_receivers(receiver, radar, start_time)
         self._of_transmitters = _sizes(transmitter_factors(receiver, radar), len(radar.transmitters))
 
@@ -38,8 +42,9 @@ class EchoGains:
 
         tx, rx, distance: indices of antennas and of cells of range, of shapes that broadcast to that of the result
         """
-        gains = self._of_receivers[rx] * self._of_echoes[distance]
-        return gains * (1.0 if part in _WITHOUT_TRANSMITTERS else self._of_transmitters[tx])
+        of_filters = self._of_leakage if part == LEAKAGE else self._of_echoes
+        of_transmitters = np.ones_like(self._of_transmitters) if part in _WITHOUT_TRANSMITTERS else self._of_transmitters
+        return self._of_receivers[rx] * of_filters[distance] * of_transmitters[tx]
 
 
 def _filter_gains(receiver: Receiver, waveform, ranges) -> np.ndarray:

@@ -72,6 +72,25 @@ def test_leakage_in_the_first_cell_behind_a_high_pass_is_no_noise(labels):
     assert first.any() and np.all(found.snr_db[first] > 40.0) and set(found.part[first]) == {"leakage"}
 
 
+def test_images_far_from_leakage_behind_a_high_pass_are_noise_and_not_leakage():
+    """What "ddm" leaves of the leakage at the ranges of the images is above them before the filter, and far below behind it."""
+    half = 0.00193
+    radar = build_radar([ep.Antenna((0, 4 * m * half, 0)) for m in range(3)], [ep.Antenna((0, n * half, 0)) for n in range(4)],
+                        bandwidth=1e9, num_samples=256, sampling_rate=20e6, num_chirps=64, chirp_interval=20e-6,
+                        transmit_power=0.1, multiplexing="ddm",
+                        receiver=ep.Receiver(leakage_db=np.full((3, 4), -40.0), leakage_delay=0.3e-9, high_pass=[175e3, 350e3],
+                                             iq_gain_db=3.0))
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material="metal", smooth=True, position=(4, 0, 0), speed=-4.0)
+    frame = ep.simulate(scene, radar, num_rays=1000, guard=False, detections=True, parts={"ball": "T 'ball' R"})
+    found, parts = frame.detections, frame.received_parts["parts"]
+    leaked = ep.range_doppler(ep.demultiplex(parts["leakage"], radar), radar)
+    share = np.mean(np.abs(leaked.values) ** 2, axis=(0, 1))[tuple(found.cells.T)] / found.power
+    is_image = np.abs(found.range - (radar.waveform.max_range - 3.8)) < 1.0
+    assert is_image.any() and np.all(share[is_image] < 0.01)
+    assert not np.any(found.part[is_image] == "leakage") and found.is_noise[is_image].all()
+
+
 def test_parts_and_labels_without_paths_are_told_when_the_frame_begins(spheres):
     """By then gains have drifted by 30 dB: echoes as they were at time 0 hold a thousandth of their power."""
     radar, paths, _ = spheres
@@ -133,6 +152,30 @@ def test_echoes_pass_the_filters_at_their_beat_frequencies(real):
     beat[60:] -= radar.waveform.sampling_rate
     assert gains.of_filters == pytest.approx(1.0 / np.sqrt(1.0 + (beat / corner) ** (2 * poles)))
     assert gains.of("", 0, 0, np.arange(len(ranges))) == pytest.approx(gains.of_filters)
+
+
+def test_leakage_passes_the_filters_at_its_beat_frequency_wherever_it_shows():
+    """Its sidelobes, too, beside what the receiver makes of it and two filters of the first order."""
+    corners, delay = (175e3, 350e3), 0.3e-9
+    radar, _ = gains_of()
+    ranges = radar.waveform.range_resolution * np.arange(64)
+    radar, gains = gains_of(ranges, leakage_db=[[-20.0]], leakage_delay=delay, high_pass=corners)
+    of_leakage = gains.of("leakage", 0, 0, np.arange(64))
+    beat = delay * radar.waveform.bandwidth * radar.waveform.sampling_rate / 64
+    assert of_leakage == pytest.approx(np.prod([beat / np.hypot(beat, corner) for corner in corners]))
+    received = ep.range_doppler(ep.receive(np.zeros(signal_shape(radar), complex), radar, seed=None).cube, radar, window="hann")
+    alone = np.abs(leakage_map(radar, "hann", 1).values)
+    assert np.abs(received.values) == pytest.approx(of_leakage * alone, rel=1e-3, abs=1e-4 * alone.max() * of_leakage[0])
+
+
+@pytest.mark.parametrize("part", ["", "leakage", "interference", "residue"])
+def test_each_channel_and_cell_has_a_gain_of_its_own(part):
+    radar = build_radar([ep.Antenna()] * 2, [ep.Antenna()] * 3, num_samples=64, receiver=ep.Receiver(high_pass=[1e6]))
+    gains = EchoGains(radar, radar.waveform.range_resolution * np.arange(64))
+    tx, rx, cells = np.arange(2)[:, None, None], np.arange(3)[:, None], np.arange(1, 5)
+    values = gains.of(part, tx, rx, cells)
+    assert values.shape == (2, 3, 4)
+    assert values[1, 2] == pytest.approx([gains.of(part, 1, 2, cell) for cell in cells])
 
 
 def test_branches_leave_what_they_have_of_echoes_and_real_samples_have_one():

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .names import write_names
 from .style import CURVE_COLOURS, axes_or_new, require_drawable, to_one_scale
 
 if TYPE_CHECKING:
@@ -38,9 +39,9 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
             x, y = one.state[:, :2].T
             ax.plot(y, x, line, color=colour, marker=".", markersize=3, label=_name(one, number) if number in listed else None)
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
-            ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color="0.1")
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title)
         to_one_scale(ax)
+        write_names(ax, [(str(number), tracks.of_track(number).state[-1, 1::-1]) for number in numbers])
         if more:
             ax.plot([], [], " ", label=f"and {more} more")
         if listed:

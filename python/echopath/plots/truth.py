@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arguments.checks import choice, text
 from ..base.text.counts import counted
+from .names import write_names
 from .style import axes_or_new, require_drawable, short_name, to_one_scale
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 from .tracks import X_LABEL, Y_LABEL
@@ -43,11 +44,12 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
     named = _named(truth, names)
     with axes_or_new(ax, *SIZE) as ax:
         for name in names:
-            _draw_object(ax, truth.of_object(name), view, short_name(name) if name in named else None)
+            _draw_object(ax, truth.of_object(name), view)
         ax.autoscale_view()
         across, up = LABELS[view]
         ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names, view))
         to_one_scale(ax)
+        write_names(ax, [(short_name(name), _centres(truth.of_object(name), view)[-1, 1::-1]) for name in names if name in named])
         ax.grid(alpha=0.25)
     return ax
 
@@ -58,10 +60,12 @@ def _named(truth, names) -> set:
     return {names[place] for place in np.argsort(share, kind="stable")[::-1][:MOST_NAMES]}
 
 
-def _draw_object(ax, rows, view: str, label: str | None) -> None:
-    in_radar = view == "radar"
-    corners = rows.corners_in_radar if in_radar else rows.corners
-    centre = rows.position_in_radar if in_radar else rows.position
+def _centres(rows, view: str) -> np.ndarray:
+    return rows.position_in_radar if view == "radar" else rows.position
+
+
+def _draw_object(ax, rows, view: str) -> None:
+    corners, centre = rows.corners_in_radar if view == "radar" else rows.corners, _centres(rows, view)
     way = _ways(rows, view)
     faces = [(box[face, 1::-1], "-" if share > 0.0 else "--", 1.0)
              for box, share in zip(corners, rows.visible_share) for face in FACES]
@@ -70,9 +74,6 @@ def _draw_object(ax, rows, view: str, label: str | None) -> None:
         if np.hypot(*along[:2]) > SHORTEST:
             _draw_arrow(ax, middle[1::-1], (middle + along)[1::-1])
     ax.update_datalim(np.stack([centre + way, centre])[..., 1::-1].reshape(-1, 2))
-    if label is not None:
-        ax.annotate(label, centre[-1, 1::-1], xytext=(5, 5), textcoords="offset points", color="0.1", fontsize=7,
-                    path_effects=_rim())
 
 
 def _draw_lines(ax, lines: list) -> None:
@@ -90,13 +91,7 @@ def _draw_arrow(ax, begin, end) -> None:
 
     shape = {"arrowstyle": "->", "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": HEAD}
     ax.add_artist(FancyArrowPatch(begin, end, color="white", linewidth=RIM, zorder=RIMS, **shape))
-    ax.annotate("", end, begin, annotation_clip=False, zorder=LINES, arrowprops={"color": COLOUR, **shape})
-
-
-def _rim() -> list:
-    from matplotlib.patheffects import withStroke
-
-    return [withStroke(linewidth=RIM, foreground="white")]
+    ax.annotate("", end, begin, annotation_clip=False, arrowprops={"color": COLOUR, **shape})
 
 
 def _title(truth, names, view: str) -> str:

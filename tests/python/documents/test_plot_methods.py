@@ -423,6 +423,32 @@ def test_boxes_of_frames_in_a_row_do_not_cut_each_other_into_dashes(ax):
                    for row, column in pixels(ax, np.stack([np.full_like(along, side), along], axis=1)))
 
 
+def test_names_of_objects_side_by_side_are_not_written_over_each_other(ax):
+    """Four poles 2 m apart across, in a picture of 60 m."""
+    scene = ep.Scene()
+    for k in range(4):
+        scene.add(ep.actors.box((0.1, 0.1, 1.0)), name=f"pole_{k}", position=(30.0, 3.0 - 2.0 * k, 0.0), material="metal")
+    scene.add(ep.actors.box((0.1, 0.1, 1.0)), name="far", position=(60.0, 0.0, 0.0), material="metal")
+    ep.truth(ep.trace(scene, build_radar(num_samples=64, num_chirps=4), num_rays=200)).plot(ax=ax)
+    assert_texts_are_apart(ax, 5)
+
+
+def test_numbers_of_tracks_side_by_side_are_not_written_over_each_other(ax):
+    """Tracks end 2 m apart across, in a picture of 60 m: "10" and "11" would read as "1011"."""
+    count = 12
+    state = np.zeros((count, 4))
+    state[:, 0], state[-2:, :2] = 5.0 * np.arange(count), [[30.0, -20.0], [30.0, -22.0]]
+    ep.Tracks(track=np.arange(count, dtype=np.int32), frame=np.zeros(count, int), time=np.zeros(count), state=state,
+              covariance=np.zeros((count, 4, 4)), is_detected=np.ones(count, bool), object=np.full(count, "")).plot(ax=ax)
+    assert_texts_are_apart(ax, count)
+
+
+def assert_texts_are_apart(ax, count: int) -> None:
+    ax.figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in ax.texts if text.get_text()]
+    assert len(boxes) == count and not any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k])
+
+
 def painted(ax) -> np.ndarray:
     """The picture of axes in grey, 0 black to 1 white, [row, column]."""
     ax.figure.canvas.draw()

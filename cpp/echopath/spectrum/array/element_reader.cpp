@@ -47,6 +47,7 @@ Complex ElementReader::carrier(int64_t channel, int64_t range, const EchoPlace& 
 
 void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values,
                          const EchoPlace& echo) const {
+  const bool has_carriers = !turns_of_carrier_.empty();
   for (int64_t element = 0; element < num_elements(); ++element) {
     const double share = 1.0 / static_cast<double>(first_[element + 1] - first_[element]);
     for (int64_t entry = first_[element]; entry < first_[element + 1]; ++entry) {
@@ -55,8 +56,7 @@ void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::
       const Complex* row = map_.values.data() + (channel * num_velocities_ + velocity) * num_ranges_ + first;
       const bool is_first = entry == first_[element];
       for (int64_t i = 0; i < count; ++i) {
-        const Complex value =
-            turns_of_carrier_.empty() ? factor * row[i] : factor * carrier(channel, first + i, echo) * row[i];
+        const Complex value = has_carriers ? factor * carrier(channel, first + i, echo) * row[i] : factor * row[i];
         values(element, i) = is_first ? value : values(element, i) + value;
       }
     }

@@ -190,25 +190,15 @@ double mean_statistic(const std::vector<TrainingDraw>& draws) {
   return sum / static_cast<double>(draws.size());
 }
 
-// Returns the x in (0, most] where a decreasing function falls through 0.
-double falls_through_zero(const std::function<double(double)>& function, double most) {
-  double low = 0.0, high = most;
-  for (int halving = 0; halving < 100; ++halving) {
-    const double middle = 0.5 * (low + high);
-    (function(middle) > 0.0 ? low : high) = middle;
-  }
-  return high;
-}
-
 // Returns the tilt of a sum over cells that falls as the probability of a false alarm does, of a cell beyond alpha times the
 // statistic, where false alarms are likeliest: at the mean s of the cells at which s times that probability is the greatest.
 // The mean of d free cells has the density s^(d n) e^(-d s) for n channels. `over_mean` is what the statistic is over the
 // mean.
 double tilt_of(double num_cells, double free_cells, double alpha, double over_mean, int num_channels) {
   const double steepness = alpha * over_mean;
-  const double mean = falls_through_zero([&](double s) {
-    return free_cells * (num_channels / s - 1.0) - steepness * hazard(num_channels, steepness * s);
-  }, num_channels);
+  const double mean = solve_decreasing([&](double s) {
+    return free_cells * num_channels / (s * (free_cells + steepness * hazard(num_channels, steepness * s)));
+  }, 1.0);
   return steepness * hazard(num_channels, steepness * mean) / num_cells;
 }
 
@@ -218,16 +208,16 @@ class DrawnFactor {
   DrawnFactor(const CfarDesign& design, const TrainingNoise& noise)
       : design_(design), noise_(noise),
         cells_are_chosen_(design.method == CfarMethod::kOrderedStatistic && design.cells.num_training() <= kMostChosenFrom) {
-    const auto [first, second] = halves_of_training_cells(design.cells);
-    const Eigen::MatrixXd of_first = noise.form_of_half(0), of_second = noise.form_of_half(1);
     if (design.method == CfarMethod::kOrderedStatistic) {
       groups_ = {{training_cells(design.cells), noise.quadratic_form(design.cells.reach_range())}};
-    } else if (design.method == CfarMethod::kSmallestOf) {
-      groups_ = {{first, of_first}, {second, of_second}};
-    } else {
-      groups_ = {{first, of_first + of_second}};
-      groups_[0].cells.insert(groups_[0].cells.end(), second.begin(), second.end());
+      return;
     }
+    const auto [first, second] = halves_of_training_cells(design.cells);
+    groups_ = {{first, noise.form_of_half(0)}, {second, noise.form_of_half(1)}};
+    if (design.method == CfarMethod::kSmallestOf) return;
+    groups_[0].cells.insert(groups_[0].cells.end(), second.begin(), second.end());
+    groups_[0].form += groups_[1].form;
+    groups_.pop_back();
   }
 
   // Few draws find where false alarms happen, from a first guess on; the last ones come from there.

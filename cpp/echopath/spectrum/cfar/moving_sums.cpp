@@ -1,6 +1,7 @@
 #include "echopath/spectrum/cfar/moving_sums.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "echopath/base/lanes/simd.h"
@@ -37,5 +38,9 @@ void moving_sums(const double* values, int64_t count, int64_t width, double* sum
 }
 
 void add_row(const double* values, int64_t count, double* sum) { run_simd<add>(values, count, sum); }
+
+double span_sum(const double* row, CellSpan span) {
+  return std::accumulate(row + span.first, row + span.first + span.count, 0.0);
+}
 
 }  // namespace echopath

@@ -2,19 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <numeric>
 
 #include "echopath/spectrum/cfar/moving_sums.h"
 
 namespace echopath {
-namespace {
-
-double span_sum(const double* row, CellSpan span) {
-  return std::accumulate(row + span.first, row + span.first + span.count, 0.0);
-}
-
-}  // namespace
-
 TrainingHalves::TrainingHalves(const std::vector<double>& power, int64_t num_velocities, int64_t num_ranges,
                                const CfarWindow& window)
     : power_(power), num_velocities_(num_velocities), num_ranges_(num_ranges), window_(window) {

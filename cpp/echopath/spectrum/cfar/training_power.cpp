@@ -26,13 +26,6 @@ const double* TrainingPower::row(int64_t velocity) const {
   return power_.data() + (velocity + num_velocities_) % num_velocities_ * num_ranges_;
 }
 
-double TrainingPower::span_sum(int64_t velocity, CellSpan span) const {
-  const double* values = row(velocity) + span.first;
-  double sum = 0.0;
-  for (int64_t i = 0; i < span.count; ++i) sum += values[i];
-  return sum;
-}
-
 void TrainingPower::prepare_row(int64_t velocity) {
   const int64_t reach = window_.reach_range(), end = num_ranges_ - reach, training = window_.training_range;
   double *inner = inner_.data() + velocity * num_ranges_, *outer = outer_.data() + velocity * num_ranges_;
@@ -43,7 +36,8 @@ void TrainingPower::prepare_row(int64_t velocity) {
   for (int64_t r = 0; r < num_ranges_; ++r) {
     const bool is_whole = training > 0 && r >= reach && r < end;
     const auto [left, right] = inner_spans(window_, r, num_ranges_);
-    inner[r] = is_whole ? sums[left.first] + sums[right.first] : span_sum(velocity, left) + span_sum(velocity, right);
+    inner[r] =
+        is_whole ? sums[left.first] + sums[right.first] : span_sum(row(velocity), left) + span_sum(row(velocity), right);
   }
 }
 

@@ -28,7 +28,6 @@ class TrainingPower {
   template <class Visit>
   bool visit_spans(int64_t velocity, int64_t range, Visit visit) const;
   const double* row(int64_t velocity) const;
-  double span_sum(int64_t velocity, CellSpan span) const;
 
   const std::vector<double>& power_;
   const int64_t num_velocities_, num_ranges_;

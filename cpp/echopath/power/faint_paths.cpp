@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 #include <string>
 #include <vector>
@@ -68,7 +69,7 @@ int level_of(double power, double faint_power) {
 }
 
 // Draws which of the diffuse paths are kept. The paths of a run, which follow each other in the record, share a random
-// phase: a path and its reversal are in one.
+// phase, and so a number of the lot.
 class Lot {
  public:
   // `power` [places] is that of these paths, W.
@@ -89,7 +90,7 @@ class Lot {
 
  private:
   struct Entry {
-    uint64_t key;
+    uint64_t meshes;
     double power;
     size_t path;
   };
@@ -115,22 +116,23 @@ class Lot {
     entries.clear();
     for (size_t i = begin; i < end; ++i) {
       const auto path = static_cast<size_t>(places_[i]);
-      entries.push_back({key_of(path), power_[i], path});
+      entries.push_back({meshes_of(path), power_[i], path});
     }
-    std::ranges::sort(entries, {}, &Entry::key);
+    std::ranges::sort(entries, {}, &Entry::meshes);
+    const uint64_t hits = diffuse_hits_of(static_cast<size_t>(places_[begin]));
+    const double number = uniform2(paths_.frame.seed, Stream::kFaintPath, hits, 0)[0];
     for (size_t i = 0, next = 0; i < entries.size(); i = next) {
-      while (next < entries.size() && entries[next].key == entries[i].key) ++next;
-      draw_together(std::span(entries).subspan(i, next - i));
+      while (next < entries.size() && entries[next].meshes == entries[i].meshes) ++next;
+      draw_together(std::span(entries).subspan(i, next - i), number);
     }
   }
 
-  // Keeps or leaves out paths of one key, by the strongest of them.
-  void draw_together(std::span<const Entry> entries) {
+  // Keeps or leaves out paths over the same meshes, as the strongest of them asks for.
+  void draw_together(std::span<const Entry> entries, double number) {
     double strongest = 0.0;
     for (const Entry& entry : entries) strongest = std::max(strongest, entry.power);
     const int level = level_of(strongest, paths_.frame.faint_power);
     if (level == 0) return;
-    const double number = uniform2(paths_.frame.seed, Stream::kFaintPath, entries[0].key, 0)[0];
     for (const Entry& entry : entries) {
       keep_[entry.path] = number < 1.0 / static_cast<double>(1 << 2 * level);
       paths_.weight[entry.path] *= static_cast<float>(1 << level);
@@ -138,26 +140,32 @@ class Lot {
     }
   }
 
-  // Returns the number of a path, which is that of the path along the same hits backward, too.
-  uint64_t key_of(size_t path) const {
+  // Returns a number of the meshes of a path in their order, which is that of the path backward, too.
+  uint64_t meshes_of(size_t path) const {
     const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
     const int count = paths_.num_bounces[path];
-    const uint64_t diffuse = paths_.diffuse[path];
     BitSum forward, backward;
     for (int k = 0; k < count; ++k) {
-      const int from_end = count - 1 - k;
-      add(hits[k], diffuse >> k & 1, forward);
-      add(hits[from_end], diffuse >> from_end & 1, backward);
+      forward.add(mesh_keys_[hits[k].mesh_id]);
+      backward.add(mesh_keys_[hits[count - 1 - k].mesh_id]);
     }
     return forward.value() + backward.value();
   }
-  // Meshes go by their names, since objects that come and go change their IDs. Mirrors are told apart by their mesh alone,
-  // because the legs of the transmitter and of the receiver meet them at different points.
-  void add(const Hit& hit, bool is_diffuse, BitSum& sum) const {
-    sum.add(mesh_keys_[hit.mesh_id]);
-    if (!is_diffuse) return;
-    sum.add(place_of(hit));
-    sum.add(hit.triangle_id);
+
+  // Returns a number of the diffuse hits of a path, in whichever order it meets them. Meshes go by their names, since
+  // objects that come and go change their IDs.
+  uint64_t diffuse_hits_of(size_t path) const {
+    const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
+    uint64_t sum = 0;
+    for (uint64_t left = paths_.diffuse[path]; left != 0; left &= left - 1) {
+      const Hit& hit = hits[std::countr_zero(left)];
+      BitSum of_hit;
+      of_hit.add(mesh_keys_[hit.mesh_id]);
+      of_hit.add(place_of(hit));
+      of_hit.add(hit.triangle_id);
+      sum += of_hit.value();
+    }
+    return sum;
   }
 
   // Returns where on its triangle a hit lies, along two of its edges, as they are in the mesh at rest.

@@ -9,6 +9,7 @@
 #include "cpp/support/scenes.h"
 #include "echopath/power/faint_paths.h"
 #include "echopath/power/path_power.h"
+#include "echopath/power/received_power.h"
 
 namespace echopath::test_faint_paths {
 namespace {
@@ -67,6 +68,12 @@ Name name_of(const Paths& paths, int64_t path) {
   return name;
 }
 
+// The diffuse hit of a path.
+Name hit_of(const Paths& paths, int64_t path) {
+  const Hit& hit = paths.hits_of(path)[std::countr_zero(paths.diffuse[static_cast<size_t>(path)])];
+  return {hit.mesh_id, hit.triangle_id, std::bit_cast<uint32_t>(hit.u), std::bit_cast<uint32_t>(hit.v)};
+}
+
 // A name without the plate is returned as it is.
 Name reversed(const Name& name) {
   const auto place = std::find(name.begin(), name.end(), 2u);  // the plate's ID, then where it is hit
@@ -89,8 +96,13 @@ TEST(FaintPaths, KeepTheMeanPower) {
     EXPECT_LT(some.num_paths(), paths.num_paths() * 3 / 4);
     all += sum(path_power(paths));
     kept += sum(path_power(some));
-    // A path of the power p is kept with the power 4^n p in one of 4^n draws, which two paths share at most.
-    for (const double power : path_power(paths)) variance += power < faint / 4.0 ? 2.0 * power * faint : 0.0;
+    // A path of the power p is kept with the power 4^n p <= faint in one of 4^n draws. Those of one hit share a draw.
+    std::map<Name, double> faint_of_hit;
+    const std::vector<double> power = path_power(paths);
+    for (int64_t path = 0; path < paths.num_paths(); ++path)
+      if (power[static_cast<size_t>(path)] < faint / 4.0)
+        faint_of_hit[hit_of(paths, path)] += std::sqrt(power[static_cast<size_t>(path)] * faint);
+    for (const auto& [hit, root] : faint_of_hit) variance += root * root;
   }
   EXPECT_NEAR(kept, all, kFiveSigma * std::sqrt(variance));
   EXPECT_LT(kFiveSigma * std::sqrt(variance), 0.05 * all);  // so that the line above tells something
@@ -164,6 +176,44 @@ TEST(FaintPaths, AreKeptTogetherWithTheirReversals) {
     num_pairs += other != name && all.contains(other);
   }
   EXPECT_GT(num_pairs, 100);
+}
+
+// The mesh IDs of a path in order, whichever way it goes.
+std::vector<uint32_t> meshes_met(const Paths& paths, int64_t path) {
+  std::vector<uint32_t> met;
+  for (int k = 0; k < paths.num_bounces[static_cast<size_t>(path)]; ++k) met.push_back(paths.hits_of(path)[k].mesh_id);
+  std::ranges::sort(met);
+  return met;
+}
+
+// A hand's breadth beside a wall and over a floor, "wall, plate, floor" and "plate, floor, wall" are one length to some 60
+// micrometres (by the square roots of their images), and so are their reversals: four times the sum of their powers arrives.
+TEST(FaintPaths, KeepWhatArrivesInPhaseOverTwoMirrorsInEitherOrder) {
+  Material mirror;
+  mirror.reflectivity = 0.1;
+  mirror.mirror = true;
+  Scene scene;
+  add_rectangle(scene, "wall", {-1, 0.3, -4}, {14, 0, 0}, {0, 0, 8}, share(mirror));
+  add_rectangle(scene, "floor", {-1, -4, -0.3}, {14, 0, 0}, {0, 8, 0}, share(mirror));
+  add_rectangle(scene, "plate", {8, -0.05, -0.05}, {0, 0.1, 0}, {0, 0, 0.1}, lambert(0.3));
+  double in_phase = 0.0, kept = 0.0, alone = 0.0;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    TraceSettings settings = with_rays(kRays);
+    settings.seed = seed;
+    const Paths paths = trace(scene, plain_radar({0, 0, 0}, {0, 0, 0}), settings);
+    std::vector<uint8_t> keep;
+    for (int64_t path = 0; path < paths.num_paths(); ++path)
+      keep.push_back(meshes_met(paths, path) == std::vector<uint32_t>{0, 1, 2});
+    Paths over_both = paths.select(keep);
+    alone += sum(path_power(over_both));
+    in_phase += received_power(over_both).diffuse;
+    over_both.frame.faint_power = 8.0 * largest_power(over_both);  // all are so strong that one in four stands for them
+    const Paths some = thinned(over_both);
+    EXPECT_LT(some.num_paths(), over_both.num_paths() / 3);
+    kept += received_power(some).diffuse;
+  }
+  EXPECT_NEAR(in_phase, 4.0 * alone, 0.02 * in_phase);
+  EXPECT_NEAR(kept, in_phase, 0.05 * in_phase);  // five times sqrt(3 / number of hits)
 }
 
 // What only the second receiver sees is not faint, though the first one is blind there.

@@ -13,6 +13,7 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/power/interval/facet_phase.h"
 #include "echopath/power/interval/mesh_views.h"
+#include "echopath/power/interval/outlines.h"
 #include "echopath/power/interval/row_differences.h"
 #include "echopath/power/interval/triangle_points.h"
 #include "echopath/power/shared_phase.h"
@@ -113,7 +114,7 @@ class Sums {
  public:
   Sums(const Paths& paths, size_t num_groups)
       : paths_(paths), open_(num_groups), rows_(num_groups), steady_rows_(num_groups), triangles_(num_groups),
-        kinds_(num_groups), groups_(num_groups) {
+        pieces_(*paths.scene), outlines_(num_groups), kinds_(num_groups), groups_(num_groups) {
     const auto num_entries = static_cast<size_t>(paths.frame.batches) + 1;
     for (GroupSums& group : groups_) {
       group.field.resize(num_entries);
@@ -171,7 +172,7 @@ class Sums {
       kinds_[group].set_shapes(phases, views, image_at_a_metre, groups_[group].kinds);
       for (const RowDifferences& rows : rows_[group]) groups_[group].even_variance += rows.variance();
       for (const RowDifferences& rows : steady_rows_[group]) groups_[group].steady_variance += rows.variance_of_jumps();
-      groups_[group].even_variance += triangles_[group].variance();
+      groups_[group].even_variance += triangles_[group].variance() + outlines_[group].variance();
     }
     return std::move(groups_);
   }
@@ -211,20 +212,23 @@ class Sums {
   void add_even(size_t group, size_t path, double power) {
     GroupSums& sums = groups_[group];
     sums.lattice_squares += power * power;
+    const Hit& hit = paths_.hits_of(static_cast<int64_t>(path))[std::countr_zero(paths_.diffuse[path])];
     const int place = place_in_lattice(path);
     if (place > 0) {
       rows_[group][rows_index(path)].add(place, power);
     } else if (paths_.frame.scatterers == Scatterers::kSurface) {
-      triangles_[group].add(paths_.hits_of(static_cast<int64_t>(path))[std::countr_zero(paths_.diffuse[path])], power);
+      triangles_[group].add(hit, power);
     } else {
-      sums.outline_squares += power * power;
+      outlines_[group].add(hit.mesh_id, pieces_.of(hit.mesh_id, hit.triangle_id), power);
     }
   }
 
   const Paths& paths_;
   std::vector<OpenHit> open_;
   std::vector<std::array<RowDifferences, 2>> rows_, steady_rows_;  // by group, of hits before and behind a sheet
-  std::vector<TrianglePoints> triangles_;                          // by group, as the next two
+  std::vector<TrianglePoints> triangles_;                          // by group
+  MeshPieces pieces_;
+  std::vector<Outlines> outlines_;  // by group, as the next two
   std::vector<KnownKinds> kinds_;
   std::vector<GroupSums> groups_;
 };

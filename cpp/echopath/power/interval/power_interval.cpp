@@ -21,7 +21,7 @@ constexpr double kOfEndless = 0.03;  // 0.26 dB, of which random polygons of up 
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kFewCells = 600.0;
-constexpr double kOutline = 0.6, kOutlineOfFields = 0.29, kJumpsOfFields = 0.5;
+constexpr double kOutlineOfFields = 0.29, kJumpsOfFields = 0.5;
 
 // Says whether an interval counts what more rays hardly mend.
 enum class Lasting { kCounted, kLeftOut };
@@ -145,9 +145,7 @@ double power_of(const PowerEvidence& evidence, CellViewIndex view) {
 
 // Returns the standard error of the power of one batch, W.
 double chance_of_record(const PowerEvidence& evidence) {
-  const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
-  const double along_outlines = squared(kOutline) * evidence.outline_squares / std::sqrt(num_hits);
-  const double diffuse = evidence.drawn_squares + evidence.even_variance + along_outlines;
+  const double diffuse = evidence.drawn_squares + evidence.even_variance;
   const double num_rays = effective_number(evidence.steady_power, evidence.steady_squares);
   const double unfiltered = power_of(evidence, kUnfiltered);
   const double hard = unfiltered > 0.0 ? std::min(power_of(evidence, kAsLaunched) / unfiltered, 1.0) : 0.0;

@@ -39,9 +39,9 @@ struct PowerEvidence {
   double steady_power = 0.0, steady_squares = 0.0;
   double steady_variance = 0.0;  // W, of the sum of their |a|, where neighbours of a lattice jump (row_differences.h)
   double lattice_squares = 0.0;  // W^2, sum of squares of the powers of diffuse hits that even directions or points found
-  double outline_squares = 0.0;  // W^2, of those among them of which neighbours are not known
-  double even_variance = 0.0;    // W^2, of the sum of the others, by their neighbours (row_differences.h, triangle_points.h)
-  double drawn_squares = 0.0;    // W^2, sum of squares of the powers of those that chance found or kept
+  double even_variance =
+      0.0;  // W^2, of their sum, by neighbours or pieces (row_differences.h, triangle_points.h, outlines.h)
+  double drawn_squares = 0.0;  // W^2, sum of squares of the powers of those that chance found or kept
   int num_batches = 1;
   double standard_error = 0.0;  // W, of coherent + diffuse by the batches; not used for one
   // This is the power, W, that the coherent paths would send back all in phase. It is set where no footprint filter tells
@@ -113,9 +113,10 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // The chance of several batches is their standard error times Student's t, and no less than the error of half a hit in each
 // batch. That of one batch is estimated from the record. Directions drawn at random give the variance sum p^2. A lattice
 // errs where neighbouring rays differ (row_differences.h), and scatterers that stay on their surfaces err by how many of
-// them a triangle has (triangle_points.h). Where neighbours are not known, a lattice is taken to err along one outline of
-// what it meets, so that n equal hits have the variance kOutline^2 sum p^2 / sqrt(n). The same holds for fields with
-// kOutlineOfFields, but less where the filter takes much away, as fields of curved surfaces fade toward their outline.
+// them a triangle has (triangle_points.h). Where neighbours are not known, a lattice is taken to err along the outline of
+// each piece of a mesh (outlines.h), and fields along one outline of all they meet, so that n equal ones have the variance
+// kOutlineOfFields^2 sum |a|^2 / sqrt(n), but less where the filter takes much away, as fields of curved surfaces fade toward
+// their outline.
 // Posts, bars and spokes have more outlines than one, and may send on from a small part of what rays meet: the standard
 // error of a field is at least kJumpsOfFields times that of the sum of |a| by their jumps from ray to ray. Bias and chance
 // add up as the root of their sum of squares, to either side.

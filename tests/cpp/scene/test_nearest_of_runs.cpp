@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "echopath/scene/mesh/nearest_of_runs.h"
+#include "echopath/scene/runs/nearest_of_runs.h"
 
 namespace echopath::test_nearest_of_runs {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "echopath/scene/mesh/nearest_of_runs.h"
+#include "echopath/scene/runs/nearest_of_runs.h"
 
 namespace echopath {
 namespace {

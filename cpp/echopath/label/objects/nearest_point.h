@@ -7,7 +7,7 @@
 
 namespace echopath {
 
-// Finds the nearest point of objects, mesh by mesh, the one with the nearest box first (scene/mesh/nearest_of_runs.h).
+// Finds the nearest point of objects, mesh by mesh, the one with the nearest box first (scene/runs/nearest_of_runs.h).
 class NearestPoints {
  public:
   // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose.

@@ -6,7 +6,7 @@
 #include "echopath/replay/meshes_of_path.h"
 #include "echopath/replay/time/chebyshev_tails.h"
 #include "echopath/replay/time/turn_rates.h"
-#include "echopath/scene/mesh/nearest_of_runs.h"
+#include "echopath/scene/runs/nearest_of_runs.h"
 
 namespace echopath {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "echopath/base/geometry.h"
-#include "echopath/scene/mesh/triangle_runs.h"
+#include "echopath/scene/runs/triangle_runs.h"
 
 namespace echopath {
 

@@ -1,4 +1,4 @@
-#include "echopath/scene/mesh/nearest_of_runs.h"
+#include "echopath/scene/runs/nearest_of_runs.h"
 
 #include <cmath>
 #include <limits>

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "echopath/scene/mesh/triangle_runs.h"
+#include "echopath/scene/runs/triangle_runs.h"
 
 namespace echopath {
 

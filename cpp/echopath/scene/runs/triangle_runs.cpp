@@ -1,4 +1,4 @@
-#include "echopath/scene/mesh/triangle_runs.h"
+#include "echopath/scene/runs/triangle_runs.h"
 
 namespace echopath {
 

@@ -7,7 +7,7 @@
 
 #include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
-#include "echopath/spectrum/cfar/cfar_factor.h"
+#include "echopath/spectrum/cfar_factor/cfar_factor.h"
 #include "echopath/spectrum/range_doppler.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "echopath/spectrum/cfar/cfar_factor.h"
+#include "echopath/spectrum/cfar_factor/cfar_factor.h"
 
 namespace echopath {
 

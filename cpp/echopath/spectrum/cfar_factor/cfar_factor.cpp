@@ -1,4 +1,4 @@
-#include "echopath/spectrum/cfar/cfar_factor.h"
+#include "echopath/spectrum/cfar_factor/cfar_factor.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
-#include "echopath/spectrum/cfar/training_draws.h"
+#include "echopath/spectrum/cfar_factor/training_draws.h"
 #include "echopath/spectrum/cfar/training_noise.h"
 
 namespace echopath {

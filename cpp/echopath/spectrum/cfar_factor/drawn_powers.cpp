@@ -1,4 +1,4 @@
-#include "echopath/spectrum/cfar/drawn_powers.h"
+#include "echopath/spectrum/cfar_factor/drawn_powers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "echopath/spectrum/cfar/training_draws.h"
+#include "echopath/spectrum/cfar_factor/training_draws.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
-#include "echopath/spectrum/cfar/drawn_powers.h"
+#include "echopath/spectrum/cfar_factor/drawn_powers.h"
 
 namespace echopath {
 

@@ -8,7 +8,7 @@ import echopath as ep
 from support.files.scene_text import WAVEFORM
 from support.shapes import lambert
 
-DATA = Path(__file__).resolve().parents[3] / "data" / "antennas"
+DATA = Path(__file__).resolve().parents[4] / "data" / "antennas"
 INTERPOLATION = 2e-3      # of the peak: bicubics on steps of 5 degrees
 WRITTEN = 2e-4            # relative: three decimals of dB
 AZIMUTH = np.radians(np.arange(-90, 91, 5))

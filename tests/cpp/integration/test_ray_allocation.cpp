@@ -108,6 +108,27 @@ TEST(ShareOut, ServesObjectsBeforeImagesAndAddsUp) {
   EXPECT_LT(shares.at("car over wall"), 500.0);
 }
 
+// Of 1000 rays needs take 400, and half of the others go to the cells of "ground": 300, beside 100 of the 400 that share 700.
+TEST(ShareOut, GivesCellsHalfOfWhatNeedsLeave) {
+  RayNeeds needs{{need("ground", 100), need("car", 300)}};
+  needs.strata[0].more_for_cells = 1000.0;
+  const RayShares shares = share_out(needs, 1000.0);
+  EXPECT_NEAR(shares.at("ground") / sum_of(shares), (300.0 + 700.0 * 0.25) / 1000.0, kRounding);
+  needs.strata[0].more_for_cells = 30.0;  // all that it asks for
+  EXPECT_NEAR(share_out(needs, 1000.0).at("ground") / sum_of(share_out(needs, 1000.0)), (30.0 + 970.0 * 0.25) / 1000.0,
+              kRounding);
+}
+
+TEST(ShareOut, GivesCellsASeventhWhereRaysAreTooFew) {
+  RayNeeds needs{{need("ground", 500), need("car", 1500)}};
+  needs.strata[0].more_for_cells = needs.strata[1].more_for_cells = 4000.0;
+  RayNeeds alone = needs;
+  for (RayNeed& one : alone.strata) one.more_for_cells = 0.0;
+  const RayShares shares = share_out(needs, 1000.0), of_needs = share_out(alone, 850.0);
+  EXPECT_NEAR(sum_of(shares), 1000.0, kRounding);
+  for (const auto& [name, share] : shares) EXPECT_NEAR(share, of_needs.at(name) + 75.0, kRounding) << name;
+}
+
 // A metal ball at rest, a rough plate that moves, and a small plate far away, whose echo is weak.
 Paths three_echoes() {
   Scene scene;

@@ -39,9 +39,8 @@ struct PowerEvidence {
   double steady_power = 0.0, steady_squares = 0.0;
   double steady_variance = 0.0;  // W, of the sum of their |a|, where neighbours of a lattice jump (row_differences.h)
   double lattice_squares = 0.0;  // W^2, sum of squares of the powers of diffuse hits that even directions or points found
-  double even_variance =
-      0.0;  // W^2, of their sum, by neighbours or pieces (row_differences.h, triangle_points.h, outlines.h)
-  double drawn_squares = 0.0;  // W^2, sum of squares of the powers of those that chance found or kept
+  double even_variance = 0.0;    // W^2, of the sum of these
+  double drawn_squares = 0.0;    // W^2, sum of squares of the powers of those that chance found or kept
   int num_batches = 1;
   double standard_error = 0.0;  // W, of coherent + diffuse by the batches; not used for one
   // This is the power, W, that the coherent paths would send back all in phase. It is set where no footprint filter tells

@@ -11,6 +11,7 @@
 #include "echopath/power/received_power.h"
 #include "echopath/radar/noise_power.h"
 #include "echopath/sim/rays/beam_foci.h"
+#include "echopath/sim/rays/hits_per_cell.h"
 #include "echopath/sim/rays/plan_foci.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/strata/fitted_strata.h"
@@ -25,6 +26,8 @@ constexpr double kMovingTarget = 0.25;            // of the target: what moves i
 constexpr double kImageWeight = 0.5;              // beside that of the target
 constexpr double kObjectsFirst = 0.65;            // of the rays, where they are too few for objects and images
 constexpr double kServedFirst = 0.75;             // of the rays of either
+constexpr double kForCells = 0.15;                // of the rays, at most, where needs leave no more
+constexpr double kLeftForCells = 0.5;             // of the rays that needs leave
 constexpr double kPlannedDb = 0.8 * kResolvedDb;  // a margin: what a pilot foretells may come out larger
 constexpr double kFocusFieldShare = 0.1;          // of the field of view, at least, where it has a focus and is not resolved
 constexpr int64_t kPilotDivisor = 8;
@@ -35,8 +38,13 @@ double sum_of(const RayShares& shares) {
                          [](double sum, const auto& share) { return sum + share.second; });
 }
 
-// Returns the received power of each stratum with its foci.
-std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
+// Holds what is received of each stratum with its foci.
+struct StrataPowers {
+  std::vector<ReceivedPower> powers;
+  std::vector<double> growth_by_cells;
+};
+
+StrataPowers power_of_strata(const Paths& paths, bool counts_cells, Job* job) {
   const size_t num_strata = paths.frame.strata.size();
   std::vector<uint32_t> group(paths.stratum.size());
   std::ranges::transform(paths.stratum, group.begin(), [&](uint16_t stratum) {
@@ -44,7 +52,14 @@ std::vector<ReceivedPower> power_of_strata(const Paths& paths, Job* job) {
     const Stratum& of = paths.frame.strata[stratum];
     return static_cast<uint32_t>(of.is_focus() ? of.focus_of : stratum);
   });
-  return received_powers(paths, Sorting{group, num_strata + 1}, job);
+  const Sorting sorting{group, num_strata + 1};
+  if (!counts_cells || paths.frame.scatterers == Scatterers::kSurface)
+    return {received_powers(paths, sorting, job), std::vector<double>(sorting.num_groups, 0.0)};
+  PowerAndLength of_paths;
+  StrataPowers found;
+  found.powers = received_powers(paths, std::span(&sorting, 1), job, {}, &of_paths)[0];
+  found.growth_by_cells = growth_by_cells(paths, group, sorting.num_groups, of_paths.power, kMaxGrowth, job);
+  return found;
 }
 
 double strongest_of(const std::vector<ReceivedPower>& powers) {
@@ -74,8 +89,9 @@ double growth_of(double missing_db, double target_db, RayLaw law) {
   return (std::pow(10.0, 0.1 * missing_db) - 1.0) / (std::pow(10.0, 0.1 * target_db) - 1.0);
 }
 
-// `least` is the growth of what needs no more rays.
-RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double growth, double least) {
+// `growth` is that of the error, `by_cells` that of hits in cells, and `least` that of what needs no more rays.
+RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double growth, double by_cells,
+                double least) {
   RayNeed need;
   need.stratum = stratum.name;
   need.echo = {power.power, power.high_of_rays};
@@ -87,6 +103,7 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   else num_rays = std::max(num_rays, static_cast<double>(LaunchPlan::kFewestRays));
   need.is_bounded = growth < kMaxGrowth;
   need.rays = growth * num_rays;
+  need.more_for_cells = std::max(by_cells - growth, 0.0) * num_rays;
   return need;
 }
 
@@ -174,7 +191,7 @@ double RayNeeds::num_rays() const {
 }
 
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still, Job* job) {
-  const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
+  const auto [powers, by_cells] = power_of_strata(paths, wanted.counts_cells, job);
   const double floor =
       wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
   const double least = std::max(floor, wanted.least_power);
@@ -188,7 +205,7 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRay
     const bool is_moving = stratum.object >= 0 && moves[stratum.object];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
     const double growth = growth_of(missing, target, wanted.law);
-    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth, wanted.least_growth));
+    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth, by_cells[k], wanted.least_growth));
     needs.strata.back().is_resolved = missing <= target || powers[k].high_of_rays <= least;
     if (powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
@@ -196,11 +213,19 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRay
 }
 
 RayShares share_out(const RayNeeds& needs, double num_rays) {
+  double asked_for_cells = 0.0;
+  for (const RayNeed& need : needs.strata) asked_for_cells += need.more_for_cells;
+  const double most_for_cells = std::max(kForCells * num_rays, kLeftForCells * (num_rays - needs.num_rays()));
+  const double to_cells = std::min(asked_for_cells, most_for_cells), left = num_rays - to_cells;
   const double of_objects = rays_of(needs, false), of_images = rays_of(needs, true);
-  const double to_objects = std::min(of_objects, std::max(kObjectsFirst * num_rays, num_rays - of_images));
+  const double to_objects = std::min(of_objects, std::max(kObjectsFirst * left, left - of_images));
   RayShares shares;
   share_out_among(needs, false, to_objects, shares);
-  share_out_among(needs, true, num_rays - to_objects, shares);
+  share_out_among(needs, true, left - to_objects, shares);
+  if (to_cells == 0.0) return shares;
+  const double per_ray = sum_of(shares) / left / asked_for_cells * to_cells;  // shares that do not add up are stretched
+  for (const RayNeed& need : needs.strata)
+    if (need.more_for_cells > 0.0) shares.at(need.stratum) += per_ray * need.more_for_cells;
   return shares;
 }
 
@@ -240,7 +265,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
     return trace(seen, radar, launch, &unseen, geometry, strata);
   };
   const auto guide_by = [&](const Paths& pilot, int64_t num_rays, const StillRays& still) {
-    const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower};
+    const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower, .counts_cells = true};
     return guide_rays(pilot, ray_needs(pilot, wanted, still, &unseen), num_rays, still, &unseen);
   };
   const auto still = still_rays(*scene, radar, settings, kept_still, [&](const SceneSnapshot& standing) {

@@ -15,6 +15,7 @@ namespace echopath {
 struct RayNeed {
   std::string stratum;  // its name
   double rays = 0.0;
+  double more_for_cells = 0.0;  // rays that the cells of the map ask for beyond these (hits_per_cell.h)
   KnownEcho echo;
   bool is_resolved = true;  // to the target, or below the floor
   double weight = 1.0;      // of images, below that of objects
@@ -39,6 +40,7 @@ struct WantedError {
   EchoFloor floor = EchoFloor::kStrongest;
   double least_power = 0.0;  // W, below which no echo matters, whatever the floor
   RayLaw law = RayLaw::kByDecibels;
+  bool counts_cells = false;  // whether the cells of the map ask for rays, too (hits_per_cell.h)
   // Echoes that are known better give back all of their rays but this share; 1: none, so that what is known stays known.
   double least_growth = 1.0 / 16.0;
 };
@@ -55,14 +57,16 @@ struct RayNeeds {
 // to a quarter of it. The interval of a coherent echo falls about with the rays, that of a diffuse one with their root; both
 // get rays in proportion to the error over the target, within a factor of kMaxGrowth. An echo that is known better gives
 // rays back, down to WantedError::least_growth; a stratum that sends nothing back keeps a quarter, or that if it is more.
-// One that was too small to have rays is counted as if it had the fewest that a stratum has. Raises Cancelled.
+// One that was too small to have rays is counted as if it had the fewest that a stratum has. Cells ask for nothing where
+// points stay on their surfaces (Scatterers::kSurface), since rays have no part in these. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still = {}, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 
 // Returns the shares of `num_rays` rays. Where they are too few, what the radar sees itself is served before images, up to
 // kObjectsFirst of the rays. Among either, needs that are bounded are served in full, the smallest first, up to three
 // quarters of their rays, so that as many as possible get what they need. The others share what is left by their weights,
-// but no bounded need gets more than it asks while another lacks rays.
+// but no bounded need gets more than it asks while another lacks rays. Cells of the map get what they ask for beyond that, up
+// to half of what the needs leave, or 15 % of the rays if that is more.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints

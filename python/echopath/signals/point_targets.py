@@ -45,7 +45,8 @@ def point_targets(radar: _core.Radar, positions: ArrayLike | Callable[[float], A
     positions: [N, 3] in m, in the world at time 0, or a function of the time in s that returns them, for any motion
     rcs: [N] or one for all, in m^2, 0 or more: echoes that fade are drawn by the caller
     velocities: [N, 3] or [3] for all, in m/s, beside positions that are no function; None: at rest
-    phases: [N] or one for all, in rad, of the echoes beside those of their ways; None: 0
+    phases: [N] or one for all, in rad, by which the fields are ahead as they leave the targets; None: 0. The signal, whose phase
+        grows with the way, has them with the other sign: a target that comes nearer by d is as one of the phase 4 pi d/wavelength
     start_time: s, within 1e9 s of zero: the first sample of the frame
     Returns the cube of `synthesize` for that radar, complex128 in sqrt(W): before `demultiplex` where transmitters send at once.
     Takes some 0.2 us of a processor for each target, chirp and channel, besides the samples. Raises TypeError or ValueError

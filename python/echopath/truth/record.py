@@ -50,8 +50,9 @@ class Truth:
     received: [N] W, mean received power of the object's direct echoes (all its paths that touch nothing else, of any number
         of bounces on itself), over random phases, between the first antennas
     rcs: [N] m^2, radar cross section as seen: `received` by the radar equation for the box's centre, at the start frequency,
-        by the gains of the first antennas there (polarisation left out): shadowed parts count as missing. NaN where an
-        antenna has no gain; rcs_low, rcs_high: [N] m^2, of the 95 % interval of the received power
+        by the gains of the first antennas there (polarisation left out): shadowed parts count as missing, and so does what the
+        air of a scene with weather and sheets on the way take. NaN where an antenna has no gain; rcs_low, rcs_high: [N] m^2, of
+        the 95 % interval of the received power
     """
 
     frame: np.ndarray

@@ -89,8 +89,26 @@ def test_a_scale_of_ones_own_is_taken(session):
     segments = session.segments(session.shown_rays(10))
     rgb = session.colouring(segments, cmap="gray", clim=(-1000.0, -900.0)).rgb
     assert np.all(rgb == 255)
-    with pytest.raises(ValueError, match="cmap"):
-        session.colouring(segments, cmap="greyish")
+    for wrong in ("greyish", 3, ["red", "blue"]):
+        with pytest.raises(ValueError, match="cmap"):
+            session.colouring(segments, cmap=wrong)
+    with pytest.raises(ValueError, match="clim"):
+        session.colouring(segments, clim=(-900.0, -1000.0))
+
+
+@pytest.mark.parametrize("cmap", ["tab10", "twilight", matplotlib.colormaps["plasma"].resampled(5),
+                                  matplotlib.colors.ListedColormap(["red", "lime", "blue"])], ids=str)
+def test_colour_maps_of_any_number_of_colours_span_the_scale(session, cmap):
+    session.set_color_by("range")
+    segments = session.segments(session.shown_rays())
+    found = session.colouring(segments, cmap=cmap)
+    (low, high), colours = found.legend.clim, matplotlib.colormaps[cmap] if isinstance(cmap, str) else cmap
+    shares = (session.columns.range[segments.rays[segments.ray]].astype(float) - low) / (high - low)
+    steps = [np.clip(np.floor(255.0 * shares + off), 0.0, 255.0) / 255.0 for off in (-BORDER, BORDER)]
+    below, above = (colours(step, bytes=True)[:, :3] for step in steps)
+    assert np.all((found.rgb == below).all(axis=1) | (found.rgb == above).all(axis=1))
+    assert tuple(found.rgb[shares.argmin()]) == tuple(colours(0.0, bytes=True)[:3])
+    assert tuple(found.rgb[shares.argmax()]) == tuple(colours(1.0, bytes=True)[:3])
 
 
 def test_the_picked_segment_is_the_one_whose_picture_is_nearest():

@@ -198,6 +198,7 @@ def test_plot_rays_takes_the_scene_that_was_traced_without_what_was_absent():
     ({"selection": "T nonsense"}, ValueError, "^"), ({"tx": 2}, ValueError, "tx: must"),
     ({"rx": -1}, ValueError, "rx: must"), ({"num_rays": -1}, ValueError, "num_rays: must"),
     ({"chirp": 32}, ValueError, "chirp: must"), ({"chirp": -1}, ValueError, "chirp: must"),
+    ({"clim": (-80.0, -120.0), "color_by": "power"}, ValueError, "clim: must"),
 ])
 def test_bad_keywords_are_named(frame, keywords, error, word):
     with pytest.raises(error) as caught:

@@ -23,13 +23,13 @@ _SCALES = {"power": ("Power in dBm", "viridis"), "range": ("Range in m", "viridi
 class Legend:
     """What colours mean: either `rows` [(label, (r, g, b))] or a scale `clim` (low, high) in the unit of `title`.
 
-    num_more: rows that are left out
+    cmap: of the scale, a matplotlib colour map or the name of one; num_more: rows that are left out
     """
 
     title: str
     rows: tuple = ()
     clim: tuple | None = None
-    cmap: str = ""
+    cmap: object = ""
     num_more: int = 0
 
     def texts(self) -> list[str]:
@@ -49,7 +49,7 @@ def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None,
     """The colours of segments.
 
     mode: one of COLOUR_MODES; palette: u8 [M, 3] of meshes and mesh_names [M], for "mesh"
-    cmap, clim: of the scales, name of a matplotlib colour map and (low, high) in dBm, m or m/s; None: by mode and data.
+    cmap, clim: of the scales, matplotlib colour map or the name of one and (low, high) in dBm, m or m/s; None: by mode and data.
     """
     if mode == "bounces":
         return _by_bounces(columns, segments)
@@ -62,11 +62,13 @@ def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None,
     if not len(values) and clim is None:  # there is no scale of nothing
         return Colouring(np.zeros((0, 3), np.uint8), Legend(title))
     clim = _limits(mode, values) if clim is None else clim
+    if clim[0] > clim[1]:
+        raise ValueError(f"clim: must be (low, high), got {tuple(clim)}")
     legend = Legend(title=title, clim=clim, cmap=cmap or usual_cmap)
     return Colouring(np.take(scale_colours(values, clim, legend.cmap), segments.ray, axis=0), legend)
 
 
-def scale_colours(values, clim, cmap: str):
+def scale_colours(values, clim, cmap):
     """Colours u8 [N, 3] of values on a scale; what lies beyond its ends takes theirs."""
     return np.take(colour_table(cmap), levels_of(values, clim), axis=0)
 
@@ -78,13 +80,16 @@ def levels_of(values, clim):
     return np.clip(share, 0.0, 255.0).astype(np.uint8)
 
 
-def colour_table(cmap: str):
-    """u8 [256, 3] of a matplotlib colour map. Raises ValueError for an unknown name."""
+def colour_table(cmap):
+    """u8 [256, 3] of a matplotlib colour map, of however many colours, or of the name of one. Raises ValueError for anything
+    else."""
     import matplotlib
 
-    if cmap not in matplotlib.colormaps:
-        raise ValueError(f"cmap: must be the name of a matplotlib colour map, got {cmap!r}")
-    return (matplotlib.colormaps[cmap](np.arange(256), bytes=True)[:, :3]).astype(np.uint8)
+    if isinstance(cmap, str) and cmap in matplotlib.colormaps:
+        cmap = matplotlib.colormaps[cmap]
+    if not isinstance(cmap, matplotlib.colors.Colormap):
+        raise ValueError(f"cmap: must be a matplotlib colour map or the name of one, got {cmap!r}")
+    return cmap(np.arange(256) / 255.0, bytes=True)[:, :3].astype(np.uint8)
 
 
 def _values(mode: str, columns, rays):

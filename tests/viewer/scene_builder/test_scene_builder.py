@@ -175,6 +175,13 @@ def test_plot_rays_draws_what_is_asked_for(frame):
     plotter.close()
 
 
+def test_plot_rays_draws_the_scene_alone_where_no_ray_is_asked_for(frame):
+    plotter = ep.plot_rays(frame.scene, frame.paths, num_rays=0, off_screen=True, window_size=SIZE, return_plotter=True)
+    assert plotter.actors["all rays"].GetMapper().GetInput().GetNumberOfLines() == 0
+    assert plotter.actors["mesh 2"].GetVisibility()
+    plotter.close()
+
+
 @pytest.mark.filterwarnings("ignore:'guest' is absent")
 def test_plot_rays_takes_the_scene_that_was_traced_without_what_was_absent():
     scene = ep.Scene()

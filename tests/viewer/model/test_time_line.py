@@ -85,6 +85,15 @@ def test_a_glance_has_the_power_of_the_map(stored_run):
     assert level.shape == (len(values), NUM_FRAMES)
 
 
+def test_frames_of_a_radar_with_other_cells_are_not_shown_in_cells_that_they_have_not(stored_run):
+    """A radar of half the bandwidth has as many cells, twice as long: an echo of 12 m would seem to come from 6 m."""
+    glance = glance_at(time_line_of(stored_run.path).moments[0])
+    other = dataclasses.replace(glance, range=2.0 * glance.range)
+    level, values = level_image([glance, other, glance], "range")
+    assert np.array_equal(values, glance.range) and np.isnan(level[:, 1]).all() and np.isfinite(level[:, [0, 2]]).all()
+    assert np.isfinite(level_image([glance, other], "velocity")[0]).all()  # which both share
+
+
 def test_tracks_go_with_the_object(stored_run):
     """The plate drives straight at the radar: its range falls by the way of a frame, its velocity is its speed."""
     glances = [glance_at(moment) for moment in time_line_of(stored_run.path).moments]

@@ -64,14 +64,19 @@ def has_map(glance: Glance) -> bool:
 
 
 def level_image(glances, axis: str):
-    """(dBm, f32 [X, T], a column for each frame; axis values [X]) of glances of one radar; axis: a name of AXES.
+    """(dBm, f32 [X, T], a column for each frame; axis values [X]) of glances; axis: a name of AXES.
 
     Frames with another axis than the first that has one have NaN.
     """
     values = next((getattr(one, axis) for one in glances if has_map(one)), np.zeros(0))
-    columns = [in_dbm(getattr(one, f"by_{axis}").astype(float), SMALLEST_POWER) if len(getattr(one, axis)) == len(values)
+    columns = [in_dbm(getattr(one, f"by_{axis}").astype(float), SMALLEST_POWER) if _is_same(getattr(one, axis), values)
                else np.full(len(values), np.nan) for one in glances]
     return np.stack(columns, axis=1).astype(np.float32), values
+
+
+def _is_same(axis: np.ndarray, other: np.ndarray) -> bool:
+    """Whether a cell of one axis is where that of the other is: radars of as many cells may have them elsewhere."""
+    return len(axis) == len(other) and bool(np.allclose(axis, other))
 
 
 def tracks_of(glances):

@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
+from echopath_viewer.model.maps.beams import beam_values
 from echopath_viewer.window.background_work import BackgroundWork
 from echopath_viewer.window.qt import QtCore
 from support import shapes
@@ -37,6 +38,19 @@ def test_a_click_in_a_map_of_angles_selects_its_beam(qtbot, window, panels, name
     assert window.session.lit.any() and panel.panel.box.first_range == window.session.cell[0]
     window.session.select_cells(None)
     assert window.session.beam is None and panel.panel.box is None
+
+
+@pytest.mark.parametrize("angles", [{"combine": "peak", "elevation": 0.4}, {"combine": "peak", "elevation": [-0.5, 0.0, 0.5]},
+                                    {"velocity": 1.0}, {"combine": "peak", "velocity_gate": (-9.0, -1.0)}], ids=str)
+def test_a_click_in_a_map_of_azimuths_selects_the_beam_whose_level_it_shows(qtbot, window, panels, angles):
+    window.session.angles = angles
+    panel = opened(qtbot, window, "Range-azimuth")
+    shown = panel.map.level
+    for row, column in [np.unravel_index(shown.argmax(), shown.shape), (shown.shape[0] // 3, 30), (1, 45)]:
+        panel.pick(int(column), int(row))
+        session = window.session
+        found = beam_values(session.part.spectrum, session.radar, session.cell[0], *session.beam)[session.cell[1]]
+        assert 20.0 * np.log10(np.abs(found)) + 30.0 == pytest.approx(shown[row, column], rel=0, abs=1e-3)
 
 
 def test_cells_of_another_frame_are_not_marked_in_the_map_of_the_one_before(qtbot, window, panels, frame, monkeypatch):

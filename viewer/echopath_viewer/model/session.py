@@ -209,13 +209,18 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self._lit = self._lit_rays = self.ray = None
         self._tell("selection")
 
-    def select_beam(self, range_index: int, azimuth: float, elevation: float, reach: int = 0) -> None:
+    def select_beam(self, range_index: int, azimuth: float, elevations, reach: int = 0, rows=None) -> None:
         """Selects the strongest velocity of a beam at a range, and lights the paths of its cells that lie in the beam.
 
-        azimuth, elevation: rad; reach: cells around it
+        azimuth: rad; elevations: rad, [E] or one, of which the strongest is taken; reach: cells around it; rows: bool [V], the
+        velocities that come into question, None: all
         """
-        values = beam_values(self.part.spectrum, self.radar, range_index, azimuth, elevation)
-        velocity_index = int(np.abs(values).argmax())
+        elevations = np.atleast_1d(elevations)
+        levels = np.abs([beam_values(self.part.spectrum, self.radar, range_index, azimuth, one) for one in elevations])
+        if rows is not None:
+            levels[:, ~rows] = -1.0
+        strongest, velocity_index = (int(index) for index in np.unravel_index(levels.argmax(), levels.shape))
+        elevation = float(elevations[strongest])
         self.select_cells(CellBox.around(range_index, velocity_index, reach), (range_index, velocity_index))
         self.beam = azimuth, elevation
         inside = paths_in_beam(self.paths, self.index.mask_of(self.box), self.paths.frame.trace_time, azimuth, elevation)

@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.arguments.gates import in_gate
 from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.signals.measures import for_pictures
 
@@ -17,12 +18,18 @@ NO_AZIMUTHS = "the antennas of this radar tell no azimuths apart"
 
 @dataclasses.dataclass(frozen=True)
 class SideMap:
-    """A map: level f32 [Y, X] in dBm over x (m or ms) and y (degrees or m/s)."""
+    """A map: level f32 [Y, X] in dBm over x (m or ms) and y (degrees or m/s).
+
+    elevations, rows: of a range-azimuth map, whose levels are the largest over these elevations in rad and these velocities of
+    the range-Doppler map, bool [V]; rows None: all
+    """
 
     title: str
     level: np.ndarray
     x: np.ndarray
     y: np.ndarray
+    elevations: tuple = (0.0,)
+    rows: np.ndarray | None = None
 
 
 def range_azimuth_map(spectrum, radar, name: str, progress=None, *, angles: dict | None = None) -> SideMap:
@@ -38,7 +45,16 @@ def range_azimuth_map(spectrum, radar, name: str, progress=None, *, angles: dict
     method, velocity = asked.get("method", "bartlett"), asked.get("velocity")
     name += f", {method}" if method != "bartlett" else ""
     name += for_pictures(f", {velocity:+z.2f} m/s") if velocity is not None else ""
-    return SideMap(f"range-azimuth, {name}", _level(found.power), np.asarray(found.range), np.degrees(found.azimuth))
+    return SideMap(f"range-azimuth, {name}", _level(found.power), np.asarray(found.range), np.degrees(found.azimuth),
+                   tuple(np.asarray(found.elevation).tolist()), _rows_of(found, spectrum, asked))
+
+
+def _rows_of(found, spectrum, asked: dict):
+    """Which velocities of a range-Doppler map are in the range-azimuth map `found` that was asked for: bool [V]."""
+    velocities = np.asarray(spectrum.velocity)
+    if asked.get("velocity") is not None:
+        return np.arange(len(velocities)) == np.abs(velocities - found.velocity).argmin()
+    return in_gate("velocity_gate", velocities, asked.get("velocity_gate"), "m/s")
 
 
 def kept_azimuth_map(maps, note: str) -> SideMap:

@@ -181,7 +181,7 @@ class SidePanel(SeenPanel):
 
 
 class _AnglePanel(SidePanel):
-    """Range and an angle: a click selects the strongest velocity of the beam there."""
+    """Range and an angle: a click selects the beam there, and of the velocities in the map the strongest."""
 
     def caution(self) -> str:
         return SEVERAL_PAIRS if mixes_polarisations(self.session.radar) else ""
@@ -201,11 +201,12 @@ class _AnglePanel(SidePanel):
         return len(self.map.x) == len(ranges) and bool(np.allclose(self.map.x, ranges))
 
     def pick(self, x_index: int, y_index: int) -> None:
-        if not self._has_ranges_of(self.session):
-            return
-        angles = [ep.virtual_array(self.session.radar).boresight, 0.0]
-        angles[self.axis] = float(np.radians(self.map.y[y_index]))
-        self.session.select_beam(x_index, *angles)
+        if self._has_ranges_of(self.session):
+            self._pick_beam(x_index, float(np.radians(self.map.y[y_index])))
+
+    def _pick_beam(self, range_index: int, angle: float) -> None:
+        """Selects what the map has at a range and an angle in rad."""
+        raise NotImplementedError
 
     def words_of(self, x: float, y: float, level: float) -> str:
         return for_pictures(f"{x:.2f} m   {y:+z.1f}\u00b0   {level_text(level)}")
@@ -223,6 +224,11 @@ class AzimuthPanel(_AnglePanel):
         spectrum, radar, name, angles = session.part.spectrum, session.radar, title_of(session.part), session.angles
         return lambda progress: range_azimuth_map(spectrum, radar, name, progress, angles=angles)
 
+    def _pick_beam(self, range_index: int, angle: float) -> None:
+        velocities = len(self.session.part.spectrum.velocity)
+        rows = self.map.rows if self.map.rows is not None and len(self.map.rows) == velocities else None  # of a frame before
+        self.session.select_beam(range_index, angle, self.map.elevations, rows=rows)
+
 
 class ElevationPanel(_AnglePanel):
     """Range-elevation map of the part on display, where the antennas look."""
@@ -233,6 +239,9 @@ class ElevationPanel(_AnglePanel):
         require_signals(session)
         spectrum, radar, name = session.part.spectrum, session.radar, title_of(session.part)
         return lambda progress: range_elevation_map(spectrum, radar, name, progress)
+
+    def _pick_beam(self, range_index: int, angle: float) -> None:
+        self.session.select_beam(range_index, ep.virtual_array(self.session.radar).boresight, angle)
 
 
 class SpectrogramPanel(SidePanel):

@@ -62,6 +62,20 @@ def test_contributions_add_up_to_the_value_of_any_cell(frame, settings):
         assert abs(told - value) <= SUM * abs(value)
 
 
+@pytest.mark.parametrize("num_samples, zero_pad", [(33, 1), (33, 2), (11, 3)])
+def test_contributions_to_the_last_range_add_up_whatever_the_number_of_real_samples(num_samples, zero_pad):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=600e6, num_samples=num_samples, sampling_rate=10e6, num_chirps=4,
+                                chirp_interval=1e-4, real=True)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(1.0, 0.0, 0.0))
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
+    paths, settings = ep.trace(scene, radar, num_rays=500), {"window": "rect", "zero_pad": zero_pad}
+    whole = ep.range_doppler(ep.synthesize(paths), radar, **settings)
+    cell = Attribution(Signals(paths, settings)).of_cell(whole, len(whole.range) - 1, 2 * zero_pad, np.ones((1, 1)))
+    assert cell.value == whole.values[0, 0, 2 * zero_pad, -1] != 0.0
+    assert abs(cell.contributions[-1].value) <= SUM * abs(cell.value)
+
+
 def test_contributions_to_a_beam_add_up(frame, frame_attribution):
     rng = np.random.default_rng(7)
     weights = rng.normal(size=(2, 2)) + 1j * rng.normal(size=(2, 2))

@@ -57,9 +57,10 @@ class Signals:
 
     @property
     def num_ranges(self) -> int:
-        """Of the maps."""
+        """Of the maps; of an odd number of real samples half a cell more than half of them."""
         waveform, zero_pad = self.paths.radar.waveform, self.spectrum_settings.get("zero_pad", 1)
-        return waveform.num_samples * zero_pad // (2 if waveform.real else 1)
+        padded = waveform.num_samples * zero_pad
+        return (padded + 1) // 2 if waveform.real else padded
 
     def map_of(self, cube):
         """The map of a cube, RangeDoppler."""

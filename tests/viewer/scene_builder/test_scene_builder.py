@@ -21,7 +21,7 @@ from echopath_viewer.model import CellBox, Session, from_frame, from_paths
 from echopath_viewer.model.antennas import world_from_antenna
 from echopath_viewer.off_screen import renderer
 from echopath_viewer.plot import _new_plotter
-from echopath_viewer.scene_builder import VIEWS, SceneBuilder
+from echopath_viewer.scene_builder import VIEWS, SceneBuilder, export_meshes, export_rays
 from echopath_viewer.scene_builder.antenna_layer import AXIS_COLOURS
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
 from echopath_viewer.scene_builder.ray_layer import RayLayer
@@ -180,6 +180,20 @@ def test_plot_rays_draws_the_scene_alone_where_no_ray_is_asked_for(frame):
     assert plotter.actors["all rays"].GetMapper().GetInput().GetNumberOfLines() == 0
     assert plotter.actors["mesh 2"].GetVisibility()
     plotter.close()
+
+
+def test_names_in_whatever_letters_are_exported(tmp_path):
+    names = ["Fußgänger", "歩行者"]
+    scene = ep.Scene()
+    for number, name in enumerate(names):
+        scene.add(ep.actors.plate(1.0, 1.0), name=name, material="metal", position=(6.0, number, 0.0))
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=10e6, num_chirps=4,
+                              chirp_interval=1e-4)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0.01, 0))])
+    session = Session(from_paths(scene, ep.trace(scene, radar, num_rays=200)))
+    for export in (export_rays, export_meshes):
+        export(session, tmp_path / "names.vtp")
+        assert list(pv.read(tmp_path / "names.vtp").field_data["mesh_names"]) == names
 
 
 @pytest.mark.filterwarnings("ignore:'guest' is absent")

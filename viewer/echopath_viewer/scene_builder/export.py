@@ -8,7 +8,7 @@ from echopath.base.storage.files import written_whole
 from echopath.base.storage.origin import origin_texts
 
 from .joined import joined_meshes
-from .polydata import lines_of, triangles_of
+from .polydata import lines_of, set_texts, triangles_of
 
 
 def export_rays(session, path, rays=None) -> int:
@@ -26,7 +26,7 @@ def export_rays(session, path, rays=None) -> int:
               "velocity": columns.velocity[row]}
     for name, column in values.items():
         poly.cell_data[name] = column
-    poly.field_data["mesh_names"] = list(session.mesh_names)
+    set_texts(poly, "mesh_names", session.mesh_names)
     poly.field_data["time"] = [session.time]
     for name, number in zip(("transmitter", "receiver"), session.channel):
         poly.field_data[name] = [number]
@@ -43,7 +43,7 @@ def export_meshes(session, path) -> int:
     joined = joined_meshes(session, shown)
     poly = triangles_of(joined.points, joined.triangles)
     poly.cell_data["mesh_id"] = joined.mesh_of_triangle
-    poly.field_data["mesh_names"] = list(session.mesh_names)
+    set_texts(poly, "mesh_names", session.mesh_names)
     _write(poly, path, session)
     return len(shown)
 
@@ -54,7 +54,7 @@ def _write(poly: pv.PolyData, path, session) -> None:
     if not path.endswith(".vtp"):
         raise ValueError(f"path: must end in .vtp, got {path}")
     for name, text in origin_texts(session.paths.frame.seed).items():
-        poly.field_data[name.lower()] = [text]
+        set_texts(poly, name.lower(), [text])
     with written_whole(path) as temporary:
         temporary.write_bytes(_file_of(poly))
 

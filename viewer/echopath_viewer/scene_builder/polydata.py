@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
 IN_FRONT = -66000.0  # units of depth resolution: in front of whatever else there is
@@ -43,6 +44,15 @@ def vertices_of(points) -> pv.PolyData:
 def triangles_of(vertices, triangles, dtype=np.float32) -> pv.PolyData:
     """vertices [V, 3] m, triangles [F, 3]; dtype: of the points."""
     return pv.PolyData.from_regular_faces(np.asarray(vertices, dtype), np.asarray(triangles, np.int64))
+
+
+def set_texts(poly: pv.PolyData, name: str, texts) -> None:
+    """Field data of texts in whatever letters: pyvista takes ASCII alone, VTK all of them."""
+    array = vtkStringArray()
+    array.SetName(name)
+    for text in texts:
+        array.InsertNextValue(text)
+    poly.GetFieldData().AddArray(array)
 
 
 def set_point_colours(poly: pv.PolyData, rgb) -> None:

@@ -94,6 +94,19 @@ def test_a_click_in_the_spectrogram_goes_to_its_chirp(qtbot, window, panels):
     assert panel.panel.ray_cell[0] == len(panel.map.x) - 1
 
 
+def test_a_click_in_the_spectrogram_goes_to_its_chirp_however_the_chirps_follow_each_other(qtbot, window, panels, frame):
+    """Pairs of chirps, with a pause of ten chirps behind each: none of them ends at a multiple of the first step."""
+    interval = frame.radar.waveform.chirp_interval
+    radar = ep.Radar(frame.radar.waveform.replace(extra_idle=(0.0, 10.0 * interval)), transmitters=frame.radar.transmitters[:1],
+                     receivers=frame.radar.receivers)
+    window.show_input(from_frame(ep.simulate(frame.scene, radar, num_rays=500)))
+    panel = opened(qtbot, window, "Spectrogram")
+    for column in (0, len(panel.map.x) // 2, len(panel.map.x) - 1):
+        panel.pick(column, 0)
+        time = 1e3 * (window.session.time - window.session.paths.frame.start_time)
+        assert time == pytest.approx(panel.map.x[column], rel=0, abs=1e3 * 6.0 * interval)
+
+
 def test_the_beat_signal_is_that_of_the_chirp(qtbot, window, panels):
     window.open_panel("Beat signal")
     panel = window.side_panels["Beat signal"]

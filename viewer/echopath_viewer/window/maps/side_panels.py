@@ -273,8 +273,9 @@ class SpectrogramPanel(SidePanel):
         half = 0.5 * step_of(self.map.y)
         slow, fast = (nearest_index(np.asarray(spectrum.velocity), float(self.map.y[y_index]) + sign * half) for sign in (-1, 1))
         session.select_cells(CellBox(0, len(spectrum.range) - 1, slow, fast))
-        period = session.radar.chirp_time(0, 1) - session.radar.chirp_time(0, 0)
-        session.set_chirp(round(1e-3 * float(self.map.x[x_index]) / period))
+        radar, tx = session.radar, session.channel[0]
+        times = np.array([radar.chirp_time(tx, chirp) for chirp in range(radar.waveform.num_chirps)])  # which need not be even
+        session.set_chirp(int(np.abs(times - 1e-3 * float(self.map.x[x_index])).argmin()))
 
     def words_of(self, x: float, y: float, level: float) -> str:
         return for_pictures(f"{x:.2f} ms   {y:+z.2f} m/s   {level_text(level)}")

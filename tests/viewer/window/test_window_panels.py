@@ -7,6 +7,7 @@ import pytest
 import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.maps.beams import beam_values
+from echopath_viewer.model.maps.comparison import KeptMap, kept_map
 from echopath_viewer.window.background_work import BackgroundWork
 from echopath_viewer.window.qt import QtCore
 from support import shapes
@@ -139,6 +140,20 @@ def test_maps_are_compared_over_channels_and_files(qtbot, window, panels, stored
     assert panel.kept.title == "frame_0000.h5" and panel.change.shape == levels[0].shape
     panel.keep_file("no such file.h5")
     assert "no such file" in panel.note.text() and panel.kept.title == "frame_0000.h5"
+
+
+def test_no_change_is_told_where_the_map_that_was_kept_has_no_cells(qtbot, window, panels):
+    window.open_panel("Compare")
+    panel = window.side_panels["Compare"]
+    qtbot.waitUntil(lambda: panel._is_seen, timeout=PATIENCE_MS)
+    now = kept_map(window.session, "now")
+    half = len(now.range) // 2
+    panel.kept = KeptMap("near", now.level[:, :half] - 3.0, now.range[:half], now.velocity)
+    panel.refresh()
+    row, column = np.unravel_index(now.level[:, :half].argmax(), (len(now.velocity), half))
+    for at, told in ((column, "+3.0 dB"), (len(now.range) - 2, "not in the map that was kept")):
+        panel.panels["difference"].hovered.emit(float(now.range[at]), float(now.velocity[row]), 0.0)
+        assert panel.note.text().endswith(told)
 
 
 def test_why_there_is_no_map_is_told_of_that_frame_alone(qtbot, window, panels, frame):

@@ -15,12 +15,13 @@ from ..files.kinds import FRAMES
 from ..qt import QtCore, QtWidgets
 from .colour_bar import ColourBar
 from .map_area import title_of
-from .map_panel import MapPanel, extent_of
+from .map_panel import MapPanel, extent_of, nearest_index
 from .side_panels import SeenPanel
 from .ticks import place_text
 
 DIFFERENCE_COLOURS, DIFFERENCE_SPAN_DB = "coolwarm", 20.0
 NO_CHANGE = 127  # the colour of it
+NOT_THERE = "not in the map that was kept"
 HINT = "Keep a map, then go to another frame, channel or part: it is shown beside it. Or compare with the map of a file."
 
 
@@ -140,6 +141,9 @@ class ComparePanel(SeenPanel):
         self.session.select_cells(CellBox.around(range_index, velocity_index), (range_index, velocity_index))
 
     def _read(self, distance: float, velocity: float, level: float) -> None:
-        told = f"{level:+z.1f} dB" if self.sender() is self.panels["difference"] else level_text(level)
+        panel, told = self.sender(), level_text(level)
+        if panel is self.panels["difference"]:
+            change = self.change[nearest_index(panel.velocity_axis, velocity), nearest_index(panel.range_axis, distance)]
+            told = f"{change:+z.1f} dB" if np.isfinite(change) else NOT_THERE
         place = place_text(self.session.parts.whole.spectrum, distance, velocity).replace(", ", "   ")
         self.note.setText(for_pictures(f"{place}   {told}"))

@@ -11,6 +11,7 @@ import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.frames.live_session import input_of_view, live_of
 from echopath_viewer.model.session import Session
+from echopath_viewer.window.live.live_control import RADAR
 from echopath_viewer.window.live.live_panel import ALONE
 from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
 from support import shapes
@@ -184,10 +185,19 @@ def test_radar_material_and_turns_follow(qtbot, live_window):
     settled(qtbot, window)
     assert window.live.live.scene["wall"].meshes[0].material.roughness_height == pytest.approx(5e-4)
     panel.yaw_box.setValue(5.0)
-    panel.choose("radar")
+    panel.choose(RADAR)
     panel.place_boxes[1].setValue(0.5)
     settled(qtbot, window)
     assert window.session.radar.position[1] == 0.5 and window.live.yaw("wall") == pytest.approx(np.radians(5.0))
+
+
+def test_an_object_that_is_called_radar_is_moved_and_not_the_radar(qtbot, live_window):
+    window, scene = live_window, live_window.live.live.scene
+    scene.add(shapes.plate((9.0, 2.0, 0.0), (-1.0, 0.0, 0.0), 0.2), name="radar", material="metal")
+    window.live.move("radar", (1.0, 0.0, 0.0))
+    assert tuple(scene["radar"].position) == (1.0, 0.0, 0.0)
+    assert np.array_equal(window.live.live.radar.position, (0.0, 0.0, 0.0))
+    assert {RADAR, "radar"} <= set(window.live.objects())
 
 
 def test_flagged_mirrors_stay_such_in_another_material(qtbot, live_window):

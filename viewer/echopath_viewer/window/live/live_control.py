@@ -10,7 +10,7 @@ from echopath.base.text.mesh_names import object_of
 from ...model.frames.live_session import live_of, session_of_view, show_state
 from ..qt import QtCore, Signal
 
-RADAR = "radar"  # as an object that is moved
+RADAR = "radar (TX/RX)"  # as an object that is moved; none has a name with a slash
 BUDGET = 0.05    # s, that a preview may take
 
 

@@ -85,6 +85,17 @@ def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):
     assert window.session.paths.num_paths == window.session.columns.power.size > 0
 
 
+def test_a_number_that_is_changed_leaves_the_others_as_they_are(qtbot, live_window):
+    """The boxes show 1 mm, by half of which an echo would turn by up to 90 degrees."""
+    window, panel = live_window, live_window.live_panel
+    for name in ("plate", RADAR):
+        panel.choose(name)
+        window.live.move(name, (0.00044, 0.12345678, 1.0 / 3.0))
+        settled(qtbot, window)
+        panel.place_boxes[2].setValue(0.5)
+        assert tuple(window.live.position(name)) == (0.00044, 0.12345678, 0.5)
+
+
 def test_a_number_is_taken_when_it_is_typed_whatever_views_arrive_meanwhile(qtbot, live_window):
     window, panel = live_window, live_window.live_panel
     settled(qtbot, window)

@@ -66,8 +66,8 @@ class LivePanel(QtWidgets.QWidget):
     def _connect(self) -> None:
         self.start_button.toggled.connect(self._toggle)
         self.object_box.currentTextChanged.connect(lambda _: self._show_object())
-        for box in self.place_boxes:
-            box.valueChanged.connect(lambda _: self._move())
+        for axis, box in enumerate(self.place_boxes):
+            box.valueChanged.connect(lambda value, axis=axis: self._move(axis, value))
         self.yaw_box.valueChanged.connect(self._turn)
         self.material_box.activated.connect(self._choose_material)
         self.rough_slider.valueChanged.connect(self._roughen)
@@ -168,8 +168,14 @@ class LivePanel(QtWidgets.QWidget):
         """An object of the scene."""
         self.object_box.setCurrentText(name)
 
-    def _move(self) -> None:
-        self._change(lambda name: self.control.move(name, [box.value() for box in self.place_boxes]))
+    def _move(self, axis: int, value: float) -> None:
+        """Along one axis alone: the boxes of the others show what is rounded to 1 mm, a quarter of a wavelength."""
+        def change(name: str) -> None:
+            position = self.control.position(name)
+            position[axis] = value
+            self.control.move(name, position)
+
+        self._change(change)
 
     def _turn(self, degrees: float) -> None:
         self._change(lambda name: self.control.turn(name, float(np.radians(degrees))))

@@ -127,6 +127,23 @@ def test_paths_with_parts_are_viewed_as_the_frame_is(frame):
         from_paths(ep.Scene(), frame.paths)
 
 
+@pytest.mark.parametrize("name", ["mesh", "own", "whole"])
+def test_partitions_with_names_of_the_viewers_own_are_partitions(frame, name):
+    direct = np.asarray(ep.Selection("T . R").matches(frame.paths))
+    parts = {name: {name: "T . R", "ghosts": "T .{2} R"}}
+    again = ep.simulate(frame.scene, frame.radar, num_rays=300, parts=parts, labels=True)
+    for session in (Session(from_frame(again)), Session(from_paths(None, frame.paths, parts))):
+        group, = session.parts.partitions
+        session.select_node("walker")
+        assert [part.name for part in session.parts.of_group(group)] == [name, "ghosts", "other"]
+        assert session.parts.whole.mask is None  # all paths: it is none of the parts
+        session.set_part((group, name))
+    assert np.array_equal(session.visible, direct)
+    session = Session(from_frame(again))
+    session.set_layer("labels", True)
+    assert session.known_data("labels") is again.labels[name]
+
+
 def test_signals_by_families_are_shown_by_their_names(frame):
     found = ep.families(frame.paths, ["walker"])
     parts = from_paths(frame.scene, frame.paths, {"ghosts": ep.decompose(frame.paths, frame.radar, found)}).parts

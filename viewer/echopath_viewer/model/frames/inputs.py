@@ -15,7 +15,7 @@ from echopath.signals.same_radar import difference
 from echopath.weather.weather import weather_of
 
 from ..maps.layers import Known, are_of_map
-from ..maps.part_set import WHOLE, Part, PartSet
+from ..maps.part_set import WHOLE, Part, PartSet, group_of
 from ..maps.signals import Signals, all_paths, selections_of
 from .kept_orders import KeptOrders, read_kept
 from .told_objects import told_objects
@@ -68,7 +68,8 @@ def from_frame(frame, title: str = "") -> ViewInput:
     """A simulated frame; one that is only a record of paths is synthesised."""
     if frame.cube is None:
         return from_paths(frame.scene, frame.paths, title=title)
-    parts = [Part(partition, name, frame.part_spectra[partition][name], (frame.part_of_path[partition], index), selection)
+    parts = [Part(group_of(partition), name, frame.part_spectra[partition][name], (frame.part_of_path[partition], index),
+                  selection)
              for partition, cubes in frame.parts.items()
              for index, (name, selection) in enumerate(zip(cubes, selections_of(frame.selections[partition])))]
     signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
@@ -92,10 +93,10 @@ def _known(frame) -> Known:
 
 
 def _map_labels(frame, objects, progress) -> dict:
-    """{partition: Labels} of the range-Doppler map: those of its range-azimuth map lie on other axes."""
-    if frame.labels and are_of_map(frame.labels):
-        return frame.labels
-    return ep.annotate_frame(frame, objects=objects(), progress=progress)
+    """{group of a partition: Labels} of the range-Doppler map: those of its range-azimuth map lie on other axes."""
+    are_there = frame.labels and are_of_map(frame.labels)
+    labels = frame.labels if are_there else ep.annotate_frame(frame, objects=objects(), progress=progress)
+    return {group_of(partition): one for partition, one in labels.items()}
 
 
 def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate="interpolated", retrace="never",
@@ -108,7 +109,7 @@ def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate=
     """
     check_scene(scene, paths)
     signals = Signals(paths, {"window": window, "zero_pad": zero_pad}, evaluate, retrace, keyframes)
-    made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, signals)]
+    made = [part for partition, group in _partitions(parts).items() for part in _parts_of(group_of(partition), group, signals)]
     cube = signals.whole()
     return ViewInput(paths, PartSet(whole_part(signals.map_of(cube)), made), signals, cube, title,
                      weather=_weather_of(scene, paths))

@@ -14,6 +14,12 @@ OWN_GROUP = "own"    # parts that were named in the viewer
 NO_SIGNAL_DBM = 0.0  # upper end of the colour scale where nothing is received
 NOTHING_DBM = -1000.0  # dB re 1 mW: no echo is that weak
 MESH_GROUP = "mesh"  # the spectrum of the mesh that is selected
+_GROUPS = (WHOLE, OWN_GROUP, MESH_GROUP)
+
+
+def group_of(partition: str) -> str:
+    """The group of the parts of a partition: its name, in quotes where one of the viewer's own groups is called so."""
+    return f"'{partition}'" if partition in _GROUPS else partition
 
 
 def level_text(dbm: float) -> str:
@@ -97,7 +103,7 @@ class PartSet:
     def partitions(self) -> list[str]:
         """Names of the partitions that came with the signal."""
         names = dict.fromkeys(part.group for part in self)
-        return [name for name in names if name not in (WHOLE, OWN_GROUP, MESH_GROUP)]
+        return [name for name in names if name not in _GROUPS]
 
     def of_group(self, group: str) -> list[Part]:
         return [part for part in self if part.group == group]

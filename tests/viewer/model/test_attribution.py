@@ -62,6 +62,21 @@ def test_contributions_add_up_to_the_value_of_any_cell(frame, settings):
         assert abs(told - value) <= SUM * abs(value)
 
 
+def test_a_ground_may_be_called_other():
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=600e6, num_samples=64, sampling_rate=10e6, num_chirps=4,
+                                chirp_interval=1e-4)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))])
+    found = []
+    for name in ("ground", "other"):
+        scene = ep.Scene()
+        scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(6.0, 0.0, 1.0))
+        scene.add(ep.actors.ground(30.0), name=name, material="concrete")
+        attribution = Attribution(Signals(ep.trace(scene, radar, num_rays=500), {}))
+        assert set(attribution.things) == {"plate", name}
+        found.append([group.name.replace(name, "ground") for group in attribution.groups])
+    assert found[0] == found[1]
+
+
 @pytest.mark.parametrize("num_samples, zero_pad", [(33, 1), (33, 2), (11, 3)])
 def test_contributions_to_the_last_range_add_up_whatever_the_number_of_real_samples(num_samples, zero_pad):
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=600e6, num_samples=num_samples, sampling_rate=10e6, num_chirps=4,

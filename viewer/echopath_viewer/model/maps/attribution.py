@@ -19,6 +19,7 @@ REST = "rest: noise, left-out paths"
 REST_RECEIVED = "rest: what the receiver makes, noise, left-out paths"  # its gains, filters and faults are in no family
 WITH_WEAK = "{}, {:,} weak families"  # one of these, where not all families have room
 BACKGROUND = "background"
+ON_WAY = "on the way"   # part of the paths over a mirror, whatever its name; "other" are the others
 
 
 @dataclasses.dataclass(frozen=True)
@@ -125,8 +126,8 @@ class Attribution:
         return self._paths.select(np.isin(families.family_of_path, strongest)), count - room
 
     def _decomposed(self, paths, families, mirrors, settings, progress) -> dict:
-        """{(family, mirror or "other", ...): cube}, the mirrors telling the paths of the background apart."""
-        views = [families.grouping] + [_core.Grouping.selections([(name, ep.hits(name))]) for name in mirrors]
+        """{(family, ON_WAY or "other" of each mirror): cube}, the mirrors telling the paths of the background apart."""
+        views = [families.grouping] + [_core.Grouping.selections([(ON_WAY, ep.hits(name))]) for name in mirrors]
         grouping = _core.Grouping.all_of(views)
         return decompose_slots(paths, paths.radar, [grouping], progress=progress, **settings)[0]
 
@@ -135,7 +136,7 @@ class Attribution:
         profiles = range_profiles(cube, waveform, self._num_ranges, **self._settings)
         self._profiles[:, :, :, row] = np.moveaxis(profiles, 3, 2)
         family, *words = key
-        on_way = [name for name, word in zip(mirrors, words) if word == name]
+        on_way = [name for name, word in zip(mirrors, words) if word == ON_WAY]
         touched = {family.object, *family.via} if family.object else set(on_way)
         name = name_of(family) if family.object else f"{BACKGROUND} over {' + '.join(on_way)}" if on_way else BACKGROUND
         return EchoGroup(name, frozenset(touched), *self._peak(cube), family)

@@ -38,6 +38,23 @@ def test_a_view_is_saved_and_loaded(frame, tmp_path):
     assert np.array_equal(second.visible, first.visible) and np.array_equal(second.lit, first.lit)
 
 
+def test_the_cell_that_was_clicked_is_told_of_again(frame, tmp_path):
+    """Not the highest of those around it, as in a map of more cells than samples, where a click takes some."""
+    first = Session(from_frame(frame))
+    level = frame.spectrum.values[0, 0]
+    velocity, distance = (int(index) for index in np.unravel_index(np.abs(level).argmax(), level.shape))
+    clicked = distance + 1, velocity + 1
+    first.select_cells(CellBox.around(*clicked, 2), clicked)
+    save_state(state_of(first), tmp_path / "view.json")
+    second = Session(from_frame(frame))
+    assert apply_state(second, load_state(tmp_path / "view.json")) == [] and second.cell == clicked
+    first.select_cells(first.box)  # a rectangle: whichever is its highest
+    assert state_of(first)["cell"] is None and first.cell == (distance, velocity)
+    for elsewhere in ([0, 0], [10**6, 0]):
+        apply_state(second, state_of(first) | {"cell": elsewhere})
+        assert second.cell == (distance, velocity)
+
+
 def test_colours_of_meshes_are_told_once_where_some_are_others(session):
     told = []
     session.listen(lambda topics: told.append(topics))
@@ -90,7 +107,8 @@ def test_maps_of_meshes_and_parts_of_them_are_loaded_too(frame, tmp_path):
     ("part", "whole"), ("part", ["whole"]), ("partition", 1), ("channel", "ab"), ("channel", [0]), ("channel", [0, -1]),
     ("color_by", "mood"), ("color_by", ["mesh"]), ("max_rays", None), ("max_rays", 0), ("max_rays", 10**12),
     ("dynamic_range_db", "60"), ("dynamic_range_db", 0), ("dynamic_range_db", float("nan")), ("chirp", 1.5), ("chirp", True),
-    ("box", [1, 2]), ("box", "1234"), ("ray", -1), ("ray", "3"), ("hidden_meshes", "car"), ("hidden_meshes", [1]),
+    ("box", [1, 2]), ("box", "1234"), ("cell", [1]), ("cell", [-1, 2]), ("ray", -1), ("ray", "3"),
+    ("hidden_meshes", "car"), ("hidden_meshes", [1]),
     ("mesh_colours", []), ("mesh_colours", {"car": [1, 2]}), ("mesh_colours", {"car": [1, 2, 300]}), ("camera", {}),
     ("camera", {"position": [0, 0, 0], "focal_point": [1, 0, 0], "up": [0, 0], "view_angle": 30}), ("show_hits", 1),
     ("one_map", "no"), ("map_view", [0, 0, 1]), ("map_view", [0, 0, 0, 1]),

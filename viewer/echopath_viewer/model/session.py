@@ -196,6 +196,11 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.cell = self._highest_cell() if cell is None and self.box is not None else cell
         self._light("", None)
 
+    @property
+    def tells_highest_cell(self) -> bool:
+        """Whether the cell whose contributions are told is the highest of those that are selected."""
+        return self.box is not None and self.cell == self._highest_cell()
+
     def _highest_cell(self) -> tuple | None:
         box, level = self.box, self.parts.whole.level(*self.channel)
         inside = level[box.first_velocity:box.last_velocity + 1, box.first_range:box.last_range + 1]

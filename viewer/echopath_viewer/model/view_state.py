@@ -24,7 +24,8 @@ def state_of(session) -> dict:
         "part": list(session.part_key), "partition": session.partition, "channel": list(session.channel),
         "color_by": session.color_by, "max_rays": session.max_rays, "sampling": session.sampling,
         "dynamic_range_db": session.dynamic_range_db,
-        "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None, "ray": session.ray,
+        "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None,
+        "cell": None if session.cell is None or session.tells_highest_cell else list(session.cell), "ray": session.ray,
         "layers": sorted(session.layers),
         "hidden_meshes": sorted(session.mesh_names[mesh] for mesh in session.hidden_meshes),
         "mesh_colours": {name: [int(value) for value in rgb] for name, rgb in zip(session.mesh_names, session.palette)},
@@ -47,7 +48,7 @@ def apply_state(session, state: dict) -> list[str]:
     _attempt(misfits, "part", lambda: _set_part(session, state.get("part", (WHOLE, WHOLE))))
     _apply_looks(session, state, misfits)
     session.set_chirp(state.get("chirp", session.chirp))
-    _attempt(misfits, "cells", lambda: _select_cells(session, state.get("box")))
+    _attempt(misfits, "cells", lambda: _select_cells(session, state.get("box"), state.get("cell")))
     _apply_layers(session, state, misfits)
     ray = state.get("ray")
     if ray is not None and ray < session.paths.num_paths and session.visible[ray]:
@@ -108,11 +109,14 @@ def _add_part(session, name: str, recipe: dict) -> None:
         session.set_filters(before[1])
 
 
-def _select_cells(session, box) -> None:
+def _select_cells(session, box, cell) -> None:
+    """cell: (range index, velocity index) whose contributions are told, None: the highest of the box."""
     spectrum = session.parts.whole.spectrum
     if box is not None and not (box[0] < len(spectrum.range) and box[2] < len(spectrum.velocity)):
         raise ValueError(f"the map has no cells {list(box)}")
-    session.select_cells(None if box is None else CellBox(*box))
+    chosen = None if box is None else CellBox(*box).within(len(spectrum.range), len(spectrum.velocity))
+    is_told = chosen is not None and cell is not None and chosen.holds(*cell)
+    session.select_cells(chosen, tuple(cell) if is_told else None)
 
 
 def _set_node(session, name: str | None, base) -> None:

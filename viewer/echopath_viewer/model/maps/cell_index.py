@@ -20,6 +20,11 @@ class CellBox:
         """The cells at most `reach` from one."""
         return cls(range_index - reach, range_index + reach, velocity_index - reach, velocity_index + reach)
 
+    def holds(self, range_index: int, velocity_index: int) -> bool:
+        """Whether a cell is one of them."""
+        return (self.first_range <= range_index <= self.last_range
+                and self.first_velocity <= velocity_index <= self.last_velocity)
+
     def within(self, num_ranges: int, num_velocities: int) -> CellBox:
         """The part of it on a map of that size."""
         return CellBox(max(self.first_range, 0), min(self.last_range, num_ranges - 1),

@@ -86,5 +86,5 @@ def peak_words(peak, width: int = 0) -> str:
     """Where the peak of a label lies, in m and m/s or degrees; each number at least `width` characters wide."""
     distance, row, _ = peak
     if hasattr(peak, "velocity"):
-        return f"{distance:{width}.2f} m {row:+{width}.2f} m/s"
-    return f"{distance:{width}.2f} m {np.degrees(row):+{width}.1f} deg"
+        return f"{distance:{width}.2f} m {row:+z{width}.2f} m/s"
+    return f"{distance:{width}.2f} m {np.degrees(row):+z{width}.1f} deg"

@@ -7,6 +7,8 @@ import pytest
 
 import echopath as ep
 from echopath import _core
+from echopath.labels import AzimuthPeak, Peak
+from echopath.labels.report import peak_words
 from support.labelled import make_radar
 
 ROUNDING = 1e-9  # relative: sums in another order
@@ -45,6 +47,11 @@ def test_a_person_close_before_the_radar_is_an_object(yaw):
     assert "person" in frame.detections.object and frame.truth.range[0] < 0.6
     turned = ep.annotate(ep.trace(scene, radar.replace(yaw=yaw + np.pi), num_rays=1000))  # what is behind may carry the radar
     assert [one.name for one in turned.objects] == ["stand"]
+
+
+def test_a_peak_that_rounds_to_zero_has_no_minus_before_it():
+    assert peak_words(Peak(6.0, -0.004, 1.0)) == "6.00 m +0.00 m/s"
+    assert peak_words(AzimuthPeak(6.0, -1e-17, 1.0)) == "6.00 m +0.0 deg"
 
 
 def test_words_name_objects_and_ghosts(labels):

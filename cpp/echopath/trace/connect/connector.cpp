@@ -92,8 +92,14 @@ void Connector<Weight>::connect_diffuse(Connection& at) const {
   const SurfaceHit& surface = at.surface;
   const std::complex<double> coefficient = weight_.held(at.ray.coefficient * diffuse_coefficient(surface.response));
   const std::complex<double> weight = coefficient * std::sqrt(surface.area) * surface.samples.phase;
-  const OrderShares shares{1.0, at.ray.num_mirrors > 0 ? 1.0 : 0.0};
-  for (const Leg& leg : at.legs.receive) writer_.write(at, leg, last_bit(at.ray), weight * weight_.held(leg.gain), shares);
+  for (const Leg& leg : at.legs.receive) {
+    OrderShares shares;
+    if (at.ray.num_mirrors > 0) {  // the way back comes to the hit over the leg, and scatters as from there
+      const SurfaceResponse back = response_toward(surface, context_.settings.polarization, leg.to_antenna);
+      shares.opposite = diffuse_coefficient(back) / diffuse_coefficient(surface.response);
+    }
+    writer_.write(at, leg, last_bit(at.ray), weight * weight_.held(leg.gain), shares);
+  }
 }
 
 template class Connector<ScalarWeight>;

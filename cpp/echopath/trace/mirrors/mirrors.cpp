@@ -161,9 +161,8 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
   return te * te >= kTeLimit * kTeLimit * te_squared * across_squared ? PolarizationMode::kTe : PolarizationMode::kTm;
 }
 
-double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,
-                   const Vec3& normal) {
-  if (mode == PolarizationMode::kTe || !material.permittivity) return 1.0;
+double mirror_sign(PolarizationMode mode, const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
+  if (mode == PolarizationMode::kTe) return 1.0;
   const Vec3 te_axis = direction.cross(normal), behind = mirrored(direction, normal);
   return polarization.dot(te_axis.cross(direction)) * polarization.dot(te_axis.cross(behind)) < 0 ? -1.0 : 1.0;
 }
@@ -172,7 +171,7 @@ SurfaceResponse respond_as_mirror(const SurfaceModel& model, const Vec3& polariz
                                   const Vec3& normal) {
   const PolarizationMode mode = mode_along(model, polarization, direction, normal);
   SurfaceResponse response = model.respond(std::abs(direction.dot(normal)), mode);
-  response.gamma *= mirror_sign(model.material(), mode, polarization, direction, normal);
+  response.gamma *= mirror_sign(mode, polarization, direction, normal);
   return response;
 }
 

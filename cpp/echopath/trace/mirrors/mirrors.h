@@ -65,9 +65,8 @@ PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& directi
 // Returns the sign that a flagged mirror's coefficient takes along `polarization` (scalar mode), for a wave that travels
 // along `direction`. Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h), of which one may point with
 // the field and the other against it, as at a wall at right angles to the field, where TE and TM must meet at normal
-// incidence. The sign is +1 for TE and for conductors.
-double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,
-                   const Vec3& normal);
+// incidence. The sign is +1 for TE, which is the mode of conductors, too (mode_along).
+double mirror_sign(PolarizationMode mode, const Vec3& polarization, const Vec3& direction, const Vec3& normal);
 
 // Returns the mode at a surface whose coefficients may depend on it; `direction` is the unit direction of travel.
 inline PolarizationMode mode_along(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction,

@@ -90,8 +90,7 @@ void Scatterer<Weight>::leave_mirror(Ray& ray, const SurfaceHit& surface, const 
   const RayHit& point = surface.point;
   const int mirror = context_.surfaces.mirror(point.hit);
   if (mirror >= 0) {
-    ray.coefficient *=
-        mirror_sign(*surface.material, surface.mode, context_.settings.polarization, ray.direction, point.normal);
+    ray.coefficient *= mirror_sign(surface.mode, context_.settings.polarization, ray.direction, point.normal);
   }
   ray.coefficient *= response.gamma * response.coherent;
   ray.leg_density *= sample.probability();

@@ -170,6 +170,23 @@ TEST(MirrorResponse, IsFresnelsAtASlant) {
   EXPECT_LT(std::abs(gamma(Vec3::UnitZ()) - (2.0 - inside) / (2.0 + inside)), 1e-12);
 }
 
+// A sheet so thick that nothing comes back from its other side is a half space.
+TEST(MirrorResponse, OfAThickSheetIsThatOfAHalfSpace) {
+  Material floor, sheet;
+  floor.permittivity = std::complex<double>(5.0, -0.5);
+  sheet.layers = {{1.0, *floor.permittivity}};
+  const SurfaceModel of_floor(floor, kFrequency), of_sheet(sheet, kFrequency);
+  for (const double slant : {0.1, 0.7, 1.3}) {
+    const Vec3 direction(std::sin(slant), 0.0, -std::cos(slant));
+    for (const Vec3& polarization : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
+      const auto gamma = [&](const SurfaceModel& model) {
+        return respond_as_mirror(model, polarization, direction, Vec3::UnitZ()).gamma;
+      };
+      EXPECT_LT(std::abs(gamma(of_floor) - gamma(of_sheet)), 1e-12) << slant << " " << polarization.transpose();
+    }
+  }
+}
+
 // The mode is that of the larger part of the field across the direction of travel, as both ends see it.
 TEST(PolarizationMode, IsThatOfTheLargerPartOfTheField) {
   const Vec3 normal = Vec3::UnitZ(), direction = Vec3(1.0, 0.0, -1.0).normalized();

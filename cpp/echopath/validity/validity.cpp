@@ -216,10 +216,11 @@ class ValidityCheck {
     const bool is_whole = paths_.num_paths() == paths_.frame.statistics.num_paths;
     object.is_asked = is_whole || object.has_paths;
     const SeenPower& looks = seen_[node];
-    object.new_surface = looks.seen > 0 ? looks.fresh / looks.seen : 0.0;
+    const double fresh = std::min(looks.fresh, looks.seen);  // a part of an echo may have more power than the whole
+    object.new_surface = looks.seen > 0 ? fresh / looks.seen : 0.0;
     const double all_seen =
         std::accumulate(seen_.begin(), seen_.end(), 0.0, [](double sum, const auto& one) { return sum + one.second.seen; });
-    report_.shares.new_surface += all_seen > 0 ? looks.fresh / all_seen : 0.0;
+    report_.shares.new_surface += all_seen > 0 ? fresh / all_seen : 0.0;
     double replayed = 0.0, kept = 0.0, truth = 0.0;
     for (const ObjectAtTime& at : at_times_[node]) {
       BandSum left = at.replayed;

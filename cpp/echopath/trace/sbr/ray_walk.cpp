@@ -10,7 +10,12 @@ namespace echopath {
 namespace {
 
 constexpr int kMostSplits = 3;
-constexpr int64_t kBranchOfWalk = int64_t{1} << 49;  // beyond those of first hits behind sheets (kBranch)
+constexpr uint64_t kBranchOfWalk = uint64_t{1} << 49;  // beyond those of first hits behind sheets (kBranch)
+
+// Returns the index of the k-th branch of a ray, which may have any bits (LaunchPlan::number_of): it is not negative either.
+int64_t index_of_branch(int64_t launch_index, uint64_t k) {
+  return static_cast<int64_t>((static_cast<uint64_t>(launch_index) + kBranchOfWalk * k) & (~uint64_t{0} >> 1));
+}
 
 }  // namespace
 
@@ -87,7 +92,7 @@ template <class GoOn>
 void RayWalk<Weight>::branch(Scratch& scratch, PathBlock& block, const GoOn& follow_branch) const {
   const Ray ray = scratch.ray;
   const SurfaceHit surface = scratch.surface;
-  scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
+  scratch.ray.index = index_of_branch(scratch.launch_index, ++scratch.num_branches);
   follow_branch();
   block.end_ray(scratch.ray.hits.data());
   scratch.ray = ray;

@@ -39,6 +39,19 @@ struct Plane {
   }
 };
 
+// Returns the plane of the largest of some triangles, whose corners `corners_of` returns by their place. Others may be
+// slivers, which tell no plane.
+template <class CornersOf>
+Plane plane_of_largest(size_t num_triangles, const CornersOf& corners_of) {
+  Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
+  for (size_t i = 0; i < num_triangles; ++i) {
+    const auto [a, b, c] = corners_of(i);
+    const Vec3 normal = cross_of_sides(a, b, c);
+    if (normal.squaredNorm() > largest.normal.squaredNorm()) largest = {a, normal};
+  }
+  return {largest.point, largest.normal.normalized()};
+}
+
 // Holds the chain of the mirrors with some indices, by reference.
 template <class Mirror>
 class ChainOfIndices {

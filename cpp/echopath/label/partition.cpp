@@ -93,15 +93,4 @@ CombinedPartition combine(std::vector<Partition> partitions, Job* job) {
   return combined;
 }
 
-std::vector<uint32_t> CombinedPartition::groups_of(size_t partition, uint32_t part) const {
-  require(partition < partitions.size(), "partition", "must be below " + std::to_string(partitions.size()), partition);
-  require(part < partitions[partition].names.size(), "part",
-          "must be below " + std::to_string(partitions[partition].names.size()), part);
-  std::vector<uint32_t> groups;
-  for (uint32_t combined_group = 0; combined_group < num_groups; ++combined_group) {
-    if (part_in(combined_group, partition) == part) groups.push_back(combined_group);
-  }
-  return groups;
-}
-
 }  // namespace echopath

@@ -36,20 +36,6 @@ struct CombinedPartition {
   uint32_t part_in(uint32_t combined_group, size_t partition) const {
     return part_of_group[combined_group * partitions.size() + partition];
   }
-  // Returns the groups that add up to one part, ascending; empty for a part without paths.
-  std::vector<uint32_t> groups_of(size_t partition, uint32_t part) const;
-
-  // Sums values per group into one part. by_group is [num_groups, size], for example the cubes of one synthesis pass.
-  // Returns [size], added in ascending order of groups; zeros for a part without paths.
-  template <class Value>
-  std::vector<Value> sum_part(size_t partition, uint32_t part, const std::vector<Value>& by_group, size_t size) const {
-    std::vector<Value> sum(size);
-    for (const uint32_t combined_group : groups_of(partition, part)) {
-      const Value* values = by_group.data() + combined_group * size;
-      for (size_t i = 0; i < size; ++i) sum[i] += values[i];
-    }
-    return sum;
-  }
 };
 
 // Raises invalid_argument without partitions, when their path counts differ, or for more than 65536 combinations; raises

@@ -25,9 +25,7 @@ constexpr int kMostLevels = 3;
 constexpr double kPlace = 1e-3;
 
 bool look_alike(const Antenna& a, const Antenna& b) {
-  return a.pattern.kind == b.pattern.kind && a.pattern.peak_gain == b.pattern.peak_gain &&
-         a.pattern.exponent == b.pattern.exponent && a.pattern.table == b.pattern.table &&
-         a.orientation.coeffs() == b.orientation.coeffs() && a.polarization == b.polarization;
+  return have_one_beam(a, b) && a.pattern.peak_gain == b.pattern.peak_gain && a.polarization == b.polarization;
 }
 
 // Returns the indices of antennas of which none looks like another, and like one of which each of the others looks. Antennas

@@ -202,6 +202,11 @@ Quaternion turned(double yaw, double pitch) {
   return Quaternion(Eigen::AngleAxisd(yaw, Vec3::UnitZ())) * Quaternion(Eigen::AngleAxisd(-pitch, Vec3::UnitY()));
 }
 
+bool have_one_beam(const Antenna& a, const Antenna& b) {
+  return a.pattern.kind == b.pattern.kind && a.pattern.exponent == b.pattern.exponent &&
+         a.pattern.table == b.pattern.table && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
   Vec3 sum = Vec3::Zero();
   for (const Antenna& antenna : antennas) sum += world_from_radar * antenna.position;

@@ -81,6 +81,9 @@ struct Antenna {
   Vec3 polarization = Vec3::UnitZ();  // in the antenna's frame, unit
 };
 
+// Returns whether both have one pattern, but for its level, and look the same way.
+bool have_one_beam(const Antenna& a, const Antenna& b);
+
 // Returns the mean position of at least one antenna in the world, m. Raises invalid_argument where it is out of the range of
 // coordinates (base/range_of_coordinates.h).
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "echopath/base/constants.h"
@@ -17,14 +16,6 @@ namespace {
 constexpr int kColumnsPerTask = 8;  // neighbouring range bins share cache lines
 
 using Taper = std::vector<double>;
-
-// Returns the samples of a window, divided by their sum.
-Taper make_taper(const Window& window, int n, double scale = 1.0) {
-  Taper taper = window_samples(window, n);
-  const double sum = std::accumulate(taper.begin(), taper.end(), 0.0);
-  for (double& weight : taper) weight *= scale / sum;
-  return taper;
-}
 
 void transform_row(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges, FftBuffer& buffer,
                    std::complex<double>* out) {
@@ -116,7 +107,7 @@ void check_map(const Radar& radar, int zero_pad) {
 
 // A real sample sqrt(2) Re s carries s / sqrt(2) at the positive frequencies.
 Taper range_taper_of(const ChirpSequence& waveform, const Window& window) {
-  return make_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
+  return unit_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
 }
 
 }  // namespace
@@ -133,7 +124,7 @@ MapTransform::MapTransform(const Radar& radar, const MapWindows& window, int zer
   const ChirpSequence& waveform = radar.waveform;
   const int range_size = waveform.num_samples * zero_pad;
   Plan plan{range_taper_of(waveform, window.range),
-            make_taper(window.velocity, waveform.num_chirps),
+            unit_taper(window.velocity, waveform.num_chirps),
             Fft(range_size, FftDirection::kForward),
             Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
             static_cast<int64_t>(range_axis(waveform, range_size).size()),
@@ -200,7 +191,7 @@ RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const 
 
   const int64_t num_ranges = std::ssize(map.range);
   const Taper range_taper = range_taper_of(waveform, window.range);
-  const Taper doppler_taper = make_taper(window.velocity, waveform.num_chirps);
+  const Taper doppler_taper = unit_taper(window.velocity, waveform.num_chirps);
   const auto profiles = range_transform(cube.data(), num_rows, range_taper, range_size, num_ranges, job);
   map.values = doppler_transform(profiles, num_maps, doppler_taper, doppler_size, num_ranges, job);
   return map;

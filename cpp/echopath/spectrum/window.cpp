@@ -142,6 +142,13 @@ std::vector<double> window_samples(const Window& window, int n) { return samples
 
 std::vector<double> centred_window_samples(const Window& window, int n) { return samples_of(window, n, 0.5); }
 
+std::vector<double> unit_taper(const Window& window, int n, double scale) {
+  std::vector<double> samples = window_samples(window, n);
+  const double unit = scale / sum_of(samples);
+  for (double& sample : samples) sample *= unit;
+  return samples;
+}
+
 double equivalent_noise_bandwidth(const std::vector<double>& samples) {
   const double power = std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);
   return static_cast<double>(samples.size()) * power / (sum_of(samples) * sum_of(samples));

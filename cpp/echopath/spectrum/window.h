@@ -46,6 +46,9 @@ std::vector<double> window_samples(const Window& window, int n);
 // 0.
 std::vector<double> centred_window_samples(const Window& window, int n);
 
+// Returns window_samples divided by their sum, times `scale`.
+std::vector<double> unit_taper(const Window& window, int n, double scale = 1.0);
+
 double equivalent_noise_bandwidth(const std::vector<double>& samples);  // n sum w^2 / (sum w)^2, bins
 double main_lobe_half_width(const std::vector<double>& samples);        // from a tone to its first null, bins, to 1/64
 // Returns the response to a tone `bins` away, 1 at 0; it is real where samples are symmetric about their middle (n - 1) / 2.

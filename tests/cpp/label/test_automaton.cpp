@@ -24,6 +24,12 @@ std::string join(std::initializer_list<std::string> pieces) {
   return text;
 }
 
+std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths) {
+  std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()), 1);
+  narrow(automaton, paths, taken);
+  return taken;
+}
+
 bool takes(const std::string& text, const HandMadePath& path) {
   return matches(Automaton(parse_path_expression(text), make_street()->mesh_names()), make_paths({path})).front() != 0;
 }

@@ -46,7 +46,6 @@ LayerStack::LayerStack(std::span<const Layer> layers, double frequency) : wavenu
   for (const Layer& layer : layers) {
     const double loss = layer.conductivity / (kTwoPi * frequency * kVacuumPermittivity);
     slices_.push_back({layer.permittivity - Complex(0.0, loss), wavenumber_ * layer.thickness});
-    thickness_ += layer.thickness;
     phase_ += slices_.back().phase;
   }
 }

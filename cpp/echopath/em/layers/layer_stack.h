@@ -27,7 +27,6 @@ class LayerStack {
  public:
   // Takes the layers in the order in which the wave meets them; `frequency` is in Hz.
   LayerStack(std::span<const Layer> layers, double frequency);
-  double thickness() const { return thickness_; }  // m
   // Returns the reflection at the first face, in the signs of fresnel_te and fresnel_tm; cos_incidence in [0, 1] is taken
   // from the normal.
   FresnelModes reflection(double cos_incidence) const;
@@ -55,7 +54,7 @@ class LayerStack {
   Joined joined(double cos_incidence, LayerPhases* phases = nullptr) const;
 
   std::vector<Slice> slices_;
-  double thickness_ = 0.0, phase_ = 0.0, wavenumber_;
+  double phase_ = 0.0, wavenumber_;
 };
 
 }  // namespace echopath

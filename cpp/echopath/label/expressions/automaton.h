@@ -95,10 +95,9 @@ class Automaton {
 // `narrow`.
 std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job = nullptr);
 
-// Returns [P] 1 where the automaton takes the path, else 0. Runs on all threads; raises Cancelled when the job is cancelled.
-std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job = nullptr);
 // Clears among the paths that are 1 in `candidates` [P] those that the automaton does not take. With their mesh_bits it
-// reads only the hits of paths that touch the meshes they must.
+// reads only the hits of paths that touch the meshes they must. Runs on all threads; raises Cancelled when the job is
+// cancelled.
 void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job = nullptr,
             const std::vector<uint64_t>& bits = {});
 

@@ -39,12 +39,6 @@ std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
   return bits;
 }
 
-std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job) {
-  std::vector<uint8_t> taken(paths.num_paths(), 1);
-  narrow(automaton, paths, taken, job);
-  return taken;
-}
-
 void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job,
             const std::vector<uint64_t>& bits) {
   const Hit* hits = paths.hits ? paths.hits->data() : nullptr;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "echopath/base/constants.h"
+#include "echopath/record/hit_points.h"
 
 namespace echopath {
 namespace {
@@ -108,7 +109,7 @@ double MeshViews::solid_angle(View& view, uint16_t of_ray, uint16_t owner, const
   if (!aims_at(view, owner)) return 0.0;
   const auto foci = foci_.find(owner);
   if (foci != foci_.end()) {
-    const Vec3 direction = launch_direction(view, view.body->point_at(met.triangle_id, met.u, met.v));
+    const Vec3 direction = launch_direction(view, hit_point(view.body->corners(met.triangle_id), met));
     const auto holds = [&](uint16_t focus) {
       const Stratum& cone = paths_.frame.strata[focus];
       return 0.5 * (direction - cone.axis).squaredNorm() < kShareOfFocus * cone.versine;

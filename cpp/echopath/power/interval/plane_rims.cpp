@@ -144,7 +144,8 @@ FacetedBody::FacetedBody(std::vector<Vec3> vertices, const std::vector<Triangle>
   patches_ = planar_patches(vertices_, triangles, flat_tolerance(box_about(vertices_).diagonal().norm()));
   for (size_t patch = 0; patch < patches_.size(); ++patch) {
     for (const uint32_t triangle : patches_[patch]) patch_of_[triangle] = static_cast<uint32_t>(patch);
-    planes_.push_back(plane_of(patches_[patch]));
+    const std::vector<uint32_t>& of_plane = patches_[patch];
+    planes_.push_back(plane_of_largest(of_plane.size(), [&](size_t i) { return corners(of_plane[i]); }));
   }
   if (is_closed) outside_ = volume_of(vertices_, triangles) < 0.0 ? -1.0 : 1.0;
 }
@@ -157,24 +158,6 @@ std::vector<RimWaves> FacetedBody::waves(const AntennaPair& antennas, double wav
     found.push_back(is_met ? waves_of(patches_[index], planes_[index], antennas, wavenumber) : RimWaves{});
   }
   return found;
-}
-
-// Takes the plane of the largest triangle: others may be slivers, which tell none.
-Plane FacetedBody::plane_of(const std::vector<uint32_t>& patch) const {
-  Vec3 point = Vec3::Zero(), largest = Vec3::Zero();
-  for (const uint32_t triangle : patch) {
-    const auto [a, b, c] = corners(triangle);
-    const Vec3 area = cross_of_sides(a, b, c);
-    if (area.squaredNorm() <= largest.squaredNorm()) continue;
-    largest = area;
-    point = a;
-  }
-  return {point, largest.normalized()};
-}
-
-Vec3 FacetedBody::point_at(uint32_t triangle, double u, double v) const {
-  const auto [a, b, c] = corners(triangle);
-  return a + u * (b - a) + v * (c - a);
 }
 
 RimWaves FacetedBody::waves_of(const std::vector<uint32_t>& patch, const Plane& plane, const AntennaPair& antennas,

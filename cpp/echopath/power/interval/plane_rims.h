@@ -38,15 +38,13 @@ class FacetedBody {
   const std::vector<Vec3>& vertices() const { return vertices_; }
   uint32_t plane_at(uint32_t triangle) const { return patch_of_[triangle]; }
   const Plane& plane(uint32_t index) const { return planes_[index]; }
-  Vec3 point_at(uint32_t triangle, double u, double v) const;  // m, at barycentric coordinates
+  std::array<Vec3, 3> corners(uint32_t triangle) const;  // m
   // Returns the waves of each plane, as if mirrored in full; planes that do not face both antennas have none.
   std::vector<RimWaves> waves(const AntennaPair& antennas, double wavenumber) const;
 
  private:
   RimWaves waves_of(const std::vector<uint32_t>& patch, const Plane& plane, const AntennaPair& antennas,
                     double wavenumber) const;
-  Plane plane_of(const std::vector<uint32_t>& patch) const;
-  std::array<Vec3, 3> corners(uint32_t triangle) const;
   bool is_rim(uint32_t triangle, size_t side) const;
 
   std::vector<Vec3> vertices_;

@@ -17,13 +17,6 @@ constexpr int kTogether = TileAtChirps::kMaxChirps;  // chirps whose rows have t
 constexpr int64_t kLongestTable = 1 << 16;           // of responses
 constexpr int64_t kMostProducts = 60000;             // of cells and columns, above which the samples are quicker
 
-std::vector<double> unit_taper(const Window& window, int count) {
-  std::vector<double> taper = window_samples(window, count);
-  const double sum = std::accumulate(taper.begin(), taper.end(), 0.0);
-  for (double& weight : taper) weight /= sum;
-  return taper;
-}
-
 // Returns transforms of 1, 2, 4, ... values, up to twice as many as the widest band has cells.
 std::vector<Fft> ffts_of_rows() {
   std::vector<Fft> ffts;

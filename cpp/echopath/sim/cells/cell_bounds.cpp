@@ -38,11 +38,9 @@ class WindowReach {
  private:
   // Returns |W| in steps of 1 / kFine cells, 1 at its peak.
   static std::vector<double> response(const Window& window, int num_cells) {
-    const std::vector<double> samples = window_samples(window, num_cells);
+    const std::vector<double> taper = unit_taper(window, num_cells);
     FftBuffer buffer(int64_t{kFine} * num_cells);
-    double sum = 0.0;
-    for (int i = 0; i < num_cells; ++i) sum += samples[i];
-    for (int i = 0; i < num_cells; ++i) buffer[i] = samples[i] / sum;
+    for (int i = 0; i < num_cells; ++i) buffer[i] = taper[i];
     Fft(static_cast<int>(buffer.size()), FftDirection::kForward).transform(buffer);
     std::vector<double> fine;
     for (int64_t i = 0; i < buffer.size(); ++i) fine.push_back(std::min(1.0, kBetweenSteps * std::abs(buffer[i])));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "echopath/base/constants.h"
@@ -21,13 +22,12 @@ constexpr int kRings = 96, kSpokes = 32;
 // Returns one antenna of each look: of the same pattern and boresight, as those of an array mostly are.
 std::vector<PosedAntenna> looks_of(const std::vector<Antenna>& antennas, const Transform& world_from_radar) {
   std::vector<PosedAntenna> looks;
-  for (const PosedAntenna& one : posed_antennas(antennas, world_from_radar, Vec3::Zero())) {
-    const auto is_alike = [&](const PosedAntenna& other) {
-      const AntennaPattern &a = *one.pattern, &b = *other.pattern;
-      return a.kind == b.kind && a.table == b.table && a.peak_gain == b.peak_gain && a.exponent == b.exponent &&
-             one.antenna_from_world.isApprox(other.antenna_from_world);
+  const std::vector<PosedAntenna> posed = posed_antennas(antennas, world_from_radar, Vec3::Zero());
+  for (size_t i = 0; i < antennas.size(); ++i) {
+    const auto is_alike = [&](const Antenna& before) {
+      return have_one_beam(before, antennas[i]) && before.pattern.peak_gain == antennas[i].pattern.peak_gain;
     };
-    if (std::ranges::none_of(looks, is_alike)) looks.push_back(one);
+    if (std::ranges::none_of(std::span(antennas).first(i), is_alike)) looks.push_back(posed[i]);
   }
   return looks;
 }

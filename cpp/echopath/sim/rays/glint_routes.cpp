@@ -101,19 +101,11 @@ class RouteSorter {
   // Returns the plane of the triangle, or that of the mesh's largest one: the others lie in it to a tenth of a millimetre.
   Plane plane_of(const MirrorFace& face) const {
     const auto& [mirror, only] = face;
-    if (only != kWholeMesh) {
-      const auto [a, b, c] = pose_.world_triangle(mirror, only);
-      return {a, cross_of_sides(a, b, c).normalized()};
-    }
-    const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
-    Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
-    for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
-      const auto [a, b, c] = pose_.world_triangle(mirror, triangle);
-      const Vec3 normal = cross_of_sides(a, b, c);
-      if (normal.squaredNorm() > largest.normal.squaredNorm()) largest = {a, normal};
-    }
-    largest.normal.normalize();
-    return largest;
+    const bool is_whole = only == kWholeMesh;
+    const size_t num_triangles = is_whole ? paths_.scene->node_of(mirror).mesh->triangles().size() : 1;
+    return plane_of_largest(num_triangles, [&, first = is_whole ? 0 : only](size_t i) {
+      return pose_.world_triangle(mirror, first + static_cast<uint32_t>(i));
+    });
   }
 
   GlintRoute route_of(const RouteKind& kind, std::vector<SeenPath> seen) const {

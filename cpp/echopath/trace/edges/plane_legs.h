@@ -17,8 +17,6 @@ struct PlaneLeg {
   std::complex<double> gain = 1.0;  // field factor: product of Gamma s of the planes, as of flagged mirrors (legs.h)
   double share = 1.0;               // of the field: half at the rim of a plane, less where a plane is smaller than its zone
   double first_cover = 1.0;         // share of the Fresnel zone that the plane next to the antenna covers
-
-  int num_bounces() const { return static_cast<int>(bounces.size()); }
 };
 
 // Finds legs over planes. Its functions are thread-safe. All arguments must outlive it.

@@ -48,13 +48,12 @@ struct Run {
 
 constexpr int kMostHits = 58;  // of a run, whose events then fit into its kind
 
-// Returns all on which the legs of a run depend but the hits themselves: the order in which they are passed, whether the
-// last material point is posed with its triangle, and for inner legs which of the hits are images.
+// Returns all on which the legs of a run depend but the hits themselves: the order in which they are passed, and for inner
+// legs which of the hits are images.
 uint64_t kind_of(const LocalPath& path, const Run& run) {
-  const bool has_cell = path.diffuse == 0 && run.last >= path.last_material;
   const uint64_t events =
       run.part == Part::kInner ? path.diffuse >> run.first & ((uint64_t{1} << (run.last - run.first + 1)) - 1) : 0;
-  return static_cast<uint64_t>(run.part) | uint64_t{path.is_reversed} << 2 | uint64_t{has_cell} << 3 | events << 4;
+  return static_cast<uint64_t>(run.part) | uint64_t{path.is_reversed} << 2 | events << 3;
 }
 
 LegShadows shifted(const LegShadows& shadows, int by) {
@@ -69,11 +68,6 @@ LegShadows known_part(const LocalPath& path, const Run& run, LegMemo& known, Fin
   if (count > kMostHits) return find();
   const Hit* hits = path.recorded + (path.is_reversed ? path.count - 1 - run.last : run.first);
   return shifted(known(hits, count, kind_of(path, run), [&] { return shifted(find(), -run.first); }), run.first);
-}
-
-bool have_one_beam(const Antenna& a, const Antenna& b) {
-  return a.pattern.kind == b.pattern.kind && a.pattern.exponent == b.pattern.exponent &&
-         a.pattern.table == b.pattern.table && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
 // Returns the antenna that a trace has, then those at the rim of the array, and one for each other beam.

@@ -108,7 +108,7 @@ TEST(ShareOut, ServesObjectsBeforeImagesAndAddsUp) {
   EXPECT_LT(shares.at("car over wall"), 500.0);
 }
 
-// Of 1000 rays needs take 400, and half of the others go to the cells of "ground": 300, beside 100 of the 400 that share 700.
+// Of 1000 rays needs take 400, and half of the others go to the cells of "ground": 300, beside its part of the 700.
 TEST(ShareOut, GivesCellsHalfOfWhatNeedsLeave) {
   RayNeeds needs{{need("ground", 100), need("car", 300)}};
   needs.strata[0].more_for_cells = 1000.0;

@@ -114,8 +114,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // errs where neighbouring rays differ (row_differences.h), and scatterers that stay on their surfaces err by how many of
 // them a triangle has (triangle_points.h). Where neighbours are not known, a lattice is taken to err along the outline of
 // each piece of a mesh (outlines.h), and fields along one outline of all they meet, so that n equal ones have the variance
-// kOutlineOfFields^2 sum |a|^2 / sqrt(n), but less where the filter takes much away, as fields of curved surfaces fade toward
-// their outline.
+// kOutlineOfFields^2 sum |a|^2 / sqrt(n), but less where the filter takes much away, as fields of curved surfaces fade
+// toward their outline.
 // Posts, bars and spokes have more outlines than one, and may send on from a small part of what rays meet: the standard
 // error of a field is at least kJumpsOfFields times that of the sum of |a| by their jumps from ray to ray. Bias and chance
 // add up as the root of their sum of squares, to either side.

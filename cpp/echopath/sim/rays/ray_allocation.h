@@ -65,8 +65,8 @@ inline constexpr double kMaxGrowth = 32.0;
 // Returns the shares of `num_rays` rays. Where they are too few, what the radar sees itself is served before images, up to
 // kObjectsFirst of the rays. Among either, needs that are bounded are served in full, the smallest first, up to three
 // quarters of their rays, so that as many as possible get what they need. The others share what is left by their weights,
-// but no bounded need gets more than it asks while another lacks rays. Cells of the map get what they ask for beyond that, up
-// to half of what the needs leave, or 15 % of the rays if that is more.
+// but no bounded need gets more than it asks while another lacks rays. Cells of the map get what they ask for beyond that,
+// up to half of what the needs leave, or 15 % of the rays if that is more.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints

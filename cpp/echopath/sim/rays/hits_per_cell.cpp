@@ -35,7 +35,9 @@ std::vector<HitInCell> hits_in_cells(const Paths& paths, std::span<const uint32_
   }
   const double of_range = 2.0 * radar.waveform.range_resolution();
   const double of_velocity = 2.0 * radar.waveform.velocity_resolution(paths.radar.num_slots()) * 2.0 * quarter;
-  const auto cell_of = [](double length, double size) { return static_cast<int64_t>(std::floor(length / size)); };
+  const auto cell_of = [](double length, double size) {  // a frame of one sample takes no time
+    return size > 0.0 ? static_cast<int64_t>(std::floor(length / size)) : 0;
+  };
   std::vector<HitInCell> hits;
   int64_t last = -1;
   for (size_t i = 0; i < diffuse.size(); ++i) {

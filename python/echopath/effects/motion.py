@@ -1,7 +1,11 @@
 """Effects of motion during a frame."""
 from __future__ import annotations
 
+import numpy as np
+
+from ..base.radar.velocities import folded
 from ..base.text.counts import counted
+from ..scene.closing_speeds import speeds_of_objects
 from .rules import Case, rule
 
 SURFACE_SEARCHES = 32  # stretches in which new surface is looked for (sim/stream/keyframes.h)
@@ -15,6 +19,20 @@ def _moves(case: Case) -> bool:
 def _over_chirps(case: Case):
     reasons = ["the radar moves"] * case.radar.is_moving + [case.named(case.moving)] * (len(case.moving) > 0)
     return _moves(case), "; ".join(reasons) or "nothing moves"
+
+
+@rule("velocities that fold")
+def _folded(case: Case):
+    limit = case.radar.waveform.max_velocity(case.radar.num_slots)
+    if not _moves(case):
+        return False, "nothing moves"
+    speeds = {name: float(np.median(of_mesh)) for name, of_mesh in speeds_of_objects(case.scene, case.radar, case.time).items()}
+    fast = sorted((name for name, speed in speeds.items() if abs(speed) > limit), key=lambda name: -abs(speeds[name]))
+    if not fast:
+        return False, f"no object comes or goes faster than {limit:.4g} m/s; what turns on one may"
+    shown = f"'{fast[0]}' at {speeds[fast[0]]:+z.4g} m/s is shown at {folded(speeds[fast[0]], 2.0 * limit):+z.4g} m/s"
+    others = f", and {len(fast) - 1} more likewise" if len(fast) > 1 else ""
+    return True, f"{shown}{others}; the map of velocity repeats itself every {2.0 * limit:.4g} m/s"
 
 
 @rule("motion within chirps", "synthesize.evaluate")

@@ -40,6 +40,16 @@ def closing_speeds(scene, radar, time: float) -> Speeds:
     return _speeds_of(moving, scene, radar, time)
 
 
+def speeds_of_objects(scene, radar, time: float) -> Speeds:
+    """{object: `closing_speeds` of its first mesh, which speaks for its body} of those of which that moves."""
+    first = {}
+    for mesh in scene.meshes:
+        first.setdefault(mesh.name.partition("/")[0], mesh)
+    moving = {name: mesh for name, mesh in first.items() if radar.is_moving or scene.is_moving(mesh.id)}
+    speeds = _speeds_of(moving.values(), scene, radar, time)
+    return {name: speeds[mesh.name] for name, mesh in moving.items()}
+
+
 def _speeds_of(meshes, scene, radar, time: float) -> Speeds:
     """`closing_speeds` of some meshes."""
     step = step_within(radar.frame_duration)

@@ -98,6 +98,7 @@ CASES = {
     "edges and orders of mirrors": ({}, "Fresnel zone", dict(scene=make_scene(ROUGH))),
     "both orders of diffuse chains": (dict(scene=make_scene(ROUGH)), "share their phases", {}),
     "motion over chirps": (dict(radar=make_radar(motion=MOVING)), "the radar moves", {}),
+    "velocities that fold": (dict(scene=make_scene(motion=ep.LinearMotion(velocity=(100, 0, 0)))), "'plate' at +99.02 m/s", {}),
     "motion within chirps": (dict(scene=make_scene(motion=MOVING), evaluate="samples"), "at every sample", {}),
     "points of reflection that move": (dict(replay="fermat"), "Newton", {}),
     "records renewed at keyframes": (dict(retrace="invalid"), "shadows", {}),

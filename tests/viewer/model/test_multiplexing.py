@@ -86,3 +86,21 @@ def test_frames_of_maps_alone_are_shown(frame, multiplexing, tmp_path):
     power = np.abs(shown.parts.whole.spectrum.values[TX, RX]) ** 2
     assert power == pytest.approx(stored[1].power, rel=1e-5, abs=0)
     assert shown.cube.shape == (2, 2, 30, 128)
+
+
+def test_a_beam_of_maps_alone_selects_the_strongest_velocity_at_its_range(tmp_path):
+    """All channels have the same values there, which the beam toward the ball took for an echo from straight ahead: it left that
+    out, and selected noise 19 dB below the ball."""
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=10e6, num_chirps=16,
+                              chirp_interval=1e-4)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0.0078 * m, 0)) for m in range(2)],
+                     receivers=[ep.Antenna((0, 0.00195 * n, 0)) for n in range(4)])
+    azimuth = np.arcsin(0.25)  # where eight elements half a wavelength apart hear nothing of what is straight ahead
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material="metal", smooth=True,
+              position=(5.0 * np.cos(azimuth), 5.0 * np.sin(azimuth), 0.0))
+    stored = ep.Sequence(scene, radar, frames=1, interval=0.1, num_rays=1000, guard=False).save(tmp_path / "maps", keep="maps")
+    session = Session(time_line_of(stored.path).read(0))
+    velocity, distance = (int(index) for index in np.unravel_index(stored[0].power.argmax(), stored[0].power.shape))
+    session.select_beam(distance, azimuth, 0.0)
+    assert session.cell == (distance, velocity) and stored[0].velocity[velocity] == 0.0

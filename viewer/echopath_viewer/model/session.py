@@ -221,7 +221,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         velocities that come into question, None: all
         """
         elevations = np.atleast_1d(elevations)
-        levels = np.abs([beam_values(self.part.spectrum, self.radar, range_index, azimuth, one) for one in elevations])
+        levels = self._beam_levels(range_index, azimuth, elevations)
         if rows is not None:
             levels[:, ~rows] = -1.0
         strongest, velocity_index = (int(index) for index in np.unravel_index(levels.argmax(), levels.shape))
@@ -230,6 +230,14 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.beam = azimuth, elevation
         inside = paths_in_beam(self.paths, self.index.mask_of(self.box), self.paths.frame.trace_time, azimuth, elevation)
         self._light(f"the beam at {np.degrees(azimuth):+z.1f}°, {np.degrees(elevation):+z.1f}°", inside)
+
+    def _beam_levels(self, range_index: int, azimuth: float, elevations):
+        """Amplitudes at a range in the beams of an azimuth, [E, V] in sqrt(W), or [1, V] of all directions where a file keeps the
+        mean over the channels."""
+        spectrum = self.part.spectrum
+        if self.kept_maps is not None:
+            return np.abs(spectrum.values[0, :1, :, range_index])
+        return np.abs([beam_values(spectrum, self.radar, range_index, azimuth, one) for one in elevations])
 
     def select_family(self, group) -> None:
         """Lights the paths of an EchoGroup of the attribution, wherever they lie; None: those of the selected cells again."""

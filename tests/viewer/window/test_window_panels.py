@@ -154,6 +154,8 @@ def test_no_change_is_told_where_the_map_that_was_kept_has_no_cells(qtbot, windo
     for at, told in ((column, "+3.0 dB"), (len(now.range) - 2, "not in the map that was kept")):
         panel.panels["difference"].hovered.emit(float(now.range[at]), float(now.velocity[row]), 0.0)
         assert panel.note.text().endswith(told)
+        window.session.select_cells(CellBox.around(int(at), int(row)), (int(at), int(row)))
+        assert panel.note.text() == f"the selected cell: {told}"
 
 
 def test_why_there_is_no_map_is_told_of_that_frame_alone(qtbot, window, panels, frame):

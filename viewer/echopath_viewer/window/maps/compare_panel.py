@@ -119,10 +119,12 @@ class ComparePanel(SeenPanel):
 
     def _tell_cell(self) -> None:
         cell = self.session.cell
-        if cell is None or not np.isfinite(self.change[cell[1], cell[0]]):
-            self.note.setText("Click a cell: its change in dB.")
-            return
-        self.note.setText(for_pictures(f"the selected cell: {self.change[cell[1], cell[0]]:+z.1f} dB"))
+        told = "Click a cell: its change in dB." if cell is None else f"the selected cell: {self._change_at(cell[1], cell[0])}"
+        self.note.setText(for_pictures(told))
+
+    def _change_at(self, velocity_index: int, range_index: int) -> str:
+        change = self.change[velocity_index, range_index]
+        return f"{change:+z.1f} dB" if np.isfinite(change) else NOT_THERE
 
     def _reset_view(self) -> None:
         spectrum = self.session.parts.whole.spectrum
@@ -143,7 +145,6 @@ class ComparePanel(SeenPanel):
     def _read(self, distance: float, velocity: float, level: float) -> None:
         panel, told = self.sender(), level_text(level)
         if panel is self.panels["difference"]:
-            change = self.change[nearest_index(panel.velocity_axis, velocity), nearest_index(panel.range_axis, distance)]
-            told = f"{change:+z.1f} dB" if np.isfinite(change) else NOT_THERE
+            told = self._change_at(nearest_index(panel.velocity_axis, velocity), nearest_index(panel.range_axis, distance))
         place = place_text(self.session.parts.whole.spectrum, distance, velocity).replace(", ", "   ")
         self.note.setText(for_pictures(f"{place}   {told}"))

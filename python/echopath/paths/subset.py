@@ -73,7 +73,7 @@ def strongest(power, count: int, among=None):
         is_candidate = power[block] > 0.0 if among is None else among[block] & (power[block] > 0.0)
         best = np.concatenate([best, block.start + np.flatnonzero(is_candidate)])
         if len(best) > count:
-            best = best[np.argpartition(power[best], len(best) - max(count, 1))[len(best) - count:]]
+            best = best[np.argpartition(-power[best], count)[:count]]
     best.sort()
     return best[np.argsort(-power[best], kind="stable")]
 

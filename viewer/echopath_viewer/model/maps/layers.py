@@ -24,7 +24,7 @@ MAX_NAMED_GHOSTS = 8
 class Known:
     """How to come by what a frame knows; each is called once, when its layer is first shown, with a progress callable.
 
-    labels: -> {partition: ep.Labels}; detections: -> ep.Detections; truth: -> ep.Truth
+    labels: -> {group of a partition (group_of): ep.Labels}; detections: -> ep.Detections; truth: -> ep.Truth
     objects: without an argument, -> what of the scene is an object, as `ep.families` takes it
     """
 

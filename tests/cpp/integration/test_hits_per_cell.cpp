@@ -20,13 +20,14 @@ constexpr double kMost = 32.0;
 const Vec3 kVelocity(-20.0, 3.0, 0.0);  // m/s
 
 // A ground that passes by below the antenna, and a wall at rest.
-Paths passing_ground(double power) {
+Paths passing_ground(double power, size_t num_receivers) {
   Scene scene;
   add_rectangle(scene, "ground", {2, -20, -1}, {60, 0, 0}, {0, 40, 0}, lambert(0.3),
                 std::make_shared<const LinearMotion>(kVelocity));
   add_rectangle(scene, "wall", {9, 5, 0}, {0, 1, 0}, {0, 0, 1}, lambert(0.3));
   Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero(), 1.0, power);
   radar.waveform.num_chirps = 64;
+  radar.receivers.resize(num_receivers, radar.receivers[0]);
   return trace(scene, radar, with_rays(4000, 1));
 }
 
@@ -51,7 +52,7 @@ double growth_by_hand(const Paths& paths, uint32_t mesh) {
     cells[{std::floor(place.norm() / waveform.range_resolution()), std::floor(velocity / waveform.velocity_resolution(1))}]
         .push_back(power[static_cast<size_t>(path)]);
   }
-  const double noise = noise_power_in_cell(paths.radar);
+  const double noise = noise_power_in_cell(paths.radar) / static_cast<double>(paths.radar.receivers.size());
   double growth = 0.0, weights = 0.0;
   for (const auto& [cell, hits] : cells) {
     double sum = 0.0, squares = 0.0;
@@ -69,7 +70,7 @@ double growth_by_hand(const Paths& paths, uint32_t mesh) {
 // A faint ground, whose far cells are below the noise, one that asks for more rays everywhere, and a wall of few cells.
 TEST(HitsPerCell, AskForRaysAsCellsCountedByHandDo) {
   for (const double power : {1e-3, 1.0, 1e3}) {
-    const Paths paths = passing_ground(power);
+    const Paths paths = passing_ground(power, power < 1.0 ? 3 : 1);
     std::vector<uint32_t> group;
     for (int64_t path = 0; path < paths.num_paths(); ++path) group.push_back(paths.hits_of(path)[0].mesh_id);
     const std::vector<double> growth = growth_by_cells(paths, group, 3, path_power(paths), kMost, nullptr);

@@ -42,6 +42,7 @@ std::vector<HitInCell> hits_in_cells(const Paths& paths, std::span<const uint32_
   int64_t last = -1;
   for (size_t i = 0; i < diffuse.size(); ++i) {
     const int64_t path = diffuse[i];
+    if (0.25 * (before[i] + after[i]) > radar.waveform.max_range()) continue;  // no cell holds it
     const HitInCell hit{group_of_path[path], cell_of(0.5 * (before[i] + after[i]), of_range),
                         cell_of(after[i] - before[i], of_velocity), power_of_path[path]};
     const bool is_known = last >= 0 && hits.back().cell() == hit.cell() && shares_phase(paths, path, last);

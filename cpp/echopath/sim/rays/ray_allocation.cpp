@@ -42,9 +42,11 @@ double sum_of(const RayShares& shares) {
 struct StrataPowers {
   std::vector<ReceivedPower> powers;
   std::vector<double> growth_by_cells;
+  std::vector<bool> is_heard;  // whether any path comes from where the map reaches
 };
 
-StrataPowers power_of_strata(const Paths& paths, bool counts_cells, Job* job) {
+// `of_map`: the cells of the map count, and what these do not hold does not.
+StrataPowers power_of_strata(const Paths& paths, bool of_map, Job* job) {
   const size_t num_strata = paths.frame.strata.size();
   std::vector<uint32_t> group(paths.stratum.size());
   std::ranges::transform(paths.stratum, group.begin(), [&](uint16_t stratum) {
@@ -53,11 +55,13 @@ StrataPowers power_of_strata(const Paths& paths, bool counts_cells, Job* job) {
     return static_cast<uint32_t>(of.is_focus() ? of.focus_of : stratum);
   });
   const Sorting sorting{group, num_strata + 1};
-  if (!counts_cells || paths.frame.scatterers == Scatterers::kSurface)
-    return {received_powers(paths, sorting, job), std::vector<double>(sorting.num_groups, 0.0)};
+  StrataPowers found{{}, std::vector<double>(sorting.num_groups, 0.0), std::vector<bool>(sorting.num_groups, !of_map)};
   PowerAndLength of_paths;
-  StrataPowers found;
   found.powers = received_powers(paths, std::span(&sorting, 1), job, {}, &of_paths)[0];
+  if (!of_map) return found;
+  for (size_t path = 0; path < group.size(); ++path)
+    if (0.5 * of_paths.length[path] <= paths.radar.waveform.max_range()) found.is_heard[group[path]] = true;
+  if (paths.frame.scatterers == Scatterers::kSurface) return found;
   found.growth_by_cells = growth_by_cells(paths, group, sorting.num_groups, of_paths.power, kMaxGrowth, job);
   return found;
 }
@@ -184,6 +188,12 @@ void put_in(const StillRays& still, LaunchGuide& guide) {
 
 }  // namespace
 
+double RayNeeds::num_rays_for_cells() const {
+  double sum = 0.0;
+  for (const RayNeed& need : strata) sum += need.more_for_cells;
+  return sum;
+}
+
 double RayNeeds::num_rays() const {
   double sum = 0.0;
   for (const RayNeed& need : strata) sum += need.rays;
@@ -191,7 +201,7 @@ double RayNeeds::num_rays() const {
 }
 
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still, Job* job) {
-  const auto [powers, by_cells] = power_of_strata(paths, wanted.counts_cells, job);
+  const auto [powers, by_cells, is_heard] = power_of_strata(paths, wanted.floor == EchoFloor::kNoise, job);
   const double floor =
       wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
   const double least = std::max(floor, wanted.least_power);
@@ -201,20 +211,19 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRay
   for (size_t k = 0; k < paths.frame.strata.size(); ++k) {
     const Stratum& stratum = paths.frame.strata[k];
     if (stratum.is_focus() || still.holds(stratum.name)) continue;
-    const double missing = missing_db(powers[k], least);
+    const double missing = is_heard[k] ? missing_db(powers[k], least) : 0.0;
     const bool is_moving = stratum.object >= 0 && moves[stratum.object];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
     const double growth = growth_of(missing, target, wanted.law);
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth, by_cells[k], wanted.least_growth));
     needs.strata.back().is_resolved = missing <= target || powers[k].high_of_rays <= least;
-    if (powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
+    if (is_heard[k] && powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
   return needs;
 }
 
 RayShares share_out(const RayNeeds& needs, double num_rays) {
-  double asked_for_cells = 0.0;
-  for (const RayNeed& need : needs.strata) asked_for_cells += need.more_for_cells;
+  const double asked_for_cells = needs.num_rays_for_cells();
   const double most_for_cells = std::max(kForCells * num_rays, kLeftForCells * (num_rays - needs.num_rays()));
   const double to_cells = std::min(asked_for_cells, most_for_cells), left = num_rays - to_cells;
   const double of_objects = rays_of(needs, false), of_images = rays_of(needs, true);
@@ -265,7 +274,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
     return trace(seen, radar, launch, &unseen, geometry, strata);
   };
   const auto guide_by = [&](const Paths& pilot, int64_t num_rays, const StillRays& still) {
-    const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower, .counts_cells = true};
+    const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower};
     return guide_rays(pilot, ray_needs(pilot, wanted, still, &unseen), num_rays, still, &unseen);
   };
   const auto still = still_rays(*scene, radar, settings, kept_still, [&](const SceneSnapshot& standing) {

@@ -25,7 +25,7 @@ struct RayNeed {
 
 // Tells which echoes matter.
 enum class EchoFloor {
-  kNoise,      // those that may stand above the noise of a cell of the range-Doppler map
+  kNoise,  // those that may stand above the noise of a cell of the range-Doppler map, whose cells count (hits_per_cell.h)
   kStrongest,  // those down to 60 dB below the strongest
 };
 
@@ -40,7 +40,6 @@ struct WantedError {
   EchoFloor floor = EchoFloor::kStrongest;
   double least_power = 0.0;  // W, below which no echo matters, whatever the floor
   RayLaw law = RayLaw::kByDecibels;
-  bool counts_cells = false;  // whether the cells of the map ask for rays, too (hits_per_cell.h)
   // Echoes that are known better give back all of their rays but this share; 1: none, so that what is known stays known.
   double least_growth = 1.0 / 16.0;
 };
@@ -49,7 +48,8 @@ struct RayNeeds {
   std::vector<RayNeed> strata;  // in the order of the trace's, without foci
   double worst_db = 0.0;        // largest half interval of an echo above the floor
 
-  double num_rays() const;
+  double num_rays() const;            // without those for cells
+  double num_rays_for_cells() const;  // beyond them
 };
 
 // Returns for every stratum, but those of `still`, whose echo may stand above the floor as many rays as bring its interval,

@@ -10,6 +10,8 @@
 namespace echopath {
 namespace {
 
+constexpr double kFewForCells = 0.1;  // of the rays: cells that ask for less get none
+
 double error_of(const Paths& paths, const WantedError& wanted, Job* job) {
   return ray_needs(paths, wanted, {}, job).worst_db;
 }
@@ -40,7 +42,7 @@ Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, 
   FittedStrata fitted;
   TraceSettings launch = settings;
   LaunchGuide guide;
-  bool is_whole = !still.any();
+  bool is_whole = !still.any(), has_served_cells = false;
   const WantedError wanted{
       .db = target.error_db, .floor = target.floor, .least_power = target.least_power, .least_growth = 1.0};
   for (;;) {
@@ -49,13 +51,20 @@ Paths trace_to_error_beside(const StillRays& still, const SceneSnapshot& scene, 
     paths.frame.target_error_db = target.error_db;
     const bool is_met = needs.worst_db <= target.error_db, has_most = launch.num_rays == target.max_rays,
                is_first = launch.guide.shares.empty();
-    if ((is_whole && (still.any() || is_met || has_most)) || (is_first && paths.frame.statistics.num_hits == 0)) {
+    // Cells are served once, with as many rays as there are before, at most: they ask by few hits.
+    const auto before = static_cast<double>(launch.num_rays);
+    const double for_cells = std::min(needs.num_rays_for_cells(), before);
+    const bool serves_cells = is_met && !has_most && !has_served_cells && for_cells > kFewForCells * before;
+    const bool is_done = is_whole && (still.any() || is_met || has_most);
+    if ((is_done && !serves_cells) || (is_first && paths.frame.statistics.num_hits == 0)) {
       // Alone, what stands still may be known worse: there fainter echoes stand above the floor.
       paths.frame.error_db = still.any() ? error_of(paths, wanted, job) : needs.worst_db;
       return with_error_of_lot(thinned(std::move(paths), job), wanted, job);
     }
-    if (is_first || !is_met) {
-      launch.num_rays = rays_to_come(still, needs, launch.num_rays, target.max_rays);
+    has_served_cells = has_served_cells || serves_cells;
+    if (is_first || !is_met || serves_cells) {
+      launch.num_rays = serves_cells ? std::min<int64_t>(launch.num_rays + std::llround(for_cells), target.max_rays)
+                                     : rays_to_come(still, needs, launch.num_rays, target.max_rays);
       guide = guide_rays(paths, needs, launch.num_rays, still, job);
     }
     is_whole = !still.any() || is_met || launch.num_rays == target.max_rays;

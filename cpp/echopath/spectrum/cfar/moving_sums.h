@@ -2,7 +2,7 @@
 // Sums over rows of powers, which only add: a strong echo leaves no rounding behind.
 #include <cstdint>
 
-#include "echopath/spectrum/cfar/cfar_window.h"
+#include "echopath/spectrum/cfar_factor/cfar_window.h"
 
 namespace echopath {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/spectrum/cfar/cfar_window.h"
+#include "echopath/spectrum/cfar_factor/cfar_window.h"
 
 namespace echopath {
 

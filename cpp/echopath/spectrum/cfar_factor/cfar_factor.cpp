@@ -9,7 +9,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/cfar_factor/training_draws.h"
-#include "echopath/spectrum/cfar/training_noise.h"
+#include "echopath/spectrum/cfar_factor/training_noise.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
-#include "echopath/spectrum/cfar/cfar_window.h"
+#include "echopath/spectrum/cfar_factor/cfar_window.h"
 
 namespace echopath {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "echopath/spectrum/cfar/training_cells.h"
-#include "echopath/spectrum/cfar/training_noise.h"
+#include "echopath/spectrum/cfar_factor/training_cells.h"
+#include "echopath/spectrum/cfar_factor/training_noise.h"
 
 namespace echopath {
 

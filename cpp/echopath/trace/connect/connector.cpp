@@ -94,8 +94,11 @@ void Connector<Weight>::connect_diffuse(Connection& at) const {
   const std::complex<double> weight = coefficient * std::sqrt(surface.area) * surface.samples.phase;
   for (const Leg& leg : at.legs.receive) {
     OrderShares shares;
-    if (at.ray.num_mirrors > 0) {  // the way back comes to the hit over the leg, and scatters as from there
-      const SurfaceResponse back = response_toward(surface, context_.settings.polarization, leg.to_antenna);
+    if (at.ray.num_mirrors >
+        0) {  // the way back comes to the hit over the leg, from the transmitter, and scatters as from there
+      const Vec3 straight = (context_.settings.transmitter - surface.point.position).normalized();
+      const Vec3& from = leg.num_bounces == 0 ? straight : leg.to_antenna;
+      const SurfaceResponse back = response_toward(surface, context_.settings.polarization, from);
       shares.opposite = diffuse_coefficient(back) / diffuse_coefficient(surface.response);
     }
     writer_.write(at, leg, last_bit(at.ray), weight * weight_.held(leg.gain), shares);

@@ -57,7 +57,7 @@ double SurfaceAround::open_foot_of(const Plane& plane, const Vec3& along, double
     RayHit met;
     ++num_queries_;
     const Vec3 from = point_.position + height * point_.normal;
-    if (geometry_.intersect_near(from, along, reach, met, sees_) != EmbreeScene::Verdict::kHit) continue;
+    if (geometry_.intersect_near(from, along, reach, met, Sees::kAll) != EmbreeScene::Verdict::kHit) continue;
     if (std::abs(plane.height(met.position)) <= gap_) return is_wall(met) ? reach : foot;
   }
   return reach;
@@ -73,7 +73,7 @@ SurfaceEnd SurfaceAround::wall_at_height(double height, const Vec3& along, doubl
   RayHit met;
   ++num_queries_;
   const Vec3 from = point_.position + height * point_.normal;
-  const bool meets = geometry_.intersect_near(from, along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
+  const bool meets = geometry_.intersect_near(from, along, reach, met, Sees::kAll) == EmbreeScene::Verdict::kHit;
   if (!meets || !is_wall(met) || met.distance >= reach) return {reach};
   return {met.distance, true, met.normal};
 }
@@ -82,7 +82,7 @@ bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height
   RayHit met;
   ++num_queries_;
   const Vec3 from = point_.position + height * point_.normal;
-  if (geometry_.intersect_near(from, along, distance + height, met, sees_) != EmbreeScene::Verdict::kHit) return false;
+  if (geometry_.intersect_near(from, along, distance + height, met, Sees::kAll) != EmbreeScene::Verdict::kHit) return false;
   if (met.distance > distance + height) return false;
   // What stands behind a low wall is not that wall, however high.
   const double aside = (from + met.distance * along - above(along, distance)).dot(met.normal);

@@ -31,9 +31,9 @@ enum class Extent { kBent, kPlane };
 // Finds how far the surface around a point extends. A surface extends over triangles that lie on each other's rims
 // within `gap` (m); of a plane, all their corners lie so near to it. A hole may be overlooked: by is_at and reaches any,
 // by find_end one that is no wider than the surface before it is long. `along` is a unit tangent. Its rays are added to
-// num_queries; they meet sheets where the point lies on one. `next` is the plane, if any, that a wave meets next, whose
-// corner with this one is no edge of this one: it counts there. Corners whose planes end within `crack` (m) of each
-// other are closed.
+// num_queries; what stands on the surface may be a sheet, and the surface itself is one where the point lies on one.
+// `next` is the plane, if any, that a wave meets next, whose corner with this one is no edge of this one: it counts
+// there. Corners whose planes end within `crack` (m) of each other are closed.
 // All arguments must outlive it.
 class SurfaceAround {
  public:

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "echopath/spectrum/cfar/cfar_window.h"
+#include "echopath/spectrum/cfar_factor/cfar_window.h"
 
 namespace echopath {
 

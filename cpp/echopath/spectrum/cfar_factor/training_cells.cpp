@@ -1,4 +1,4 @@
-#include "echopath/spectrum/cfar/training_cells.h"
+#include "echopath/spectrum/cfar_factor/training_cells.h"
 
 #include <cstdlib>
 

@@ -1,4 +1,4 @@
-#include "echopath/spectrum/cfar/training_noise.h"
+#include "echopath/spectrum/cfar_factor/training_noise.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

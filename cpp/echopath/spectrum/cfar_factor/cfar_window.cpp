@@ -1,4 +1,4 @@
-#include "echopath/spectrum/cfar/cfar_window.h"
+#include "echopath/spectrum/cfar_factor/cfar_window.h"
 
 #include <algorithm>
 #include <cmath>

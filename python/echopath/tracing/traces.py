@@ -47,7 +47,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         over several surfaces (strata with focus_of). Unless scatterers stay on their surfaces, up to 15 % of all rays, or half of
         those that these needs leave, go where cells of the map above the noise hold few diffuse hits, as of a ground far away.
         Unless given, and without target_error_db, there are as many as bring the echo of each object that stands above the
-        noise to 0.3 dB (95 % interval of bias and chance), 1 000 000 at most
+        noise to 0.3 dB (95 % interval of bias and chance), and up to as many again where cells ask for them, 1 000 000 at most
     max_bounces: 1 to 64, hits on mirrors count. Between a target and an antenna there are images over up to two mirrors each
         way; over mirrors alone, over as many as max_bounces
     seed: the same seed gives the same bits

@@ -38,6 +38,7 @@ TITLE_PAD = 6.0                         # points between axes and title
 LETTER, LINE, POINTS_PER_INCH = 0.6, 1.2, 72.0  # width of a letter and height of a line over the size of the font
 DASHES = (0, (4, 3))
 CUT_LABEL, MIRROR_LABEL = "cut here, it goes on beyond the picture", "surface that mirrors"
+EDGE_ON = 1e-3                          # area over the square of the length, below which a polygon is drawn as a line
 NAME_PLACE = 0.93                       # along x of a mirror, where its name stands
 TICK_SPACE = 0.06                       # of the longest side: room that a number on an axis in perspective needs
 LABEL_SPACE, OWN_PAD = 34.0, 21.0       # points from an axis of a cube to its label, of which Matplotlib adds the second itself
@@ -229,6 +230,13 @@ def _of_equal_length(polygons) -> np.ndarray:
     return np.concatenate(polygons)[starts[:, None] + np.minimum(np.arange(counts.max()), counts[:, None] - 1)]
 
 
+def _is_edge_on(polygons) -> np.ndarray:
+    """Whether polygons [N, K, 2] are seen as lines [N], which fill nothing, as an upright wall from above."""
+    x, y = np.moveaxis(polygons - polygons[:, :1], 2, 0)
+    area = 0.5 * np.abs((x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1))
+    return area <= EDGE_ON * np.ptp(polygons, axis=1).max(axis=1) ** 2
+
+
 def _counted(polygons) -> tuple:
     """Number of corners of each polygon [N], and the place of its first among those of all [N]."""
     counts = np.array([len(polygon) for polygon in polygons], int)
@@ -391,9 +399,9 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
                                            alpha=_ray_opacity(segments)), autolim=False)
     toward_viewer = 1.0 if depth == 2 else -1.0
     order = np.argsort(toward_viewer * _middles(drawing.bodies, depth), kind="stable")
-    axes.add_collection(PolyCollection(_of_equal_length(drawing.bodies)[order][:, :, columns],
-                                       facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="none"),
-                        autolim=False)
+    bodies = _of_equal_length(drawing.bodies)[order][:, :, columns]
+    axes.add_collection(PolyCollection(bodies, facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="face",
+                                       linewidths=np.where(_is_edge_on(bodies), 0.8, 0.0)), autolim=False)
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])

@@ -415,6 +415,20 @@ def test_a_body_of_mirrors_is_shown_whole_and_a_road_as_far_as_the_rest_goes():
     assert (left, right) == pytest.approx((-0.6, 6.5 + 0.6))
 
 
+@pytest.mark.parametrize("view, yaw", [(1, 0.0), (1, 0.5), (2, 0.0)])
+def test_what_is_seen_edge_on_is_shown_as_a_line(view, yaw):
+    """An upright pane from above, along an axis and aslant, and from the side, halfway from its middle to its right edge."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(4.0, 2.0), name="pane", material="glass_pane", position=(5.0, 0.0, 1.0), yaw=yaw)
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=100))
+    figure.canvas.draw()
+    place = (5.0 + np.sin(yaw), -np.cos(yaw)) if view == 1 else (5.0, 1.5)
+    column, row = np.round(figure.axes[view].transData.transform(place)).astype(int)
+    page = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    assert page[-row - 2:-row + 1, column - 1:column + 2].min() < 150  # of 255: darker than the page and than pale rays
+
+
 def test_a_map_from_above_of_noise_alone_is_shown_whole(from_above):
     noise = SimpleNamespace(azimuth=from_above.azimuth, range=from_above.range, power=np.minimum(from_above.power, 3e-16))
     figure = plot_range_azimuth(noise)

@@ -16,6 +16,7 @@ SIZE = 6.0, 5.2  # inches
 LINES = ("-", "--", ":", "-.")  # for more tracks than there are colours
 ROWS, COLUMNS = 22, 2           # of the legend at most, which names tracks of objects; all tracks have their numbers
 COLUMN_WIDTH = 1.5              # inches, of names
+WITHOUT_LABEL, WITHOUT_COLOUR = "without a detection", "0.3"
 X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 
 
@@ -42,6 +43,8 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title)
         to_one_scale(ax)
         write_names(ax, [(str(number), tracks.of_track(number).state[-1, 1::-1]) for number in numbers])
+        if listed and not np.all(tracks.is_detected):
+            ax.plot([], [], "x", color=WITHOUT_COLOUR, markersize=5, label=WITHOUT_LABEL)
         if more:
             ax.plot([], [], " ", label=f"and {more} more")
         if listed:

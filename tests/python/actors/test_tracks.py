@@ -424,6 +424,17 @@ def test_tracks_travel_and_are_drawn(tmp_path):
         tracks.of_track(np.array([0, 1]))
 
 
+def test_the_picture_says_what_its_crosses_are():
+    from matplotlib import pyplot
+
+    whole = list(crossing())
+    gap = [points if frame != 5 else points[:1] for frame, points in enumerate(whole)]
+    for positions, expected in ((whole, []), (gap, ["without a detection"])):
+        ax = ep.track(positions, TIMES, merge_distance=0.0).plot()
+        assert [text.get_text() for text in ax.get_legend().get_texts()][2:] == expected
+        pyplot.close(ax.figure)
+
+
 def test_tracks_become_a_table():
     pytest.importorskip("pandas")
     table = ep.track(list(crossing()), TIMES).to_dataframe()

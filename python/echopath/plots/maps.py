@@ -183,7 +183,8 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
     with new_figure(3.2 * max(2, len(spectra)) + 0.8, 6.8) as figure:
         upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.05))
         axes = upper.subplots()
-        image = _draw_whole(axes, whole, vmin, vmax, title)
+        image = _draw_whole(axes, whole, vmin, vmax, "")
+        set_title(upper, title, 10)
         panels = list(lower.subplots(1, len(spectra), sharex=True, sharey=True, squeeze=False).flat)
         _draw_parts(panels, spectra, vmin, vmax, powers, radar_moves)
         set_title(lower, parts_title, 10)

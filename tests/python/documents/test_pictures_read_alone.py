@@ -94,7 +94,7 @@ def test_long_titles_stay_within_figures_of_any_number_of_parts(num_parts):
     title = "What the radar receives, taken apart by route, without noise; " + "mean power of all ranges together " * 2
     spectra = {f"part {number}": flat_map() for number in range(num_parts)}
     assert_whole(plots.plot_partition(spectra, title=title))
-    assert_whole(plots.plot_overview(flat_map(), spectra, parts_title=title))
+    assert_whole(plots.plot_overview(flat_map(), spectra, title=title, parts_title=title))
 
 
 def test_maps_from_above_ring_the_true_places_and_have_minus_signs():

@@ -42,9 +42,12 @@ def refuse_misplaced(callee: str, signature: inspect.Signature, values: Sequence
     by_name = [one.name for one in signature.parameters.values() if one.kind is one.KEYWORD_ONLY]
     surplus = values[len(by_place):]
     if surplus:
-        written = ", ".join(f"{name}={shown(value)}" for name, value in
-                            zip([name for name in by_name if name not in given], surplus))
         said = [name for name in by_place if name != "self"]
+        if _is_one_of_several_numbers(signature, said, values):
+            written = f"{said[0]}={shown(tuple(values))}"
+        else:
+            written = ", ".join(f"{name}={shown(value)}" for name, value in
+                                zip([name for name in by_name if name not in given], surplus))
         may_be_guessed = written and all(isinstance(value, str | bool | int | float | None) for value in surplus)
         takes = f"{', '.join(said)} alone" if said else "nothing"
         guess = f"; write {written} if that is meant" if may_be_guessed else ""
@@ -55,6 +58,12 @@ def refuse_misplaced(callee: str, signature: inspect.Signature, values: Sequence
             raise TypeError(f"{callee}: argument '{one.name}' is given twice, by its place and by its name")
         if one.default is one.empty and one.name not in placed | given:
             raise TypeError(f"{callee}: argument '{one.name}' is missing")
+
+
+def _is_one_of_several_numbers(signature: inspect.Signature, said: Sequence[str], values: Sequence[object]) -> bool:
+    """Whether the values are numbers that the one parameter without a name takes together, as the sides of a box."""
+    return (len(said) == 1 and "Sequence[float]" in str(signature.parameters[said[0]].annotation)
+            and all(isinstance(value, int | float) and not isinstance(value, bool) for value in values))
 
 
 def known_keywords(function: Callable[Parameters, Result], callee: str = "") -> Callable[Parameters, Result]:

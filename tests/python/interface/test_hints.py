@@ -70,6 +70,10 @@ def test_values_without_their_names_are_told_the_name(scene):
         scene.add(ep.actors.plate(1, 1), "second")
     with pytest.raises(TypeError, match="^pedestrian: takes nothing without a name; write height=1.7, speed=1.4"):
         ep.actors.pedestrian(1.7, 1.4)
+    with pytest.raises(TypeError, match=r"^box: takes size alone without a name; write size=\(1.6, 0.8, 0.03\) if that is meant"):
+        ep.actors.box(1.6, 0.8, 0.03)
+    with pytest.raises(TypeError, match=r"^ground: takes size alone without a name; write size=\(8, 6\) if that is meant, got 6"):
+        ep.actors.ground(8, 6)
     with pytest.raises(TypeError, match="^wall: argument 'height' is missing"):
         ep.actors.wall(3)
     with pytest.raises(TypeError, match="^add: argument 'name' is missing"):

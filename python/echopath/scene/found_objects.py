@@ -27,8 +27,8 @@ def find_objects(scene: _core.Scene, radar: _core.Radar, *, time: float | None =
     (19 m long, and 4.5 m across, or slender, as a pole) and whose parts stand apart, as those of a parked row do, gives way to
     its parts; of groups in it that reach through each other, what is in them counts. A child that surrounds the radar, as a
     town, a room or a tunnel does, is no object: here the things in it are, the nodes below the first one that has several, or
-    below a larger one whose parts stand apart, as far as they are no larger than a vehicle. What carries the radar is no larger
-    itself, and has no things. No thing or part is what is a mirror or such as `mark_mirrors` would flag.
+    below a larger one whose parts stand apart, as far as they are no larger than a vehicle. A mesh is never cut. What carries
+    the radar is no larger itself, and has no things. No thing or part is what is a mirror or such as `mark_mirrors` would flag.
 
     scene: of `Scene`, of `load_scene` or of a record; radar: with its antennas in the scene
     time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0.

@@ -20,7 +20,8 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
     hidden from the trace. Exact parts of the replay (single bounces, images in mirrors) have no phase error. Of paths that
     end in a rough surface at most 16384 of each object and number of bounces are looked at. What more than 256 times would
     have to follow is a warning. Where the report asks for parts of the frame by themselves, `retrace` of `synthesize` and
-    `simulate` does so, in as many stretches with keyframes=0.
+    `simulate` does so, in as many stretches with keyframes=0. Parts of the array are radars with some of its receivers,
+    `radar.replace(receivers=radar.receivers[:8])` and so on, each with a trace of its own; their cubes are joined along axis 1.
     paths: of a trace, all or a selection of them, which asks about these alone
     radar: another waveform, array or motion than that of the trace, or None
     replay: of the replay that is to be certified, as in `synthesize`

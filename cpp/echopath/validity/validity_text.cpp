@@ -49,7 +49,8 @@ std::string most_of(const Validity& report, double ValidityShares::* share) {
 }
 
 std::string parts_of_frame(const Validity& report) {
-  return "each of " + std::to_string(report.keyframes()) + " parts of the frame by itself.";
+  const std::string count = std::to_string(report.keyframes());
+  return "each of " + count + " parts of the frame by itself (retrace=\"invalid\" or \"always\", keyframes=" + count + ").";
 }
 
 // Returns whether what does not hold is due to the array alone.

@@ -10,6 +10,7 @@
 #include "echopath/power/path_power.h"
 #include "echopath/radar/noise_power.h"
 #include "echopath/sim/rays/hits_per_cell.h"
+#include "echopath/sim/rays/trace_to_error.h"
 
 namespace echopath::test_hits_per_cell {
 namespace {
@@ -20,15 +21,19 @@ constexpr double kMost = 32.0;
 const Vec3 kVelocity(-20.0, 3.0, 0.0);  // m/s
 
 // A ground that passes by below the antenna, and a wall at rest.
-Paths passing_ground(double power, size_t num_receivers) {
+Scene passing_ground() {
   Scene scene;
   add_rectangle(scene, "ground", {2, -20, -1}, {60, 0, 0}, {0, 40, 0}, lambert(0.3),
                 std::make_shared<const LinearMotion>(kVelocity));
   add_rectangle(scene, "wall", {9, 5, 0}, {0, 1, 0}, {0, 0, 1}, lambert(0.3));
+  return scene;
+}
+
+Radar radar_of(double power, size_t num_receivers = 1) {
   Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero(), 1.0, power);
   radar.waveform.num_chirps = 64;
   radar.receivers.resize(num_receivers, radar.receivers[0]);
-  return trace(scene, radar, with_rays(4000, 1));
+  return radar;
 }
 
 // Where a hit of a path of one bounce lies at the time of the trace.
@@ -70,7 +75,7 @@ double growth_by_hand(const Paths& paths, uint32_t mesh) {
 // A faint ground, whose far cells are below the noise, one that asks for more rays everywhere, and a wall of few cells.
 TEST(HitsPerCell, AskForRaysAsCellsCountedByHandDo) {
   for (const double power : {1e-3, 1.0, 1e3}) {
-    const Paths paths = passing_ground(power, power < 1.0 ? 3 : 1);
+    const Paths paths = trace(passing_ground(), radar_of(power, power < 1.0 ? 3 : 1), with_rays(4000, 1));
     std::vector<uint32_t> group;
     for (int64_t path = 0; path < paths.num_paths(); ++path) group.push_back(paths.hits_of(path)[0].mesh_id);
     const std::vector<double> growth = growth_by_cells(paths, group, 3, path_power(paths), kMost, nullptr);
@@ -81,6 +86,25 @@ TEST(HitsPerCell, AskForRaysAsCellsCountedByHandDo) {
     EXPECT_GT(growth[0], power < 1.0 ? 0.0 : 4.0) << power;
     EXPECT_LT(growth[1], 1.0) << power;
   }
+}
+
+// Who names no number of rays asks for what stands above the noise of the map, and so for its cells.
+TEST(HitsPerCell, AreServedByTracesToTheNoiseOfTheMapAlone) {
+  ErrorTarget of_map, of_power;
+  of_map.floor = EchoFloor::kNoise;
+  of_map.error_db = of_power.error_db = 10.0;  // which the first trace meets
+  const auto traced = [](const ErrorTarget& target) {
+    return trace_to_error(SceneSnapshot(passing_ground()), radar_of(1e3), with_rays(4000, 1), target, nullptr, nullptr);
+  };
+  const auto num_on_ground = [](const Paths& paths) {
+    int64_t count = 0;
+    for (int64_t path = 0; path < paths.num_paths(); ++path) count += paths.hits_of(path)[0].mesh_id == 0;
+    return count;
+  };
+  const Paths served = traced(of_map), known = traced(of_power);
+  EXPECT_EQ(known.frame.statistics.num_rays, 4000);
+  EXPECT_EQ(served.frame.statistics.num_rays, 8000);
+  EXPECT_GT(num_on_ground(served), num_on_ground(known) * 3 / 2);
 }
 
 // The paths of a hit there and back arrive in phase, and are one.

@@ -75,7 +75,7 @@ def test_a_receiver_hears_walls_that_the_transmitter_does_not_light(transmitter,
     scene = ep.Scene()
     scene.add(ep.actors.sphere(1.0, subdivisions=24), name="ball", material=FLAT, position=(3, 0, 0))
     scene.add(rectangle((-1, -20, -20), (0, 40, 0), (0, 0, 40)), name="wall", material=ep.Material.metal())
-    paths = ep.trace(scene, build_radar([transmitter], [receiver]), num_rays=40_000, max_bounces=2, batches=8,
+    paths = ep.trace(scene, build_radar([transmitter], [receiver]), num_rays=100_000, max_bounces=2, batches=8,
                      polarization="scalar")
     found = ep.received_power(paths.select("T 'ball' 'wall' R"))
     expected = power_by_way_of_wall(np.array([3.0, 0, 0]), 1.0, -1.0, transmitter, receiver)

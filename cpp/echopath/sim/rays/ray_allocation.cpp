@@ -42,10 +42,9 @@ double sum_of(const RayShares& shares) {
 struct StrataPowers {
   std::vector<ReceivedPower> powers;
   std::vector<double> growth_by_cells;
-  std::vector<bool> is_heard;  // whether any path comes from where the map reaches
 };
 
-// `of_map`: the cells of the map count, and what these do not hold does not.
+// `of_map`: the cells of the map count.
 StrataPowers power_of_strata(const Paths& paths, bool of_map, Job* job) {
   const size_t num_strata = paths.frame.strata.size();
   std::vector<uint32_t> group(paths.stratum.size());
@@ -55,13 +54,10 @@ StrataPowers power_of_strata(const Paths& paths, bool of_map, Job* job) {
     return static_cast<uint32_t>(of.is_focus() ? of.focus_of : stratum);
   });
   const Sorting sorting{group, num_strata + 1};
-  StrataPowers found{{}, std::vector<double>(sorting.num_groups, 0.0), std::vector<bool>(sorting.num_groups, !of_map)};
+  StrataPowers found{{}, std::vector<double>(sorting.num_groups, 0.0)};
   PowerAndLength of_paths;
   found.powers = received_powers(paths, std::span(&sorting, 1), job, {}, &of_paths)[0];
-  if (!of_map) return found;
-  for (size_t path = 0; path < group.size(); ++path)
-    if (0.5 * of_paths.length[path] <= paths.radar.waveform.max_range()) found.is_heard[group[path]] = true;
-  if (paths.frame.scatterers == Scatterers::kSurface) return found;
+  if (!of_map || paths.frame.scatterers == Scatterers::kSurface) return found;
   found.growth_by_cells = growth_by_cells(paths, group, sorting.num_groups, of_paths.power, kMaxGrowth, job);
   return found;
 }
@@ -201,7 +197,7 @@ double RayNeeds::num_rays() const {
 }
 
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRays& still, Job* job) {
-  const auto [powers, by_cells, is_heard] = power_of_strata(paths, wanted.floor == EchoFloor::kNoise, job);
+  const auto [powers, by_cells] = power_of_strata(paths, wanted.floor == EchoFloor::kNoise, job);
   const double floor =
       wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
   const double least = std::max(floor, wanted.least_power);
@@ -211,13 +207,13 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, const StillRay
   for (size_t k = 0; k < paths.frame.strata.size(); ++k) {
     const Stratum& stratum = paths.frame.strata[k];
     if (stratum.is_focus() || still.holds(stratum.name)) continue;
-    const double missing = is_heard[k] ? missing_db(powers[k], least) : 0.0;
+    const double missing = missing_db(powers[k], least);
     const bool is_moving = stratum.object >= 0 && moves[stratum.object];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
     const double growth = growth_of(missing, target, wanted.law);
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth, by_cells[k], wanted.least_growth));
     needs.strata.back().is_resolved = missing <= target || powers[k].high_of_rays <= least;
-    if (is_heard[k] && powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
+    if (powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
   return needs;
 }

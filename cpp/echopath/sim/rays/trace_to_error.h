@@ -20,16 +20,16 @@ struct ErrorTarget {
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };
 
-// Traces with settings.num_rays and then, as long as the echo of some stratum above the floor misses the target, with
-// at least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays; none gets fewer than
+// Traces with settings.num_rays and then, as long as the echo of some stratum above the floor misses the target, with at
+// least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays; none gets fewer than
 // before, as long as there are enough. The error is half the 95 % interval of the worst of them (power/received_power.h),
-// of the footprint's bias and chance together, without what more rays hardly mend (PowerInterval::high_of_rays). Each trace
-// is a fresh one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the square root
-// only; all traces together cost less than twice the last. With the floor of the noise, one more trace at the end has the
-// rays that cells of the map ask for, as many as there are at most. frame.target_error_db and frame.error_db tell the outcome. It
-// stops at once where no ray meets anything. Raises as `trace`. All traces share one geometry: `kept`, as in `trace`, or
-// their own. A standing_scene (still_rays.h) is traced to the target by itself first, with half of max_rays at most, and has
-// the rays of that; `kept_still` keeps them for the frames to come.
+// of the footprint's bias and chance together, without what more rays hardly mend (PowerInterval::high_of_rays). Each
+// trace is a fresh one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the
+// square root only; all traces together cost less than twice the last. With the floor of the noise, one more trace at the
+// end has the rays that cells of the map ask for, as many as there are at most. frame.target_error_db and frame.error_db
+// tell the outcome. It stops at once where no ray meets anything. Raises as `trace`. All traces share one geometry:
+// `kept`, as in `trace`, or their own. A standing_scene (still_rays.h) is traced to the target by itself first, with half
+// of max_rays at most, and has the rays of that; `kept_still` keeps them for the frames to come.
 Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
                      const ErrorTarget& target, Job* job, KeptGeometry* kept, KeptStillRays* kept_still = nullptr);
 

@@ -99,7 +99,8 @@ void Connector<Weight>::connect_diffuse(Connection& at) const {
       const Vec3 straight = (context_.settings.transmitter - surface.point.position).normalized();
       const Vec3& from = leg.num_bounces == 0 ? straight : leg.to_antenna;
       const SurfaceResponse back = response_toward(surface, context_.settings.polarization, from);
-      shares.opposite = diffuse_coefficient(back) / diffuse_coefficient(surface.response);
+      const double there = diffuse_coefficient(surface.response);  // 0 of what absorbs all
+      shares.opposite = there > 0.0 ? diffuse_coefficient(back) / there : 0.0;
     }
     writer_.write(at, leg, last_bit(at.ray), weight * weight_.held(leg.gain), shares);
   }

@@ -17,8 +17,7 @@ namespace echopath {
 // Returns the record without the faint paths that the lot leaves out, by `paths.frame.faint_power`; 0 keeps all paths.
 // Whether a path is kept follows from the seed, from its diffuse hits and from its power and that of its reversal at the
 // time of the trace, between the antennas among which each is the strongest. Paths that count for others have the flag
-// kStandsForOthers.
-// The statistics count those that are left out. Raises Cancelled.
+// kStandsForOthers. The statistics count those that are left out. Raises Cancelled.
 Paths thinned(Paths paths, Job* job = nullptr);
 
 }  // namespace echopath

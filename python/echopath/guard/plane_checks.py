@@ -11,6 +11,7 @@ import numpy as np
 from .. import _core
 from ..arguments.settings import LabelSettings
 from ..base.numerics.decibels import in_dbm
+from ..base.text.mesh_names import object_of
 from ..paths.subset import subset
 from ..scene.large_planes import large_planes
 from .check import Check
@@ -98,7 +99,7 @@ def _checks_of(paths, chosen, is_plane, window) -> list[Check]:
 def _objects(paths, meshes):
     """(names of the objects of meshes [P], index of each path's [P])."""
     used, which = np.unique(meshes, return_inverse=True)
-    objects = [name.split("/")[0] for name in _core.mesh_names(paths.scene, used.tolist())]
+    objects = [object_of(name) for name in _core.mesh_names(paths.scene, used.tolist())]
     names, index = np.unique(objects, return_inverse=True)
     return names.tolist(), index[which]
 

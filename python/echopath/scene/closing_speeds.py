@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..base.numerics.golden import golden_place
 from ..base.numerics.rates import step_within
 from ..base.radar.antennas import middle_of_antennas
+from ..base.text.mesh_names import object_of
 
 NUM_TIMES = 8  # within a frame, at which what turns is looked at beside its ends: no fractions of it, which turns might repeat
 
@@ -44,7 +45,7 @@ def speeds_of_objects(scene, radar, time: float) -> Speeds:
     """{object: `closing_speeds` of its first mesh, which speaks for its body} of those of which that moves."""
     first = {}
     for mesh in scene.meshes:
-        first.setdefault(mesh.name.partition("/")[0], mesh)
+        first.setdefault(object_of(mesh.name), mesh)
     moving = {name: mesh for name, mesh in first.items() if radar.is_moving or scene.is_moving(mesh.id)}
     speeds = _speeds_of(moving.values(), scene, radar, time)
     return {name: speeds[mesh.name] for name, mesh in moving.items()}

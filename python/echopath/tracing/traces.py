@@ -80,8 +80,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         in its way, stands out of the noise of a cell of the map; `paths.effects` says how strong it is
     faint_power: W; of diffuse paths that carry at most a quarter of it, one in 4, 16 or 64 is kept at random, with the power
         of all (`paths.frame.statistics.num_faint_paths` were left out): the expected power of every cell stays what it is, but
-        for what several paths over one hit add in phase that are no reversals of each other, and cells that are stronger than
-        a few faint paths fluctuate as with all of them. 0: all paths are kept; "auto": a fortieth of the noise of a cell of
+        for half of what paths over one hit add in phase of which unlike shares are kept, and cells that are stronger than a
+        few faint paths fluctuate as with all of them. 0: all paths are kept; "auto": a fortieth of the noise of a cell of
         the map, once all channels of the array are added in phase. "auto" saves most of the time of signals and labels where
         rough bodies stand among mirrors, and is not for levels below the noise
     effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"

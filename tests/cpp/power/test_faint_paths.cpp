@@ -20,14 +20,19 @@ constexpr int kRays = 4000, kSeeds = 12;
 constexpr double kFiveSigma = 5.0;
 constexpr double kSingle = 1e-6;  // relative, of a power: single precision of weights
 
-// A rough plate beside a wall and over a floor that mirror a tenth of the power: each hit makes up to 5 x 5 paths.
-Scene corner_scene() {
+// Mirrors a tenth of the power.
+MaterialPtr faint_mirror() {
   Material mirror;
   mirror.reflectivity = 0.1;
   mirror.mirror = true;
+  return share(mirror);
+}
+
+// A rough plate beside a wall and over a floor that are mirrors: each hit makes up to 5 x 5 paths.
+Scene corner_scene() {
   Scene scene;
-  add_rectangle(scene, "wall", {-1, 2, -1}, {14, 0, 0}, {0, 0, 4}, share(mirror));
-  add_rectangle(scene, "floor", {-1, -6, -1}, {14, 0, 0}, {0, 8, 0}, share(mirror));
+  add_rectangle(scene, "wall", {-1, 2, -1}, {14, 0, 0}, {0, 0, 4}, faint_mirror());
+  add_rectangle(scene, "floor", {-1, -6, -1}, {14, 0, 0}, {0, 8, 0}, faint_mirror());
   add_rectangle(scene, "plate", {8, -0.5, -0.5}, {0.6, 1, 0}, {0, 0, 1}, lambert(0.3));
   return scene;
 }
@@ -189,12 +194,9 @@ std::vector<uint32_t> meshes_met(const Paths& paths, int64_t path) {
 // A hand's breadth beside a wall and over a floor, "wall, plate, floor" and "plate, floor, wall" are one length to some 60
 // micrometres (by the square roots of their images), and so are their reversals: four times the sum of their powers arrives.
 TEST(FaintPaths, KeepWhatArrivesInPhaseOverTwoMirrorsInEitherOrder) {
-  Material mirror;
-  mirror.reflectivity = 0.1;
-  mirror.mirror = true;
   Scene scene;
-  add_rectangle(scene, "wall", {-1, 0.3, -4}, {14, 0, 0}, {0, 0, 8}, share(mirror));
-  add_rectangle(scene, "floor", {-1, -4, -0.3}, {14, 0, 0}, {0, 8, 0}, share(mirror));
+  add_rectangle(scene, "wall", {-1, 0.3, -4}, {14, 0, 0}, {0, 0, 8}, faint_mirror());
+  add_rectangle(scene, "floor", {-1, -4, -0.3}, {14, 0, 0}, {0, 8, 0}, faint_mirror());
   add_rectangle(scene, "plate", {8, -0.05, -0.05}, {0, 0.1, 0}, {0, 0, 0.1}, lambert(0.3));
   double in_phase = 0.0, kept = 0.0, alone = 0.0;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {

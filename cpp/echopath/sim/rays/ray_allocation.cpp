@@ -55,10 +55,10 @@ StrataPowers power_of_strata(const Paths& paths, bool of_map, Job* job) {
   });
   const Sorting sorting{group, num_strata + 1};
   StrataPowers found{{}, std::vector<double>(sorting.num_groups, 0.0)};
+  const bool cells_ask = of_map && paths.frame.scatterers != Scatterers::kSurface;
   PowerAndLength of_paths;
-  found.powers = received_powers(paths, std::span(&sorting, 1), job, {}, &of_paths)[0];
-  if (!of_map || paths.frame.scatterers == Scatterers::kSurface) return found;
-  found.growth_by_cells = growth_by_cells(paths, group, sorting.num_groups, of_paths.power, kMaxGrowth, job);
+  found.powers = received_powers(paths, std::span(&sorting, 1), job, {}, cells_ask ? &of_paths : nullptr)[0];
+  if (cells_ask) found.growth_by_cells = growth_by_cells(paths, group, sorting.num_groups, of_paths.power, kMaxGrowth, job);
   return found;
 }
 

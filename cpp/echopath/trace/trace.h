@@ -9,6 +9,7 @@ namespace echopath {
 
 class KeptGeometry;  // trace/embree/kept_geometry.h
 class FittedStrata;  // trace/strata/fitted_strata.h
+class PlaneDoubles;  // trace/mirrors/plane_doubles.h
 
 inline constexpr int64_t kMostRays = 10000000000;
 
@@ -35,8 +36,9 @@ bool has_steady_rays(const Scene& scene, const Radar& radar, Scatterers scattere
 // a radar without antennas, a smooth mirror that is not flat, or a motion that does not cover the frame; raises
 // DeviceError; raises Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves
 // its own for the next: the record is the same and comes sooner, but the memory stays in use. `fitted` does the same for
-// the strata of surfaces that the trace before saw from the same place.
+// the strata of surfaces that the trace before saw from the same place. `doubles` becomes what was left out of the rays'
+// paths, because images over unflagged planes stand for it.
 Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
-            KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
+            KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr, PlaneDoubles* doubles = nullptr);
 
 }  // namespace echopath

@@ -216,7 +216,7 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
 
 // Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their
 // memory.
-Paths Tracer::run(Job* job) const {
+Paths Tracer::run(Job* job, PlaneDoubles* doubles) const {
   Paths paths = empty_;
   RecordWriter record(paths);
   const std::vector<PathBlock> without_rays = find_paths_without_rays(job);
@@ -246,6 +246,7 @@ Paths Tracer::run(Job* job) const {
   record.append(last_blocks, job);
   record.finish();
   images.doubles().leave_out(paths, job);
+  if (doubles) *doubles = images.doubles();
   add_passes(paths, geometry_.rounding(), job);
   return paths;
 }

@@ -16,8 +16,8 @@ class Tracer {
          KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
-  // Shoots all rays; it returns the same record each time.
-  Paths run(Job* job) const;
+  // Shoots all rays; it returns the same record each time. `doubles`, which may be null, is that of `trace`.
+  Paths run(Job* job, PlaneDoubles* doubles = nullptr) const;
   int64_t num_rays() const { return plan_.first_ray.back(); }
   int64_t num_blocks() const;
   void shoot_block(int64_t index, PathBlock& block) const;

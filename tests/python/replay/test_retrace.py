@@ -253,3 +253,17 @@ def test_a_trace_whose_planes_image_themselves_is_no_selection():
     assert paths.num_paths == paths.frame.statistics.num_paths > 0
     again = ep.synthesize(paths, radar, retrace="always", keyframes=2)
     assert np.sum(np.abs(again) ** 2) == pytest.approx(np.sum(np.abs(ep.synthesize(paths, radar)) ** 2), rel=0.1)
+
+
+def test_an_image_that_comes_into_view_takes_the_place_of_rays_over_its_plane():
+    """A blade hides the point of reflection at mid-frame, where rays meet the water beside it; later the image is whole."""
+    radar, water = radar_of(num_chirps=16, num_samples=16), ep.Scene()
+    water.add(facing(2, 2), name="water", material=ep.Material(reflectivity=0.8), position=(5, 0, 0))
+    whole = power_of_chirps(ep.synthesize(ep.trace(water, radar, num_rays=100), radar))
+    water.add(facing(0.02, 1), name="blade", material=ep.Material(reflectivity=1e-6, scattering=1.0),
+              position=(3, -120 * 0.8e-3, 0), motion=ep.LinearMotion(velocity=(0, 120, 0)))
+    paths = ep.trace(water, radar, num_rays=20_000)
+    renewed = power_of_chirps(ep.synthesize(paths, radar, retrace="invalid", keyframes=8))
+    assert paths.select("T 'water' R").num_paths > 10 and np.all(renewed[7:9] < 0.9 * whole[7:9])
+    away = np.r_[0:5, 11:16]
+    assert np.allclose(renewed[away], whole[away], rtol=1e-3)

@@ -87,8 +87,14 @@ void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stre
     Paths found = thinned(seen.paths.select(seen.is_new, job_), job_);
     for (auto time = times.rbegin(); time != times.rend(); ++time) take_out(radar, *time, found, job_, &before);
     times.push_back(settings.time);
-    if (found.num_paths() > 0) found_.push_back(found.with_own_hits(job_));
+    if (found.num_paths() > 0) found_.push_back({found.with_own_hits(job_), seen.doubles.of_images_in(found)});
   }
+}
+
+Paths StretchRecords::renewed(const Paths& paths, const Stretch& stretch) {
+  Paths record = renew(paths, stretch.radar, stretch.middle, job_, &kept_).paths;
+  record.frame.start_time = stretch.start_time;
+  return record;
 }
 
 std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
@@ -98,15 +104,16 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     settings.guide = guide_like(paths_.frame.strata);
     return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
   }
-  std::vector<Paths> records;
-  const auto add = [&](const Paths& paths) {
-    records.push_back(renew(paths, stretch.radar, stretch.middle, job_, &kept_).paths);
-    records.back().frame.start_time = stretch.start_time;
-  };
-  add(paths_);
-  for (const Paths& found : found_) {
-    add(found);
-    if (records.back().num_paths() == 0) records.pop_back();
+  std::vector<Paths> records = {renewed(paths_, stretch)};
+  std::vector<PlaneDoubles> images;
+  for (const auto& [paths, doubles] : found_) {
+    Paths record = renewed(paths, stretch);
+    if (record.num_paths() == 0) continue;
+    images.push_back(doubles.of_images_in(record));
+    records.push_back(std::move(record));
+  }
+  for (const PlaneDoubles& doubles : images) {
+    for (Paths& record : records) doubles.leave_out(record, job_);
   }
   return records;
 }

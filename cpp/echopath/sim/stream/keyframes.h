@@ -7,6 +7,7 @@
 #include "echopath/record/paths.h"
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/trace/embree/kept_geometry.h"
+#include "echopath/trace/mirrors/plane_doubles.h"
 
 namespace echopath {
 
@@ -44,7 +45,8 @@ class StretchRecords {
   // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to
   // kMaxSurfaceSearches stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look
   // could have found become a record with phases of its own. So each piece of surface stands in one of the records, with the
-  // same material points and phases throughout. All arguments must outlive it; a selection of paths gets no new surface.
+  // same material points and phases throughout. Where it finds an image over a plane that nobody flagged, the rays'
+  // paths over that plane are left out for as long as the image is there. All arguments must outlive it; a selection of paths gets no new surface.
   // Raises invalid_argument for kAlways with a selection.
   StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace,
                  Job* job = nullptr);
@@ -52,13 +54,20 @@ class StretchRecords {
   std::vector<Paths> of(const Stretch& stretch);
 
  private:
+  // Holds paths on new surface, and which paths of rays the images among them stand for.
+  struct Found {
+    Paths paths;
+    PlaneDoubles doubles;
+  };
+
   void find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches);
+  Paths renewed(const Paths& paths, const Stretch& stretch);
 
   const Paths& paths_;
   Retrace retrace_;
   Job* job_;
   KeptGeometry kept_;
-  std::vector<Paths> found_;  // paths on new surface
+  std::vector<Found> found_;
 };
 inline constexpr int kMaxSurfaceSearches = 32;
 

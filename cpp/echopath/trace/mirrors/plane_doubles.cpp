@@ -47,21 +47,34 @@ bool PlaneDoubles::is_same(const PlaneDoubles& other, std::span<const uint32_t> 
   return num_with_planes(*this) == num_with_planes(other);
 }
 
-bool PlaneDoubles::is_double(const Paths& paths, size_t path, Sequence& of_path) const {
-  if (!paths.is_coherent_with_cell(path)) return false;
+const OrdersAboutCorners* PlaneDoubles::find(const Paths& paths, size_t path, Sequence& of_path) const {
   const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
   of_path.planes.clear();
   for (int k = 0; k < paths.num_bounces[path]; ++k) {
     const std::vector<int>& of_triangle = plane_of_triangle[hits[k].mesh_id];
     const int plane = of_triangle.empty() ? -1 : of_triangle[hits[k].triangle_id];
-    if (plane < 0) return false;
+    if (plane < 0) return nullptr;
     of_path.planes.push_back(plane);
   }
   of_path.ascending = of_path.planes;
   std::ranges::sort(of_path.ascending);
-  const auto orders = left_out_.find(of_path.ascending);
-  return orders != left_out_.end() &&
-         std::ranges::any_of(orders->second, [&](const OrdersAboutCorners& one) { return one.contain(of_path.planes); });
+  const auto same_planes = left_out_.find(of_path.ascending);
+  if (same_planes == left_out_.end()) return nullptr;
+  for (const OrdersAboutCorners& orders : same_planes->second) {
+    if (orders.contain(of_path.planes)) return &orders;
+  }
+  return nullptr;
+}
+
+PlaneDoubles PlaneDoubles::of_images_in(const Paths& paths) const {
+  PlaneDoubles of_images;
+  of_images.plane_of_triangle = plane_of_triangle;
+  Sequence of_path;
+  for (size_t path = 0; path < paths.offsets.size(); ++path) {
+    if (paths.is_of_a_ray(path) || (paths.flags[path] & kEdgePath)) continue;
+    if (const OrdersAboutCorners* orders = find(paths, path, of_path)) of_images.add(*orders);
+  }
+  return of_images;
 }
 
 void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
@@ -71,7 +84,9 @@ void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
   Job own(job);
   parallel_for_chunks(paths.num_paths(), kTogether, [&](int64_t begin, int64_t end) {
     Sequence of_path;
-    for (int64_t path = begin; path < end; ++path) keep[path] = !is_double(paths, path, of_path);
+    for (int64_t path = begin; path < end; ++path) {
+      keep[path] = !paths.is_coherent_with_cell(path) || !find(paths, path, of_path);
+    }
   }, &own);
   paths = paths.select(keep, &own);
   paths.frame.statistics.num_paths = paths.num_paths();  // what is left is the whole record

@@ -29,6 +29,8 @@ class PlaneDoubles {
   // Adds sequences of planes whose paths the image method has found: leave_out() removes the paths of rays over these.
   void add(OrdersAboutCorners orders);
   bool any() const { return !left_out_.empty(); }
+  // Returns what of it these images stand for: paths of no ray, of any record of the same scene.
+  PlaneDoubles of_images_in(const Paths& paths) const;
   // Removes the paths of rays for which the image method has paths of its own. Raises Cancelled.
   void leave_out(Paths& paths, Job* job) const;
   // Returns whether both leave out the same, where the meshes of this one have the IDs `id_there` in the other one, or none
@@ -38,7 +40,8 @@ class PlaneDoubles {
  private:
   struct Sequence;  // the planes of a path, kept from path to path for its memory
 
-  bool is_double(const Paths& paths, size_t path, Sequence& of_path) const;
+  // Returns the sequence that a path has, in one of its orders; null: none, or it meets something else.
+  const OrdersAboutCorners* find(const Paths& paths, size_t path, Sequence& of_path) const;
 
   // Sequences whose echoes by rays are left out, by their planes in ascending order.
   std::map<std::vector<int>, std::vector<OrdersAboutCorners>> left_out_;

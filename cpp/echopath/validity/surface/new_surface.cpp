@@ -35,7 +35,8 @@ SurfaceSearch trace_new_surface(const Paths& record, const Radar& radar, const S
   rays.seed = settings.seed;
   rays.start_time = settings.time;
   const Radar instant = instant_radar(record, radar, settings.antenna);
-  SurfaceSearch look{trace(record.scene, instant, rays, job, now), {}};
+  SurfaceSearch look;
+  look.paths = trace(record.scene, instant, rays, job, now, nullptr, &look.doubles);
   look.is_new = still_there(look.paths, instant, record.frame.trace_time, job, then);
   for (uint8_t& is_new : look.is_new) is_new = !is_new;
   return look;

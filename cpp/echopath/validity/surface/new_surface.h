@@ -5,6 +5,7 @@
 
 #include "echopath/base/threads/job.h"
 #include "echopath/trace/embree/kept_geometry.h"
+#include "echopath/trace/mirrors/plane_doubles.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {
@@ -16,6 +17,7 @@ TraceSettings settings_like(const TraceFrame& frame);
 struct SurfaceSearch {
   Paths paths;                  // all paths of this trace, [P]
   std::vector<uint8_t> is_new;  // [P] 1: a trace at the time of the record could not have found the path
+  PlaneDoubles doubles;         // what the images among all of them stand for
 };
 
 struct SurfaceSearchSettings {

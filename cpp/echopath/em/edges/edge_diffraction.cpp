@@ -11,57 +11,13 @@ namespace {
 constexpr double kLeastSine = 1e-3;     // of the angle between a wave and the edge
 constexpr double kLeastHeight = 1e-3;   // rad: directions nearer to the plane of a face count as that far off it
 constexpr double kOnFace = 1e-9;        // rad: a direction so little inside of a face lies on it
-constexpr double kLeastApart = 1e-5;    // rad: nearer to a boundary, the difference of two poles is taken from there
 constexpr double kRim = 1e-4;           // rad: the rim of a sheet has an exterior angle of 2 pi within that
-constexpr double kLeastForward = 1e-6;  // sine of the angle to the grazing ray, where a coefficient ends to grow
 
 // Returns the angle about the edge from a face to a direction, in [0, 2 pi) rad.
 double angle_from(const WedgeFace& face, const Vec3& direction) {
   const double angle = std::atan2(direction.dot(face.normal), direction.dot(face.inward));
   if (angle >= 0) return angle;
   return angle > -kOnFace ? 0.0 : angle + kTwoPi;
-}
-
-// Holds functions of w, where cos w = c: sin(w/n)/sin w, and cos of a/n and of a less those of w/n and of w, for an angle a.
-// For c > 1 the angle w is imaginary and all of them are real.
-struct AtAngle {
-  double ratio, difference_of_parts, difference;
-};
-
-AtAngle at_angle(double c, double n, double& angle) {
-  if (c > 1.0) {
-    const double w = std::max(std::acosh(c), kLeastApart);
-    const auto difference = [&](double part) {
-      const double real = std::sin(0.5 * angle / part), imaginary = std::sinh(0.5 * w / part);
-      return -2.0 * (real * real + imaginary * imaginary);
-    };
-    return {std::sinh(w / n) / std::sinh(w), difference(n), difference(1.0)};
-  }
-  const double w = std::acos(std::max(c, -1.0));
-  if (std::abs(w - angle) < kLeastApart) angle = w < 0.5 ? w + kLeastApart : w - kLeastApart;
-  const auto difference = [&](double part) {
-    return -2.0 * std::sin(0.5 * (angle + w) / part) * std::sin(0.5 * (angle - w) / part);
-  };
-  const double sine = w < 0.5 * kPi ? std::sin(w) : std::max(std::sin(w), kLeastForward);
-  return {sine > 0 ? std::sin(w / n) / sine : 1.0 / n, difference(n), difference(1.0)};
-}
-
-// Returns the part of the matrix that one face makes. `angle` is that of the source, from this face; `n` is the exterior
-// angle over pi. The integrals of a current's two components along the strip are those of the exact solution less `lit`
-// times those of the incident field: 2 for physical optics on a lit face. `at_edge` is what the current across the edge
-// leaves there.
-Mat3 currents_of_face(const WedgeFace& face, double n, double angle, double lit, const Vec3& in, const Vec3& out) {
-  const Vec3 edge = face.inward.cross(face.normal);
-  const double cosine = in.dot(edge), sine = std::sqrt(1.0 - cosine * cosine);
-  const double mu = (out.dot(sine * face.inward + cosine * edge) - cosine * cosine) / (sine * sine);
-  const AtAngle at = at_angle(-mu, n, angle);
-  const double across = (2.0 * at.ratio / (n * at.difference_of_parts) - lit / at.difference) / sine;
-  const double along =
-      (2.0 * std::sin(angle / n) / (n * at.difference_of_parts) - lit * std::sin(angle) / at.difference) / sine;
-  const double at_edge = 2.0 / n - lit;
-  const Vec3 magnetic = edge.cross(in);
-  const double of_magnetic = (mu * across - at_edge / sine) * cosine / sine;
-  return face.inward * across * magnetic.transpose() + edge * (along / sine * edge + of_magnetic * magnetic).transpose();
 }
 
 // Returns a direction near the plane of a face as one a little off it. Toward the grazing ray itself the coefficient depends
@@ -87,19 +43,24 @@ bool is_rim(const Wedge& wedge) { return wedge.exterior_angle > kTwoPi - kRim; }
 Vec3 axis_of(const Wedge& wedge) { return wedge.faces[0].inward.cross(wedge.faces[0].normal); }
 
 bool is_outside(const Wedge& wedge, const Vec3& direction) {
-  return angle_from(wedge.faces[0], direction) <= wedge.exterior_angle + kOnFace;
+  const auto is_before = [&](const WedgeFace& face) { return direction.dot(face.normal) >= -kOnFace; };
+  const bool before_first = is_before(wedge.faces[0]), before_second = is_before(wedge.faces[1]);
+  return wedge.exterior_angle > kPi ? before_first || before_second : before_first && before_second;
 }
 
-Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& toward) {
-  const Vec3 out = off_faces(wedge, toward);
-  const Vec3 edge = axis_of(wedge);
-  if (edge.cross(in).norm() < kLeastSine || !is_outside(wedge, -in) || !is_outside(wedge, out)) return Mat3::Zero();
-  const double n = wedge.exterior_angle / kPi;
-  const double first = std::min(angle_from(wedge.faces[0], -in), wedge.exterior_angle),
-               second = wedge.exterior_angle - first;
-  const auto lit = [](double angle) { return angle < kPi ? 2.0 : 0.0; };
-  const Mat3 currents = currents_of_face(wedge.faces[0], n, first, lit(first), in, out) +
-                        currents_of_face(wedge.faces[1], n, second, lit(second), in, out);
+Fringe::Fringe(const Wedge& wedge, const Vec3& in) : wedge_(wedge) {
+  if (axis_of(wedge).cross(in).norm() < kLeastSine || !is_outside(wedge, -in)) return;
+  const double n = wedge.exterior_angle / kPi, source = angle_about(wedge, -in);
+  const auto of_face = [&](int face, double angle) {
+    return FaceCurrents(wedge.faces[face], n, angle, angle < kPi ? 2.0 : 0.0, in);
+  };
+  faces_ = {of_face(0, source), of_face(1, wedge.exterior_angle - source)};
+}
+
+Mat3 Fringe::toward(const Vec3& direction) const {
+  const Vec3 out = off_faces(wedge_, direction);
+  if (!faces_ || !is_outside(wedge_, out)) return Mat3::Zero();
+  const Mat3 currents = (*faces_)[0].toward(out) + (*faces_)[1].toward(out);
   return currents - out * (out.transpose() * currents);
 }
 
@@ -108,8 +69,8 @@ Vec3 field_of_grazing_wave(const Wedge& wedge, int face, const Vec3& along, cons
   const double sine = axis_of(wedge).cross(along).norm();
   if (sine < kLeastSine || !is_outside(wedge, out)) return Vec3::Zero();
   const double n = wedge.exterior_angle / kPi;
-  const Mat3 fringe = currents_of_face(wedge.faces[face], n, 0.0, 2.0, along, out) +
-                      currents_of_face(wedge.faces[1 - face], n, wedge.exterior_angle, 0.0, along, out);
+  const Mat3 fringe = FaceCurrents(wedge.faces[face], n, 0.0, 2.0, along).toward(out) +
+                      FaceCurrents(wedge.faces[1 - face], n, wedge.exterior_angle, 0.0, along).toward(out);
   // The current of the wave itself is twice its magnetic field, and ends at the edge.
   const Vec3 currents = fringe * wedge.faces[face].normal + 2.0 * sine / (1.0 - along.dot(out)) * along;
   return currents - out * out.dot(currents);

@@ -10,17 +10,14 @@
 // em/edges/multiple_diffraction.h has what then goes on from edge to edge. Sources: Michaeli 1986, "Elimination of
 // infinities in equivalent edge currents, part I: fringe current components"; Mitzner 1974 integrates across the edge
 // instead; both agree on the cone (Knott 1985).
+#include <array>
 #include <complex>
+#include <optional>
 
 #include "echopath/base/geometry.h"
+#include "echopath/em/edges/face_currents.h"
 
 namespace echopath {
-
-// Describes a face that ends at an edge by two unit vectors across the edge.
-struct WedgeFace {
-  Vec3 inward;  // in the face, away from the edge
-  Vec3 normal;  // of its outside
-};
 
 // Describes a wedge by its faces and the angle of the space around it, in (0, 2 pi] rad: 2 pi at the rim of a sheet, whose
 // faces differ by their normals, 1.5 pi at the edge of a box.
@@ -42,11 +39,23 @@ Vec3 axis_of(const Wedge& wedge);
 // Returns whether a unit vector from the edge leads into the space around the wedge.
 bool is_outside(const Wedge& wedge, const Vec3& direction);
 
-// Returns the real matrix M of the fringe of an edge. A wave that travels along the unit vector `in` with the field E makes
-// the field -j/(2 k) M E, across the unit vector `out`, that takes the place of Gamma K E of physical optics
-// (surface_response.h) times an area: it counts per metre of the edge, in m. M is zero inside of the wedge, for a flat
-// wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not defined.
-Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out);
+// Holds what a wave that travels along the unit vector `in` determines of the fringe of an edge. toward() returns the real
+// matrix M, with which a wave of the field E makes the field -j/(2 k) M E, across the unit vector `out`, that takes the place
+// of Gamma K E of physical optics (surface_response.h) times an area: it counts per metre of the edge, in m. M is zero inside
+// of the wedge, for a flat wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not
+// defined.
+class Fringe {
+ public:
+  Fringe(const Wedge& wedge, const Vec3& in);
+  Mat3 toward(const Vec3& out) const;
+
+ private:
+  Wedge wedge_;
+  std::optional<std::array<FaceCurrents, 2>> faces_;  // none: M is zero
+};
+
+// Returns the matrix of one wave toward one direction.
+inline Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out) { return Fringe(wedge, in).toward(out); }
 
 // Returns the amplitude of the echo of a piece of an edge that is `piece` (m) long, at the distances `in` and `out` (m) from
 // both antennas. `field` is sqrt(Pt Gt Gr)/(4 pi) times what M couples from one antenna to the other.

@@ -98,7 +98,7 @@ double MultipleDiffraction::detour(const Vec3& in, double distance) const {
   return sine2 > 1e-6 ? -0.5 * slope * slope / (sine2 * (1.0 / distance + 1.0 / length_)) : 0.0;
 }
 
-std::complex<double> MultipleDiffraction::enter(const Vec3& in, const FieldVector& field, double distance) const {
+FieldVector MultipleDiffraction::enter(const Vec3& in, double distance) const {
   const Link& link = links_.front();
   const Wedge& wedge = edges_.front().wedge;
   const Vec3 travel = beside(on_cone(in, link.along, axis_of(wedge)), link.along, -link.normal);
@@ -108,7 +108,7 @@ std::complex<double> MultipleDiffraction::enter(const Vec3& in, const FieldVecto
   const double apart = link.length * distance / (link.length + distance);
   const std::complex<double> shadow = transition(wavenumber_ * apart * (1.0 - travel.dot(link.along)));
   const double of_sphere = std::sqrt(distance / (distance + length_));
-  return of_sphere * shadow * spread(link) * between_ * (row.transpose() * field).value();
+  return of_sphere * shadow * spread(link) * between_ * row.cast<std::complex<double>>();
 }
 
 FieldVector MultipleDiffraction::leave(const Vec3& out, double distance) const {

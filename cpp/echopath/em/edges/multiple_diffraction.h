@@ -41,9 +41,9 @@ class MultipleDiffraction {
   // that arrives in the direction `in` from an antenna at a distance (m): where it is not the wave for which the points lie
   // on Keller's cone.
   double detour(const Vec3& in, double distance) const;
-  // Returns the strength across the last face, where it arrives, of the wave that a field makes which arrives at the first
-  // edge along `in` from a distance (m). The phase of the way is left out.
-  std::complex<double> enter(const Vec3& in, const FieldVector& field, double distance) const;
+  // Returns the row that makes of a field which arrives at the first edge along `in` from a distance (m) the strength of its
+  // wave across the last face, where it arrives there. The phase of the way is left out.
+  FieldVector enter(const Vec3& in, double distance) const;
   // Returns the vector V of what leaves the last edge toward `out` to a distance (m): -j/(2 k) V per metre of that edge for
   // a unit strength, as fringe_matrix has it.
   FieldVector leave(const Vec3& out, double distance) const;

@@ -58,8 +58,9 @@ class EdgeEchoes {
   EdgeEchoes(const PathPreparer& preparer, const RadioConstants& radio)
       : paths_(preparer.paths()), radio_(radio), frequency_(kSpeedOfLight / radio.wavelength), hits_(64) {}
 
-  // Sets the path that is looked at, at a node. `sheets` are those on its way that turn polarisations, or null.
-  void pose(const LocalPath& path, const PosedScene& scene, PathPassages* sheets) {
+  // Sets the path that is looked at, at a node. `sheets` are those on its way that turn polarisations, or null. Without
+  // `with_amplitudes` it is looked at for its lengths alone.
+  void pose(const LocalPath& path, const PosedScene& scene, PathPassages* sheets, bool with_amplitudes) {
     sheets_ = sheets;
     if (sheets_) sheets_->pose(scene);
     pose_hits(path, scene, hits_.data());
@@ -77,22 +78,24 @@ class EdgeEchoes {
     is_past_edge_ = (path.flags & kPastEdge) != 0;
     find_waves(path, scene.antennas(is_reversed_), true, in_);
     find_waves(path, scene.antennas(!is_reversed_), false, out_);
+    if (with_amplitudes) find_diffraction();
   }
 
   double length(size_t transmitter, size_t receiver) const {
-    const WaveAtEdge& in = wave_in(transmitter, receiver);
+    const WaveAtEdge& in = in_[index_in(transmitter, receiver)];
     const double over_faces = multiple_ ? multiple_->length() + multiple_->detour(in.direction, in.length) : 0.0;
-    return in.length + over_faces + wave_out(transmitter, receiver).length;
+    return in.length + over_faces + out_[index_out(transmitter, receiver)].length;
   }
 
   // `polarization` is that of the transmitter.
   std::complex<double> amplitude(size_t transmitter, size_t receiver, const Vec3& polarization,
                                  std::complex<double> weight) const {
-    const WaveAtEdge &in = wave_in(transmitter, receiver), &out = wave_out(transmitter, receiver);
+    const size_t index_in = this->index_in(transmitter, receiver), index_out = this->index_out(transmitter, receiver);
+    const WaveAtEdge &in = in_[index_in], &out = out_[index_out];
     if (!reaches_antenna(in.length) || !reaches_antenna(out.length) || is_broken()) return 0.0;
     const Vec3 departure = -out.direction;
     const std::complex<double> coupled = Fields::seen(out, polarization, departure).transpose() *
-                                         diffracted(Fields::seen(in, polarization, in.direction), in, departure, out.length);
+                                         diffracted(Fields::seen(in, polarization, in.direction), index_in, index_out);
     const double size = edge_amplitude(radio_.coherent_scale() * in.root_gain * out.root_gain, piece_.norm(),
                                        radio_.wavenumber, in.length, out.length);
     const std::complex<double> factor =
@@ -104,19 +107,33 @@ class EdgeEchoes {
 
  private:
   // A reversed path begins at the receiver.
-  const WaveAtEdge& wave_in(size_t transmitter, size_t receiver) const { return in_[is_reversed_ ? receiver : transmitter]; }
-  const WaveAtEdge& wave_out(size_t transmitter, size_t receiver) const {
-    return out_[is_reversed_ ? transmitter : receiver];
-  }
+  size_t index_in(size_t transmitter, size_t receiver) const { return is_reversed_ ? receiver : transmitter; }
+  size_t index_out(size_t transmitter, size_t receiver) const { return is_reversed_ ? transmitter : receiver; }
 
   // Returns whether the points of several edges no longer lie on flat faces that connect them.
   bool is_broken() const { return edges_.size() > 1 && !multiple_; }
 
-  // Returns what leaves the last edge toward an antenna that is `distance` (m) away.
-  FieldVector diffracted(const FieldVector& field, const WaveAtEdge& in, const Vec3& departure, double distance) const {
-    if (multiple_) return multiple_->leave(departure, distance) * multiple_->enter(in.direction, field, in.length);
+  // Finds what the wave of each antenna determines by itself.
+  void find_diffraction() {
+    fringes_.clear();
+    entered_.clear();
+    left_.clear();
+    for (const WaveAtEdge& in : in_) {
+      if (multiple_) entered_.push_back(multiple_->enter(in.direction, in.length));
+      else if (!is_past_edge_) fringes_.emplace_back(edges_.front().wedge, in.direction);
+    }
+    for (const WaveAtEdge& out : out_) {
+      if (multiple_) left_.push_back(multiple_->leave(-out.direction, out.length));
+    }
+  }
+
+  // Returns what leaves the last edge toward an antenna of the field that another one sends to the first.
+  FieldVector diffracted(const FieldVector& field, size_t index_in, size_t index_out) const {
+    if (multiple_) return left_[index_out] * (entered_[index_in].transpose() * field).value();
+    const WaveAtEdge& in = in_[index_in];
+    const Vec3 departure = -out_[index_out].direction;
+    if (!is_past_edge_) return fringes_[index_in].toward(departure) * field;
     const DiffractingEdge& edge = edges_.front();
-    if (!is_past_edge_) return fringe_matrix(edge.wedge, in.direction, departure) * field;
     // `mirrors_` are those at the end of the path, of which the last one is next to the edge.
     const PosedHit& next = mirrors_.hits.back();
     const double behind = next.normal.dot(next.point - edge.point) / next.normal.dot(departure);
@@ -187,6 +204,8 @@ class EdgeEchoes {
   std::vector<WaveAtEdge> in_, out_;
   std::vector<DiffractingEdge> edges_;           // of the path
   std::optional<MultipleDiffraction> multiple_;  // over them, where there are several
+  std::vector<Fringe> fringes_;                  // of in_, at a single edge
+  std::vector<FieldVector> entered_, left_;      // of in_ and out_, over several edges (MultipleDiffraction)
   Vec3 piece_;                                   // m, of the last one
 };
 
@@ -221,7 +240,7 @@ void evaluate(const SharedLegPlan& plan, const RecordSheets& sheets, const Posed
     const size_t num_receivers = scene.receivers.size();
     for (size_t i = 0; i < indices.size(); ++i) {
       const std::complex<double> weight = weight_of(preparer.paths(), static_cast<size_t>(indices[i]));
-      echoes.pose(local.paths[i], scene, on_paths.of(i));
+      echoes.pose(local.paths[i], scene, on_paths.of(i), with_amplitudes);
       for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
         const size_t of_all = channels.first + channel, transmitter = of_all / num_receivers,
                      receiver = of_all % num_receivers;

@@ -170,8 +170,8 @@ class EdgeTracer {
   // Returns the strength on the last face.
   double strength(const MultipleDiffraction& multiple, const Leg& leg) const {
     const Vec3 in = -leg.to_antenna;
-    return coefficients_.strongest(
-        in, [&](const Vec3& field) { return std::abs(multiple.enter(in, field.cast<std::complex<double>>(), leg.length)); });
+    const FieldVector row = multiple.enter(in, leg.length);
+    return coefficients_.strongest(in, [&](const Vec3& field) { return std::abs(row.dot(field)); });
   }
 
   // Returns whether multiple diffraction sends at least kLeastDiffracted of the edge of a half plane, likewise.

@@ -8,10 +8,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kLeastSine = 1e-3;     // of the angle between a wave and the edge
-constexpr double kLeastHeight = 1e-3;   // rad: directions nearer to the plane of a face count as that far off it
-constexpr double kOnFace = 1e-9;        // rad: a direction so little inside of a face lies on it
-constexpr double kRim = 1e-4;           // rad: the rim of a sheet has an exterior angle of 2 pi within that
+constexpr double kLeastSine = 1e-3;    // of the angle between a wave and the edge
+constexpr double kLeastHeight = 1e-3;  // rad: directions nearer to the plane of a face count as that far off it
+constexpr double kOnFace = 1e-9;       // rad: a direction so little inside of a face lies on it
+constexpr double kRim = 1e-4;          // rad: the rim of a sheet has an exterior angle of 2 pi within that
 
 // Returns the angle about the edge from a face to a direction, in [0, 2 pi) rad.
 double angle_from(const WedgeFace& face, const Vec3& direction) {

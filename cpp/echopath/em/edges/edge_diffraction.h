@@ -40,9 +40,9 @@ Vec3 axis_of(const Wedge& wedge);
 bool is_outside(const Wedge& wedge, const Vec3& direction);
 
 // Holds what a wave that travels along the unit vector `in` determines of the fringe of an edge. toward() returns the real
-// matrix M, with which a wave of the field E makes the field -j/(2 k) M E, across the unit vector `out`, that takes the place
-// of Gamma K E of physical optics (surface_response.h) times an area: it counts per metre of the edge, in m. M is zero inside
-// of the wedge, for a flat wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not
+// matrix M, with which a wave of the field E makes the field -j/(2 k) M E, across the unit vector `out`, that takes the
+// place of Gamma K E of physical optics (surface_response.h) times an area: it counts per metre of the edge, in m. M is zero
+// inside of the wedge, for a flat wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not
 // defined.
 class Fringe {
  public:

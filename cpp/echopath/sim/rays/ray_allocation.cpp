@@ -267,6 +267,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
     TraceSettings launch = settings;
     launch.num_rays = settings.num_rays / kPilotDivisor;
     launch.num_rays_to_come = settings.num_rays;
+    launch.edges = false;  // their echoes need no rays
     return trace(seen, radar, launch, &unseen, geometry, strata);
   };
   const auto guide_by = [&](const Paths& pilot, int64_t num_rays, const StillRays& still) {

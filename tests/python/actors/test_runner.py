@@ -89,6 +89,25 @@ def test_paws_of_a_dog_rest_on_the_ground_while_they_bear(speed):
         assert bears.sum() > 50 and np.median(speeds[bears]) < 0.35 * speed   # the contact rolls over a round paw
 
 
+def legs_of(dog, height, times):
+    """{leg: [4, T, 3]}: both ends of the upper and of the lower bar, downwards, in m."""
+    motions, found = {part.name: part.motion for part in dog.parts}, {}
+    for leg, length in (("fore_left", 0.34 * height), ("hind_left", 0.36 * height)):
+        poses = [np.array([motions[f"leg_{leg}/{bar}"].at(float(time)) for time in times]) for bar in ("upper", "lower")]
+        found[leg] = np.array([pose[:, :3, 3] + side * length * pose[:, :3, 2] for pose in poses for side in (0.5, -0.5)])
+    return found
+
+
+@pytest.mark.parametrize("speed", [1.0, 2.2, 4.0])
+def test_the_parts_of_a_dogs_leg_meet_and_none_is_faster_than_its_paw(speed):
+    rate = 240.0  # 1/s, of the keyframes
+    times = np.arange(0, 160) / rate
+    for top, knee, below, paw in legs_of(ep.actors.dog(speed=speed, start_time=0.0, duration=1.0), 0.57, times).values():
+        assert np.linalg.norm(knee - below, axis=1).max() < 1e-9
+        fastest = [np.linalg.norm(np.diff(joint, axis=0), axis=1).max() * rate for joint in (top, knee, paw)]
+        assert max(fastest[:2]) < fastest[2]
+
+
 def test_a_dog_at_rest_has_no_motion_and_its_withers_height():
     dog = ep.actors.dog(height=0.6, speed=0.0)
     assert all(part.motion is None for part in dog.parts)

@@ -21,6 +21,9 @@ HALF_TRACK = 0.13                                # y of the legs
 SEGMENTS = {"fore": (0.34, 0.34), "hind": (0.36, 0.36)}       # upper and lower part of the legs
 RADII = {"upper": 0.065, "lower": 0.040}
 KNEE_SIDE = {"fore": -1.0, "hind": 1.0}          # elbows bend backwards, knees forwards
+GIRDLE = 0.3                                     # of the way of a paw from under its joint, by which that goes along: shoulder
+# blades turn about their upper ends, some 0.95 heights above the ground, and the pelvis turns with the back
+STRAIGHTEST, SHARPNESS = 0.985, 24.0             # longest leg over both of its parts, and the power by which it is approached
 FUR = _core.Material(reflectivity=0.15, scattering=0.95)
 # A wet skin under dry fur, effective: the power that skin reflects (0.34 at normal incidence), less what centimetres of fur
 # are taken to scatter and absorb.
@@ -137,7 +140,7 @@ def _under(height: float, kind: str, side: float):
 def _paw(cycles, step):
     """Paw [T, 2] (x relative to the place under its joint, z) in heights of the withers: planted, then through the air.
 
-    step: way of a cycle. In swing x is a cubic that leaves and meets the ground at its speed, less a quarter of a sine.
+    step: way of a cycle. In swing x is a line, of the speed of the ground, and a quintic that begins and ends at rest beside it.
     """
     part = np.mod(cycles, 1.0)
     reach = 0.5 * SUPPORT * step
@@ -155,20 +158,25 @@ def _frames(height: float, body, feet: dict) -> dict:
              for name, (_, _, place, pitch) in TRUNK.items()}
     for name, kind, side, _ in LEGS:
         joint, foot = _joint(height, kind, side) + body, feet[name]
-        knee = _knee(kind, joint, foot, *(height * length for length in SEGMENTS[kind]))
+        joint = joint + GIRDLE * (foot - joint) * [1.0, 1.0, 0.0]
+        joint, knee = _bent(kind, joint, foot, *(height * length for length in SEGMENTS[kind]))
         found |= {f"leg_{name}/upper": _between(joint, knee), f"leg_{name}/lower": _between(knee, foot)}
     return found
 
 
-def _knee(kind: str, joint, foot, upper: float, lower: float):
-    """Elbow or knee [T, 3] between a joint and a foot [T, 3], above and below which the leg has these lengths in m."""
-    between = joint - foot
+def _bent(kind: str, joint, foot, upper: float, lower: float):
+    """(joint, elbow or knee), [T, 3] each, of a leg to a foot [T, 3], above and below whose knee it has these lengths in m.
+
+    The joint comes down the line to a foot that is far away, so that the leg stays bent: near a straight one the rate of its knee
+    has no bound.
+    """
+    between, straightest = joint - foot, STRAIGHTEST * (upper + lower)
     length = np.linalg.norm(between, axis=-1, keepdims=True)
-    distance, along = np.minimum(length, 0.999 * (upper + lower)), between / length
+    along, distance = between / length, length * (1.0 + (length / straightest) ** SHARPNESS) ** (-1.0 / SHARPNESS)
     below = (distance**2 + lower**2 - upper**2) / (2.0 * distance)
     across = np.array([1.0, 0.0, 0.0]) - along[:, :1] * along
     across /= np.linalg.norm(across, axis=-1, keepdims=True)
-    return foot + below * along + KNEE_SIDE[kind] * np.sqrt(np.maximum(lower**2 - below**2, 0.0)) * across
+    return foot + distance * along, foot + below * along + KNEE_SIDE[kind] * np.sqrt(lower**2 - below**2) * across
 
 
 def _between(start, end) -> Frames:

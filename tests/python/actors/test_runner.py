@@ -108,6 +108,18 @@ def test_the_parts_of_a_dogs_leg_meet_and_none_is_faster_than_its_paw(speed):
         assert max(fastest[:2]) < fastest[2]
 
 
+def test_dogs_of_all_heights_trot_alike():
+    """At one ratio of speed^2 to height, the ways of their paws are alike in heights and roots of heights (Froude)."""
+    times, paws = np.linspace(0.0, 0.5, 41), []
+    for height in (0.57, 0.3):
+        scale = np.sqrt(height / 0.57)
+        dog = ep.actors.dog(height=height, speed=4.0 * round(scale, 3), start_time=0.0)
+        paws.append(legs_of(dog, height, times * scale)["fore_left"][3] / height)
+    assert np.abs(paws[1] - paws[0]).max() < 0.02   # of keyframes at other phases, and of the rounding of the speed
+    with pytest.raises(ValueError, match="speed: must be a finite number from 0 to 2.902 m/s for a height of 0.3 m, got 4"):
+        ep.actors.dog(height=0.3, speed=4.0)
+
+
 def test_a_dog_at_rest_has_no_motion_and_its_withers_height():
     dog = ep.actors.dog(height=0.6, speed=0.0)
     assert all(part.motion is None for part in dog.parts)

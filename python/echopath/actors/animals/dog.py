@@ -15,7 +15,8 @@ from ..laid_line import LaidLine, usual_speed
 from ..limits import size_rule
 from ..shapes import capsule, ellipsoid
 
-# Proportions of a Labrador retriever in heights of its withers (0.57 m by the breed's standard), drawn after photographs.
+REFERENCE_HEIGHT = 0.57                          # m, of the withers of a Labrador retriever, by the breed's standard
+# Its proportions in heights of its withers, drawn after photographs.
 SHOULDER, HIP = (0.42, 0.66), (-0.48, 0.66)     # x, z of the upper joints of the legs
 HALF_TRACK = 0.13                                # y of the legs
 SEGMENTS = {"fore": (0.34, 0.34), "hind": (0.36, 0.36)}       # upper and lower part of the legs
@@ -28,7 +29,9 @@ FUR = _core.Material(reflectivity=0.15, scattering=0.95)
 # A wet skin under dry fur, effective: the power that skin reflects (0.34 at normal incidence), less what centimetres of fur
 # are taken to scatter and absorb.
 
-STRIDE_FREQUENCY = (1.35, 0.33)   # 1/s at rest and its growth with the speed in 1/m: trotting dogs of that size, from memory
+# 1/s at rest and its growth with the speed in 1/m: trotting dogs of the reference height, from memory. Times and speeds of others
+# go by the root of their height, so that their steps are as long in heights.
+STRIDE_FREQUENCY = (1.35, 0.33)
 SUPPORT = 0.46                    # share of a cycle that a paw is on the ground
 LIFT = 0.14                       # of a swinging paw, in heights of the withers
 BOUNCE = 0.012                    # amplitude of the trunk, likewise, twice a cycle
@@ -40,11 +43,11 @@ TRUNK = {"trunk": ((0.62, 0.19, 0.22), 0.05, (-0.03, 0.0, 0.77), 2.0),
          "head": ((0.17, 0.13, 0.13), 0.04, (0.75, 0.0, 1.14), 0.0),
          "snout": ((0.15, 0.07, 0.07), 0.03, (0.91, 0.0, 1.09), 8.0),
          "tail": ((0.30, 0.035, 0.035), 0.02, (-0.84, 0.0, 0.80), -22.0)}
-SPEEDS = (0.3, 4.0)               # m/s, least and greatest of a trot
+SPEEDS = (0.3, 4.0)               # m/s, least and greatest of a trot, likewise
 KEYFRAME_RATE = 240.0             # 1/s
 
 
-@checked(height=size_rule, speed=real(0.0, SPEEDS[1], unit="m/s"), start_time=start_time_rule, duration=positive("s"),
+@checked(height=size_rule, speed=real(0.0, unit="m/s"), start_time=start_time_rule, duration=positive("s"),
          phase=real(unit="cycles"), trajectory=trajectory_rule)
 def dog(*, height: float = 0.57, speed: float = 2.2, start_time: float = -0.5, duration: float = 2.5,
         phase: float = 0.0, trajectory: Trajectory | None = None) -> Actor:
@@ -52,8 +55,8 @@ def dog(*, height: float = 0.57, speed: float = 2.2, start_time: float = -0.5, d
 
     Paws on the ground z = 0 do not slide. Parts: trunk, neck, head, snout, tail, leg_fore_left/upper, leg_fore_left/lower, and
     likewise fore_right, hind_left, hind_right.
-    height: m, of the withers. speed: m/s, at most 4. start_time, duration: of the motion in s; a scene can be posed at no
-    other time. phase: of the cycle at time 0, in cycles.
+    height: m, of the withers. speed: m/s, at most 4 for a dog of 0.57 m, others by the root of their height. start_time,
+    duration: of the motion in s; a scene can be posed at no other time. phase: of the cycle at time 0, in cycles.
     trajectory: a Trajectory of the origin that is followed instead of speed, start_time, duration and phase; the steps go with
     its distance, paws on the ground do not slide, and at its stops all are down.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
@@ -62,6 +65,7 @@ def dog(*, height: float = 0.57, speed: float = 2.2, start_time: float = -0.5, d
                              phase=(phase, 0.0))
     if trajectory is not None:
         return _along(height, trajectory)
+    real(0.0, trot_speeds(height)[1], f"m/s for a height of {height:g} m")("speed", speed)
     times = keyframe_times(start_time, duration, KEYFRAME_RATE)
     frequency = stride_frequency(height, speed) if speed else 0.0
     cycles = phase + frequency * times
@@ -78,15 +82,27 @@ def dog(*, height: float = 0.57, speed: float = 2.2, start_time: float = -0.5, d
 
 def stride_frequency(height: float, speed: float) -> float:
     """1/s, of a trot at a speed in m/s."""
-    return (STRIDE_FREQUENCY[0] + STRIDE_FREQUENCY[1] * speed) * np.sqrt(0.57 / height)
+    scale = _scale(height)
+    return (STRIDE_FREQUENCY[0] + STRIDE_FREQUENCY[1] * speed / scale) / scale
+
+
+def trot_speeds(height: float) -> tuple[float, float]:
+    """Least and greatest speed in m/s."""
+    least, greatest = (round(speed * _scale(height), 3) for speed in SPEEDS)
+    return least, greatest
+
+
+def _scale(height: float) -> float:
+    """Times and speeds of a dog over those of one of the reference height."""
+    return float(np.sqrt(height / REFERENCE_HEIGHT))
 
 
 def _along(height: float, trajectory: Trajectory) -> Actor:
-    speed = usual_speed(trajectory._track)
-    if speed > SPEEDS[1]:
-        rule = f"one of at most {SPEEDS[1]:g} m/s for a dog, as most of its way is"
+    speed, (least, greatest) = usual_speed(trajectory._track), trot_speeds(height)
+    if speed > greatest:
+        rule = f"one of at most {greatest:.3g} m/s for a dog of {height:g} m, as most of its way is"
         raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
-    trot = TrotAlong(height, max(speed, SPEEDS[0]), trajectory._track)
+    trot = TrotAlong(height, max(speed, least), trajectory._track)
     times = key_times(trajectory, KEYFRAME_RATE)
     arrays = _arrays(height, trot.frames(times), times)
     return Actor([part.build() for part in with_rates(arrays, trot.frames, times)], trajectory)

@@ -341,3 +341,18 @@ def test_what_is_asked_for_at_other_times_is_worked_out_for_these():
     repeated = Repeated(curves)
     for times in (np.array([0.0, 1.0, 2.0]), np.array([2.0, 0.5, 1.0, 3.0]), np.array([])):
         np.testing.assert_array_equal(repeated.anew()(times), curves(times))
+
+
+@pytest.mark.parametrize("make, speed", [("cyclist", 5.0), ("pedestrian", 1.3), ("runner", 2.8), ("child", 1.0), ("dog", 2.0)])
+def test_what_pitches_on_a_slope_is_as_on_level_ground_which_is_turned(make, speed):
+    """Soles and paws, too, lie on the slope."""
+    angle, settings = math.atan(0.15), {"speed": speed, "stops": [(0, 0.2), (5, 0.3), (math.inf, 0)]}
+    turn = np.array([[math.cos(angle), 0.0, -math.sin(angle)], [0.0, 1.0, 0.0], [math.sin(angle), 0.0, math.cos(angle)]])
+    level = ep.Trajectory([(0, 0, 0), (10, 0, 0)], **settings)
+    scenes = [ep.Scene(), ep.Scene()]
+    for scene, trajectory in zip(scenes, (level, ep.Trajectory([(0, 0, 0), 10.0 * turn[:, 0]], pitch=True, **settings))):
+        scene.add(getattr(ep.actors, make)(trajectory=trajectory), name="a")
+    for mesh in scenes[0].meshes:
+        for time in np.linspace(0.1, level.end, 5).tolist():
+            on_level, on_slope = (scene.world_vertices(mesh.id, time) for scene in scenes)
+            np.testing.assert_allclose(on_slope, on_level @ turn.T, rtol=0, atol=1e-5)   # m, the tolerance of positions

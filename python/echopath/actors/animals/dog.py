@@ -102,23 +102,24 @@ def _along(height: float, trajectory: Trajectory) -> Actor:
     if speed > greatest:
         rule = f"one of at most {greatest:.3g} m/s for a dog of {height:g} m, as most of its way is"
         raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
-    trot = TrotAlong(height, max(speed, least), trajectory._track)
+    trot = TrotAlong(height, max(speed, least), trajectory._track, trajectory._has_pitch)
     times = key_times(trajectory, KEYFRAME_RATE)
     arrays = _arrays(height, trot.frames(times), times)
     return Actor([part.build() for part in with_rates(arrays, trot.frames, times)], trajectory)
 
 
 class TrotAlong:
-    """The trot that is usual at a speed in m/s, along a Track (trajectories/track.py)."""
+    """The trot that is usual at a speed in m/s, along a Track (trajectories/track.py); has_pitch: whether the dog leans with the
+    slope of the path."""
 
-    def __init__(self, height: float, speed: float, track):
-        self._height, self._track = height, track
+    def __init__(self, height: float, speed: float, track, has_pitch: bool):
+        self._height, self._track, self._has_pitch = height, track, has_pitch
         self._length = speed / stride_frequency(height, speed)
         between = 0.5 * (SUPPORT + 0.5)     # one pair has just left the ground, the other is about to meet it
         self._laid = LaidLine(track, speed, 0.5 * self._length, between * self._length)
 
     def frames(self, times):
-        """Frames of every part, by name, at times [T], relative to the place and yaw of the track."""
+        """Frames of every part, by name, at times [T], relative to the place and axes of the track."""
         cycles = self._laid.line.at(times)[0] / self._length
         feet = {name: self._foot(times, cycles - lag, lag, _under(self._height, kind, side)) for name, kind, side, lag in LEGS}
         return _frames(self._height, _bounce(self._height, cycles), feet)
@@ -129,11 +130,17 @@ class TrotAlong:
         s = np.clip((own - cycle - SUPPORT) / (1.0 - SUPPORT), 0.0, 1.0)
         share = (s**3 * (10.0 - 15.0 * s + 6.0 * s**2))[:, None]
         middle = (cycle + lag + 0.5 * SUPPORT) * self._length
-        (place, yaw), (next_place, next_yaw) = (self._laid.footprints(line) for line in (middle, middle + self._length))
-        place, next_place = place + about_z(yaw) @ under, next_place + about_z(next_yaw) @ under
+        place, next_place = (self._planted(line, under) for line in (middle, middle + self._length))
         away = place + share * (next_place - place) - self._track.places(times)[0]
-        away[:, 2] += self._height * LIFT * (4.0 * s * (1.0 - s)) ** 3
-        return np.einsum("tji,tj->ti", about_z(self._track.yaws(times)[0]), away)
+        foot = np.einsum("tji,tj->ti", self._track.axes(times, self._has_pitch)[0], away)
+        foot[:, 2] += self._height * LIFT * (4.0 * s * (1.0 - s)) ** 3
+        return foot
+
+    def _planted(self, line, under):
+        """Places [T, 3] in m of a foot that stands where the body is at places [T] on the line of the gait."""
+        place, yaw = self._laid.footprints(line)
+        slope = self._track.path.slopes(self._laid.distances(line))[0] if self._has_pitch else 0.0 * yaw
+        return place + about_z(yaw) @ about_y(-slope) @ under
 
 
 def _bounce(height: float, cycles):

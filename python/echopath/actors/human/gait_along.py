@@ -17,10 +17,10 @@ LEAST_ROOM = 0.3        # m, of a leg under a hip
 
 
 class GaitAlong:
-    """A Gait (gait.py) along a Track (trajectories/track.py)."""
+    """A Gait (gait.py) along a Track (trajectories/track.py); has_pitch: whether the person leans with the slope of the path."""
 
-    def __init__(self, gait, track):
-        self._gait, self._track = gait, track
+    def __init__(self, gait, track, has_pitch=False):
+        self._gait, self._track, self._has_pitch = gait, track, has_pitch
         self._body, self._length = gait.body, gait.cycle.length
         self._laid = LaidLine(track, gait.speed, 0.5 * self._length, self._both_down() * self._length)
         self._line = self._laid.line
@@ -28,7 +28,7 @@ class GaitAlong:
         self._pelvis_height -= self._too_high()
 
     def frames(self, times):
-        """Frames of every part, by name, at times [T], relative to the place and yaw of the track."""
+        """Frames of every part, by name, at times [T], relative to the place and axes of the track."""
         times = np.asarray(times, float)
         phase = self._line.at(times)[0] / self._length
         pelvis = self._pelvis(phase)
@@ -50,7 +50,7 @@ class GaitAlong:
         return Frames(pelvis.origin - np.outer(phase * self._length, [1.0, 0.0, 0.0]), pelvis.rotation)
 
     def _foot(self, times, phase, sign):
-        """Ankle [T, 3], pitch [T] and yaw [T] of a foot, relative to the place and yaw of the track."""
+        """Ankle [T, 3], pitch [T] and yaw [T] of a foot, relative to the place and axes of the track."""
         own = phase - 0.5 if sign > 0 else phase
         ankle, pitch = self._gait.steps.at(own)
         cycle, support = np.floor(own), self._gait.cycle.support
@@ -60,10 +60,10 @@ class GaitAlong:
         (place, yaw), (next_place, next_yaw) = (self._laid.footprints(line) for line in (first, first + self._length))
         residual = np.stack([ankle[:, 0] - (cycle + share) * self._length,
                              sign * (ankle[:, 1] + 0.5 * self._body.step_width), ankle[:, 2]], axis=-1)
-        yaw, place = yaw + share * (next_yaw - yaw), place + share[:, None] * (next_place - place)
-        own_place, own_yaw = self._track.places(times)[0], self._track.yaws(times)[0]
-        world = place - own_place + np.einsum("tij,tj->ti", about_z(yaw), residual)
-        return np.einsum("tji,tj->ti", about_z(own_yaw), world), pitch, yaw - own_yaw
+        yaw = yaw + share * (next_yaw - yaw) - self._track.yaws(times)[0]
+        away = place + share[:, None] * (next_place - place) - self._track.places(times)[0]
+        ankle = np.einsum("tji,tj->ti", self._track.axes(times, self._has_pitch)[0], away)
+        return ankle + np.einsum("tij,tj->ti", about_z(yaw), residual), pitch, yaw
 
     def _leg(self, times, phase, sign, pelvis):
         gait = self._gait

@@ -93,7 +93,7 @@ def _along(body, gait_of, speeds, trajectory, keyframe_rate, looks):
         rule = f"one of at most {speeds[1]:.3g} m/s for a person of {body.height:g} m, as most of its way is"
         raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
     times = key_times(trajectory, keyframe_rate)
-    gait = GaitAlong(gait_of(body, max(speed, speeds[0])), trajectory._track)
+    gait = GaitAlong(gait_of(body, max(speed, speeds[0])), trajectory._track, trajectory._has_pitch)
     arrays = body_arrays(body, gait.frames(times), times, **looks)
     return Actor([part.build() for part in with_rates(arrays, gait.frames, times)], trajectory)
 

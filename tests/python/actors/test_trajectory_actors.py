@@ -356,3 +356,11 @@ def test_what_pitches_on_a_slope_is_as_on_level_ground_which_is_turned(make, spe
         for time in np.linspace(0.1, level.end, 5).tolist():
             on_level, on_slope = (scene.world_vertices(mesh.id, time) for scene in scenes)
             np.testing.assert_allclose(on_slope, on_level @ turn.T, rtol=0, atol=1e-5)   # m, the tolerance of positions
+
+
+@pytest.mark.parametrize("pitch", [False, True])
+def test_wheels_of_a_truck_roll_the_whole_way_up_a_slope(pitch):
+    truck = ep.actors.truck(trajectory=ep.Trajectory([(0, 0, 0), (30, 0, 4.5)], speed=8.0, pitch=pitch))
+    for wheel in ("front_left", "drive_right", "trailer_2_left"):
+        turned = motion_of(truck, f"wheel/{wheel}/tyre").at(3.0)[:3, :3]
+        assert_same_angle(angle_about_y(turned), 8.0 * 3.0 / (1.01 / 2))   # tyres of 1.01 m

@@ -127,9 +127,10 @@ class Unit:
         return Profile(times, hermite_pieces(steps, ways, first, last))
 
     def _speed(self, times):
-        """m/s ahead [N]: the same for all points along the middle."""
+        """m/s ahead [N] over the ground, up and down its slopes: the same for all points along the middle."""
         _, velocity, yaw, _ = self._moved(times)
-        return velocity[:, 0] * np.cos(yaw) + velocity[:, 1] * np.sin(yaw)
+        level = velocity[:, 0] * np.cos(yaw) + velocity[:, 1] * np.sin(yaw)
+        return np.copysign(np.hypot(level, velocity[:, 2]), level)
 
     def _motion(self, position: tuple):
         motions = self.__dict__.setdefault("_motions", {})

@@ -1,1 +1,1 @@
-"""A walking person: proportions, walking model, gait on planted feet, body surfaces."""
+"""Persons: proportions and body surfaces, walking and running on planted feet, standing, motion captures."""

@@ -51,7 +51,7 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
     height: of the body in m, 0.5 to 2.5. speed: in m/s, 0.1 to 3 hip heights a second (where walking ends).
     start_time, duration: first time and length of the motion in s; a scene can be posed at no other time.
     phase: of the walking cycle (two steps, about 1.1 s) at time 0, in cycles; 0 is the strike of the right heel.
-    edge: length in m of the triangles' sides, at most 0.05 heights; about 18 000 triangles in all by default.
+    edge: length in m of the triangles' sides, at most 0.05 heights; about 20 000 triangles in all by default.
     keyframe_rate: in 1/s, at least 60.
     clothing, skin: materials, names in echopath.materials or objects; skin are head, neck and hands.
     trajectory: a Trajectory of the origin that is followed instead of speed, start_time, duration and phase; the steps go with

@@ -28,7 +28,7 @@ def tree(*, height: float = 7.0, crown_radius: float = 2.0, num_bunches: int = 9
     The crown is an ellipsoid volume whose facets are nearer to its rim than to its middle; rays reach into it. All echoes
     are diffuse. Parts: trunk, branches, crown.
     height: m. crown_radius: m, across; the crown reaches from 0.35 of the height to its top. num_bunches: number of
-    facets, quadrilaterals of `bunch_size` m. seed: of their places and of the branches.
+    facets, squares whose sides are 0.6 to 1.3 times `bunch_size` m. seed: of their places and of the branches.
     Raises TypeError or ValueError naming the argument.
     """
     random = np.random.default_rng(seed)

@@ -38,7 +38,7 @@ def car(*, kind: CarKind = "compact", speed: float = 0.0, drives: bool = True,
     Length, width, height, wheelbase and tyres are those of production cars (CARS in vehicles/cars.py); the panels are a
     subdivision surface through lines drawn to resemble such bodies. Windows, bumpers and lamps are opaque: what passes
     through them is not modelled; bumpers reflect what painted plastic before a metal beam is taken to reflect. About
-    7000 triangles.
+    7500 triangles.
 
     Frame: x forward from the middle of the length, y left, z up, the road at z = 0.
     Parts: body/hood, body/roof, body/door_front_left and so on, body/fender_*, body/quarter_*, body/pillar_*, body/tailgate,

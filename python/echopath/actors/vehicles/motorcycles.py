@@ -40,7 +40,7 @@ HIP_ABOVE_SEAT = 0.055                   # in body heights
 @checked(speed=real(unit="m/s"), rider=flag, height=real(1.45, 2.0, unit="m"), drives=flag, trajectory=trajectory_rule)
 def motorcycle(*, speed: float = 0.0, rider: bool = True, height: float = 1.78, drives: bool = True,
                trajectory: Trajectory | None = None) -> Actor:
-    """A naked motorcycle, 2.1 m long, with or without its rider.
+    """A naked motorcycle, 2 m long, with or without its rider.
 
     Frame: x forward, y left, z up, the road at z = 0, the origin between the wheels.
     Parts: body/tank, body/seat, body/engine, body/frame, body/exhaust, body/fork, body/handlebar, body/mudguard, lamp/head,

@@ -29,7 +29,7 @@ def van(*, kind: VanKind = "large", speed: float = 0.0, drives: bool = True,
     """A panel van of smooth metal panels on four turning wheels, without windows behind the front doors.
 
     Made as `car` is, whose frame, parts and arguments it shares; body/panel_left and body/panel_right are the walls behind
-    the doors. About 23 000 triangles.
+    the doors. About 22 000 triangles.
     kind: "small" 4.90 m long and 1.99 m high, or "large" 5.91 m and 2.44 m.
     speed: m/s ahead along +x; the wheels roll. drives: False turns the wheels at `speed` alone.
     trajectory: a Trajectory of the origin that it follows instead; the wheels roll its way, those in front steer.

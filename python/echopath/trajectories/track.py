@@ -42,10 +42,16 @@ class Track:
         return yaw, turn * speed
 
     def pitches(self, times):
-        """(angle of the path above the plane in rad, its rate in rad/s), each [N]."""
+        """(angle of the nose above the plane in rad, its rate in rad/s), each [N], on a ground that rises with the path and is
+        level across it: that of the path, less where it looks aside, below the plane where it backs up a hill."""
         distance, speed, _ = self.profile.at(times)
-        pitch, turn = self.path.slopes(distance)
-        return pitch, turn * speed
+        slope, bend = self.path.slopes(distance)
+        if self.headings is None:
+            return slope, bend * speed
+        (yaw, yaw_rate), (bearing, turn) = self.yaws(times), self.path.bearings(distance)
+        c, s, rise = np.cos(yaw - bearing), np.sin(yaw - bearing), np.tan(slope)
+        rate = (1.0 + rise**2) * bend * speed * c - rise * s * (yaw_rate - turn * speed)
+        return np.arctan(rise * c), rate / (1.0 + (rise * c) ** 2)
 
     def rotations(self, times, has_pitch: bool):
         """(unit quaternions [N, 4] (w, x, y, z), their rates [N, 4] per s): about z by the yaw, then nose up by the pitch."""

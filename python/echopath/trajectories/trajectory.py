@@ -60,7 +60,8 @@ class Trajectory(_core.CurveMotion):
     goes_on: s, so long it goes straight on at its first and last speed before its begin and after its end
     outside: "stands", or "absent": what follows it takes no part in frames that do not lie wholly between its begin and its end
         (`scene[name].lifetime`), as vehicles that come and go; a radar stands there all the same
-    pitch: whether its nose follows the slope of the path; else it stays level, and wheels ahead of its origin sink into a hill
+    pitch: whether its nose follows the slope of the path, downwards where a yaw lets it back up a hill; else it stays level, and
+        wheels ahead of its origin sink into the hill
     kind: what moves, as files tell ("passenger")
     is_person: whether it is a person, who is no vehicle whatever the word of the kind, as the persons of SUMO
 

@@ -259,6 +259,25 @@ def test_rates_of_what_climbs_and_of_what_times_say_are_differences():
     np.testing.assert_allclose(hill.acceleration(times), change, atol=1e-3)
 
 
+def test_what_backs_up_a_hill_stands_as_what_drives_down_it():
+    down = ep.Trajectory([(10, 2, 1), (0, 0, 0)], times=[0.0, 5.0], pitch=True)
+    up = ep.Trajectory([(0, 0, 0), (10, 2, 1)], times=[0.0, 5.0], yaw=np.full(2, down.yaw(0.0)), pitch=True)
+    for at in (0.0, 1.3, 5.0):
+        np.testing.assert_allclose(up.at(5.0 - at), down.at(at), atol=1e-6)
+
+
+def test_noses_that_look_aside_lie_on_a_ground_that_rises_with_the_path_and_turn_at_its_rate():
+    hill = ep.Trajectory([(0, 0, 0), (10, 1, 2), (20, -1, 3), (30, 2, 1)], times=[0.0, 2.0, 5.0, 7.0], yaw=[0.3, 2.0, 4.0, 1.0],
+                         pitch=True)
+    step = 1e-5
+    for at in (0.4, 1.7, 3.1, 4.4, 6.2):
+        ahead = hill.velocity(at)
+        ground = np.cross(ahead, np.cross([0.0, 0.0, 1.0], ahead))
+        assert hill.at(at)[:3, 0] @ ground / np.linalg.norm(ground) == pytest.approx(0.0, abs=5e-6)
+        change = (hill._track.pitches(np.array([at + step]))[0] - hill._track.pitches(np.array([at - step]))[0]) / (2 * step)
+        np.testing.assert_allclose(hill._track.pitches(np.array([at]))[1], change, atol=1e-6)
+
+
 @pytest.mark.parametrize("length, end", [(30.0, 6.0), (70.0, 10.0), (94.0, 12.0)])
 def test_speeds_over_time_end_where_the_path_does(length, end):
     """2 t + t^2 / 2 for 10 s, which are 70 m, and 12 m/s from then on."""

@@ -111,3 +111,31 @@ def test_children_walk_or_run_by_their_speed():
     slow, fast = (ep.Trajectory([(0, 0), (6, 0)], speed=speed) for speed in (0.8, 2.6))
     walk, run = (ep.actors.child(trajectory=one, edge=0.03) for one in (slow, fast))
     assert walk.motion is slow and len(walk.parts) == len(run.parts) == 16
+
+
+@pytest.mark.parametrize("angle", [300.0, 330.0, 60.0, 210.0])
+def test_knees_bend_forwards_whichever_whole_turn_a_yaw_is_told_with(angle, tmp_path):
+    """Floating car data of SUMO have angles from 0 to 360 degrees clockwise from north, directions of paths are within half a
+    turn."""
+    direction = math.radians(90.0 - angle)
+    rows = "".join(f'<timestep time="{time}"><person id="p" x="{1.3 * time * math.cos(direction):.6f}" '
+                   f'y="{1.3 * time * math.sin(direction):.6f}" angle="{angle}" speed="1.3"/></timestep>' for time in range(4))
+    (tmp_path / "fcd.xml").write_text(f"<fcd-export>{rows}</fcd-export>")
+    told = ep.read_trajectories(tmp_path / "fcd.xml")["p"]
+    by_path = ep.Trajectory(told.position(np.arange(4.0)), times=np.arange(4.0))
+    scenes = [ep.Scene(), ep.Scene()]
+    for scene, way in zip(scenes, (told, by_path)):
+        scene.add(ep.actors.pedestrian(trajectory=way, edge=0.05), name="p")
+    for mesh in scenes[0].meshes:
+        first, second = (scene.world_vertices(mesh.id, 1.4) for scene in scenes)
+        np.testing.assert_allclose(first, second, atol=1e-3)    # m: positions in the file have six digits
+
+
+@pytest.mark.parametrize("aside", [0.0, 90.0, 180.0, 270.0])
+def test_knees_are_before_who_walks_sideways_or_back(aside):
+    walk = ep.Trajectory([(0, 0), (5, 0)], times=[0.0, 4.0], yaw=np.radians([aside, aside]))
+    motions = {part.name: part.motion for part in ep.actors.pedestrian(trajectory=walk, edge=0.05).parts}
+    for time in np.linspace(0.5, 3.5, 25).tolist():
+        hip, knee, ankle = (motions[f"leg_left/{name}"].at(time)[:3, 3] for name in ("thigh", "shank", "foot"))
+        share = np.dot(knee - ankle, hip - ankle) / np.dot(hip - ankle, hip - ankle)
+        assert (knee - (ankle + share * (hip - ankle)))[0] > 0.0

@@ -70,10 +70,12 @@ class GaitAlong:
         hip = gait._hip(pelvis, sign)
         ankle, pitch, yaw = self._foot(times, phase, sign)
         self._require_reach(times, hip - ankle)
-        yaw = yaw + sign * gait.steps.opening
-        knee, thigh, shank = bend_leg(hip, ankle, self._body.thigh, self._body.shank, 0.5 * (gait.walk.torsion(phase) + yaw))
+        opening = sign * gait.steps.opening
+        # Half-way from the pelvis to the foot, but ahead for those who look aside or back; yaws may be whole turns apart.
+        heading = 0.5 * (gait.walk.torsion(phase) + opening + np.sin(yaw))
+        knee, thigh, shank = bend_leg(hip, ankle, self._body.thigh, self._body.shank, heading)
         return {"thigh": Frames(hip, thigh), "shank": Frames(knee, shank),
-                "foot": Frames(ankle, about_z(yaw) @ about_y(-pitch))}
+                "foot": Frames(ankle, about_z(yaw + opening) @ about_y(-pitch))}
 
     def _too_high(self):
         """m by which the pelvis must be lower so that both feet can be reached at every time."""

@@ -24,12 +24,13 @@ void begin_with(int64_t slot, std::vector<double>& extra_idle) {
 
 bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
 
-// Takes out the paths that a trace at another time could have had, too.
-void take_out(const Radar& radar, double time, Paths& found, Job* job, KeptGeometry* kept) {
-  if (found.num_paths() == 0) return;
-  std::vector<uint8_t> keep = still_there(found, radar, time, job, kept);
-  for (uint8_t& is_new : keep) is_new = !is_new;
-  found = found.select(keep, job);
+// Returns whether the record has paths that no ray found, over planes that nobody flagged.
+bool has_images_over_planes(const Paths& paths) {
+  for (size_t path = 0; path < paths.offsets.size(); ++path) {
+    if (paths.is_of_a_ray(path) || (paths.flags[path] & kEdgePath)) continue;
+    if (!paths.scene->node_of(paths.hits_of(static_cast<int64_t>(path))->mesh_id).material->mirror) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -77,18 +78,34 @@ StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std
 void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches) {
   const auto num_stretches = std::ssize(stretches), num_looks = std::min<ptrdiff_t>(kMaxSurfaceSearches, num_stretches);
   KeptGeometry then, before;
-  std::vector<double> times;
-  for (ptrdiff_t look = 0; look < num_looks; ++look) {
+  const auto look_at = [&](double time, int look) {
     SurfaceSearchSettings settings;
-    settings.time = stretches[(2 * look + 1) * num_stretches / (2 * num_looks)].middle;
+    settings.time = time;
     settings.num_rays = paths_.frame.statistics.num_rays;
-    settings.seed = seed_of_search(paths_.frame.seed, static_cast<int>(look));
-    const SurfaceSearch seen = trace_new_surface(paths_, radar, settings, job_, &then, &kept_);
-    Paths found = thinned(seen.paths.select(seen.is_new, job_), job_);
-    for (auto time = times.rbegin(); time != times.rend(); ++time) take_out(radar, *time, found, job_, &before);
-    times.push_back(settings.time);
+    settings.seed = seed_of_search(paths_.frame.seed, look);
+    return trace_new_surface(paths_, radar, settings, job_, &then, &kept_);
+  };
+  if (has_images_over_planes(paths_)) own_doubles_ = look_at(paths_.frame.trace_time, -1).doubles.of_images_in(paths_);
+  std::vector<Look> looks;
+  for (ptrdiff_t look = 0; look < num_looks; ++look) {
+    const double time = stretches[(2 * look + 1) * num_stretches / (2 * num_looks)].middle;
+    SurfaceSearch seen = look_at(time, static_cast<int>(look));
+    std::vector<uint8_t> keep = own_doubles_.doubles_in(seen.paths, job_);
+    for (size_t path = 0; path < keep.size(); ++path) keep[path] |= seen.is_new[path];
+    Paths found = thinned(seen.paths.select(keep, job_), job_);
+    for (auto earlier = looks.rbegin(); earlier != looks.rend(); ++earlier) take_out(*earlier, radar, found, before);
     if (found.num_paths() > 0) found_.push_back({found.with_own_hits(job_), seen.doubles.of_images_in(found)});
+    looks.push_back({time, std::move(seen.doubles)});
   }
+}
+
+// Takes out the paths that an earlier look could have had, too.
+void StretchRecords::take_out(const Look& look, const Radar& radar, Paths& found, KeptGeometry& kept) const {
+  if (found.num_paths() == 0) return;
+  const std::vector<uint8_t> was_there = still_there(found, radar, look.time, job_, &kept);
+  std::vector<uint8_t> keep = look.doubles.doubles_in(found, job_);
+  for (size_t path = 0; path < keep.size(); ++path) keep[path] |= !was_there[path];
+  found = found.select(keep, job_);
 }
 
 Paths StretchRecords::renewed(const Paths& paths, const Stretch& stretch) {
@@ -105,7 +122,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
   }
   std::vector<Paths> records = {renewed(paths_, stretch)};
-  std::vector<PlaneDoubles> images;
+  std::vector<PlaneDoubles> images = {own_doubles_.of_images_in(records.front())};
   for (const auto& [paths, doubles] : found_) {
     Paths record = renewed(paths, stretch);
     if (record.num_paths() == 0) continue;

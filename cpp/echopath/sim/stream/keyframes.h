@@ -45,9 +45,9 @@ class StretchRecords {
   // For kInvalid and a whole record of a scene in which something moves, it looks for new surface in the middle of up to
   // kMaxSurfaceSearches stretches, with as many rays as the record has. Paths that neither the trace nor an earlier look
   // could have found become a record with phases of its own. So each piece of surface stands in one of the records, with the
-  // same material points and phases throughout. Where it finds an image over a plane that nobody flagged, the paths of
-  // rays over that plane are left out for as long as the image is there. All arguments must outlive it; a selection of paths
-  // gets no new surface. Raises invalid_argument for kAlways with a selection.
+  // same material points and phases throughout. Where the trace or a look has an image over a plane that nobody flagged,
+  // the paths of rays over that plane take its place while it is not there, and are left out while it is. All arguments must
+  // outlive it; a selection of paths gets no new surface. Raises invalid_argument for kAlways with a selection.
   StretchRecords(const Paths& paths, const Radar& radar, const std::vector<Stretch>& stretches, Retrace retrace,
                  Job* job = nullptr);
   // Returns records, at least one, whose echoes add up to those of the stretch.
@@ -59,14 +59,20 @@ class StretchRecords {
     Paths paths;
     PlaneDoubles doubles;
   };
+  struct Look {
+    double time;  // s
+    PlaneDoubles doubles;
+  };
 
   void find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches);
+  void take_out(const Look& look, const Radar& radar, Paths& found, KeptGeometry& kept) const;
   Paths renewed(const Paths& paths, const Stretch& stretch);
 
   const Paths& paths_;
   Retrace retrace_;
   Job* job_;
   KeptGeometry kept_;
+  PlaneDoubles own_doubles_;  // of the images of the record
   std::vector<Found> found_;
 };
 inline constexpr int kMaxSurfaceSearches = 32;

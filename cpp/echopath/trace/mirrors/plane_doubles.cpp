@@ -68,6 +68,7 @@ const OrdersAboutCorners* PlaneDoubles::find(const Paths& paths, size_t path, Se
 
 PlaneDoubles PlaneDoubles::of_images_in(const Paths& paths) const {
   PlaneDoubles of_images;
+  if (!any()) return of_images;
   of_images.plane_of_triangle = plane_of_triangle;
   Sequence of_path;
   for (size_t path = 0; path < paths.offsets.size(); ++path) {
@@ -77,17 +78,24 @@ PlaneDoubles PlaneDoubles::of_images_in(const Paths& paths) const {
   return of_images;
 }
 
-void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
-  if (!any()) return;
+std::vector<uint8_t> PlaneDoubles::doubles_in(const Paths& paths, Job* job) const {
+  std::vector<uint8_t> doubles(paths.num_paths());
+  if (!any()) return doubles;
   constexpr int64_t kTogether = 1 << 14;
-  std::vector<uint8_t> keep(paths.num_paths());
-  Job own(job);
   parallel_for_chunks(paths.num_paths(), kTogether, [&](int64_t begin, int64_t end) {
     Sequence of_path;
     for (int64_t path = begin; path < end; ++path) {
-      keep[path] = !paths.is_coherent_with_cell(path) || !find(paths, path, of_path);
+      doubles[path] = paths.is_coherent_with_cell(path) && find(paths, path, of_path);
     }
-  }, &own);
+  }, job);
+  return doubles;
+}
+
+void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
+  if (!any()) return;
+  Job own(job);
+  std::vector<uint8_t> keep = doubles_in(paths, &own);
+  for (uint8_t& is_kept : keep) is_kept = !is_kept;
   paths = paths.select(keep, &own);
   paths.frame.statistics.num_paths = paths.num_paths();  // what is left is the whole record
 }

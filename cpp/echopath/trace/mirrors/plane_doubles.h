@@ -31,7 +31,9 @@ class PlaneDoubles {
   bool any() const { return !left_out_.empty(); }
   // Returns what of it these images stand for: paths of no ray, of any record of the same scene.
   PlaneDoubles of_images_in(const Paths& paths) const;
-  // Removes the paths of rays for which the image method has paths of its own. Raises Cancelled.
+  // Returns [P] 1 for the paths of rays for which the image method has paths of its own. Raises Cancelled.
+  std::vector<uint8_t> doubles_in(const Paths& paths, Job* job) const;
+  // Removes these. Raises Cancelled.
   void leave_out(Paths& paths, Job* job) const;
   // Returns whether both leave out the same, where the meshes of this one have the IDs `id_there` in the other one, or none
   // (numbers beyond its meshes).

@@ -252,8 +252,14 @@ class EchoFields:
     @cached_property
     def _power(self) -> np.ndarray:
         """Power [P] of each echo in W, in the first channel where it tells that of all, else in the strongest."""
-        field = self._echoes["first"] if self._channels_are_alike else self._in_channels(self._echoes, self._few)["field"]
-        return np.max(np.abs(np.atleast_2d(field)) ** 2, axis=0)
+        if self._channels_are_alike:
+            return np.abs(self._echoes["first"]) ** 2
+        power = np.zeros(self._paths.num_paths)
+        for tx, rows in self._few.of_transmitters.items():  # sizes alone: phases of all echoes would take most of the time
+            middle, receivers = chirp_times(self._paths, tx)[1], self._few.indices[rows, 1].tolist()
+            amplitude = self._paths._echoes_at_receivers(middle, tx, receivers)[1]
+            np.maximum(power, np.max(np.abs(amplitude) ** 2, axis=0), out=power)
+        return power[self._echoes["index"]]
 
     def _holding(self, cell) -> np.ndarray:
         """Places in the echoes of those that hold a cell but for LEFT_OUT of its power, [N] ascending.

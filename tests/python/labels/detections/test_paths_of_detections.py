@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import pickle
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -384,3 +385,25 @@ def test_detections_of_blades_are_no_noise(rotor):
     made_by_echoes = echoes > 0.7 * cells
     assert np.sum(made_by_echoes) > 8 and not found.is_noise[made_by_echoes].any()
     assert set(found.object[made_by_echoes]) == {"drone"}
+
+
+def test_how_strong_echoes_are_takes_few_bytes_where_channels_have_them_in_other_bins():
+    """Antennas 0.4 m apart, of which each has an echo elsewhere: the strongest of each path is that of its signal by itself, and
+    sizes alone are made of it, without the place and phase of all paths in all channels."""
+    beams = [ep.Antenna((0, 0.4 * k, 0), pattern=ep.CosinePower(40.0), yaw=0.2 - 0.1 * k) for k in range(4)]
+    radar = radar_with().replace(transmitters=beams[:2], receivers=beams)
+    scene = ep.Scene()
+    scene.add(ep.actors.box((1.0, 3.0, 1.0)), name="box", material=lambert(0.27), position=(8, 0, 0))
+    paths = ep.trace(scene, radar, num_rays=20_000, max_bounces=1)
+    fields = fields_of(paths, ep.range_doppler(ep.synthesize(paths, radar), radar))
+    index = fields._echoes["index"]
+    tracemalloc.start()
+    try:
+        power = fields._power
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    for place in (0, len(index) // 2, len(index) - 1):
+        alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == index[place]), radar)
+        assert power[place] == pytest.approx(np.max(np.abs(alone[:, :, 32, 64]) ** 2), rel=1e-4, abs=0)
+    assert peak < 200 * paths.num_paths  # bytes; with places and phases 350

@@ -89,8 +89,10 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank, beams: as in `cfar`, in cells;
-        in beams power and noise are those of the beam in which a cell is strongest, and what made a detection is told in that
-        beam: of two echoes in one cell it is the one that the beam found, while `Detections.paths` are those of the whole cell.
+        in beams noise, range and velocity are those of the strongest beam in which a cell is above its threshold, and what made
+        a detection is told in that beam: of two echoes in one cell it is the one that the beam found, while `Detections.paths`
+        are those of the whole cell. Direction and power are those of the strongest beam of the cell, whatever its threshold:
+        where clutter hides a stronger echo of the cell in its own beam, they are of that one and the name is not.
         Labels keep powers of all channels alone: with `labels` the part is that of the stronger echo, and without paths no
         objects are known below the noise of a channel
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell

@@ -35,33 +35,6 @@ std::string in_words(double mean) {
   return "a mean of " + with_digits(4, mean) + " (" + with_digits(4, 10.0 * std::log10(mean)) + " dB)";
 }
 
-// Computes cubic Hermite weights at x between at[1] and at[2]. Slopes come from parabolas through three samples; at an end
-// (no sample before or behind) the cubic becomes the parabola through the other three.
-void set_weights(const double at[4], bool has_before, bool has_behind, double x, double weight[4]) {
-  const double step = at[2] - at[1], t = (x - at[1]) / step;
-  const double secant[4] = {0.0, -1.0, 1.0, 0.0};          // times 1 / step
-  double first[4] = {0, 0, 0, 0}, last[4] = {0, 0, 0, 0};  // slopes at both ends, times step
-  if (has_before) {
-    const double before = at[1] - at[0], sum = before + step;
-    first[0] = -step / before * (step / sum);
-    first[1] = step / before * (step / sum) - before / sum;
-    first[2] = before / sum;
-  }
-  if (has_behind) {
-    const double behind = at[3] - at[2], sum = behind + step;
-    last[3] = step / behind * (step / sum);
-    last[2] = behind / sum - step / behind * (step / sum);
-    last[1] = -behind / sum;
-  }
-  for (int i = 0; i < 4; ++i) {
-    if (!has_before) first[i] = has_behind ? 2.0 * secant[i] - last[i] : secant[i];
-    if (!has_behind) last[i] = has_before ? 2.0 * secant[i] - first[i] : secant[i];
-  }
-  const double s = 1.0 - t;
-  const double value[4] = {0.0, s * s * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), 0.0};
-  for (int i = 0; i < 4; ++i) weight[i] = value[i] + t * s * (s * first[i] - t * last[i]);
-}
-
 }  // namespace
 
 GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation, std::vector<double> gain,
@@ -83,12 +56,16 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
 
   set_field();
   close_ring();
+  columns_ = GainAxis(azimuth_, period_);
+  rows_ = GainAxis(elevation_, 0);
+  lay_out();
   efficiency_ = integrate();
   if (scale == Scale::kMeanOfOne) {
     require(std::isfinite(efficiency_) && efficiency_ > 0.0, "gain",
             "must have a mean over the sphere that a double can hold", efficiency_);
     for (double& value : gain_) value /= efficiency_;
     set_field();
+    lay_out();
     efficiency_ = integrate();
   }
   require(efficiency_ <= kLargestEfficiency, "gain",
@@ -162,69 +139,66 @@ void GainTable::close_ring() {
   }
 }
 
-double GainTable::azimuth_at(int column) const {
-  if (period_ == 0) return azimuth_[column];
-  const int turns = column < 0 ? -1 : column / period_;
-  return azimuth_[column - turns * period_] + turns * kTwoPi;
+// Lays the samples out so that the 4 x 4 of each cell stand in four rows of four.
+void GainTable::lay_out() {
+  const std::vector<GainAxis::Cell>&up = rows_.cells(), &along = columns_.cells();
+  const size_t height = up.size() + 3, width = along.size() + 3;
+  const auto index_of = [](const std::vector<GainAxis::Cell>& cells, size_t place) {
+    const size_t cell = std::min(place, cells.size() - 1);
+    return static_cast<size_t>(cells[cell].index[place - cell]);
+  };
+  for (std::vector<double>& part : parts_) part.clear();
+  for (size_t row = 0; row < height; ++row) {
+    for (size_t column = 0; column < width; ++column) {
+      const std::complex<double> sample = field_[index_of(up, row) * azimuth_.size() + index_of(along, column)];
+      parts_[0].push_back(sample.real());
+      if (!phase_.empty()) parts_[1].push_back(sample.imag());
+    }
+  }
+  lit_cells_.clear();
+  for (size_t row = 0; row < up.size(); ++row) {
+    for (size_t column = 0; column < along.size(); ++column) {
+      const auto has_gain = [&](int i, int j) {
+        return field_[up[row].index[i] * azimuth_.size() + along[column].index[j]] != 0.0;
+      };
+      lit_cells_.push_back(has_gain(1, 1) || has_gain(1, 2) || has_gain(2, 1) || has_gain(2, 2));
+    }
+  }
 }
 
-size_t GainTable::sample(int row, int column) const {
-  return static_cast<size_t>(row) * azimuth_.size() + static_cast<size_t>(column);
-}
-
-bool GainTable::find_azimuth(double azimuth, Stencil& out) const {
-  const double begin = azimuth_.front();
-  double turned = azimuth - kTwoPi * std::floor((azimuth - begin) / kTwoPi);  // in [begin, begin + 2 pi]
-  const int columns = static_cast<int>(azimuth_.size()), cells = period_ ? period_ : columns - 1;
-  const double end = period_ ? begin + kTwoPi : azimuth_.back();
+// Returns the cell of an azimuth, which it brings onto the table; none beyond.
+std::optional<size_t> GainTable::find_column(double& azimuth) const {
+  const double begin = azimuth_.front(), end = period_ ? begin + kTwoPi : azimuth_.back();
+  azimuth -= kTwoPi * std::floor((azimuth - begin) / kTwoPi);  // in [begin, begin + 2 pi]
   // A direction on the first or last azimuth must not fall off the table by rounding.
-  if (turned > end) {
-    if (turned <= end + kAngleTolerance) turned = end;
-    else if (turned >= begin + kTwoPi - kAngleTolerance) turned = begin;
-    else return false;
+  if (azimuth > end) {
+    if (azimuth <= end + kAngleTolerance) azimuth = end;
+    else if (azimuth >= begin + kTwoPi - kAngleTolerance) azimuth = begin;
+    else return std::nullopt;
   }
-  const auto above = std::upper_bound(azimuth_.begin(), azimuth_.begin() + std::min(cells, columns), turned);
-  const int cell = std::clamp(static_cast<int>(above - azimuth_.begin()) - 1, 0, cells - 1);
-  double at[4] = {0.0, 0.0, 0.0, 0.0};
-  const bool has_before = period_ > 0 || cell > 0, has_behind = period_ > 0 || cell + 2 < columns;
-  for (int i = 0; i < 4; ++i) {
-    const bool exists = (i > 0 || has_before) && (i < 3 || has_behind);
-    const int column = exists ? cell + i - 1 : cell;
-    at[i] = azimuth_at(column);
-    out.index[i] = period_ ? (column + period_) % period_ : column;
-  }
-  set_weights(at, has_before, has_behind, turned, out.weight);
-  return true;
+  return columns_.cell_at(azimuth);
 }
 
-bool GainTable::find_elevation(double elevation, Stencil& out) const {
-  if (elevation < elevation_.front() - kAngleTolerance || elevation > elevation_.back() + kAngleTolerance) return false;
-  const double inside = std::clamp(elevation, elevation_.front(), elevation_.back());
-  const auto above = std::ranges::upper_bound(elevation_, inside);
-  const int rows = static_cast<int>(elevation_.size());
-  const int cell = std::clamp(static_cast<int>(above - elevation_.begin()) - 1, 0, rows - 2);
-  double at[4] = {0.0, 0.0, 0.0, 0.0};
-  for (int i = 0; i < 4; ++i) {
-    out.index[i] = std::clamp(cell + i - 1, 0, rows - 1);
-    at[i] = elevation_[out.index[i]];
-  }
-  set_weights(at, cell > 0, cell + 2 < rows, inside, out.weight);
-  return true;
+std::optional<size_t> GainTable::find_row(double& elevation) const {
+  if (elevation < elevation_.front() - kAngleTolerance || elevation > elevation_.back() + kAngleTolerance)
+    return std::nullopt;
+  elevation = std::clamp(elevation, elevation_.front(), elevation_.back());
+  return rows_.cell_at(elevation);
 }
 
 std::complex<double> GainTable::field_at(double azimuth, double elevation) const {
-  Stencil along, up;
-  if (!find_elevation(elevation, up) || !find_azimuth(azimuth, along)) return 0.0;
-  if (!has_gain(up.index[1], along.index[1])) return 0.0;
-  std::complex<double> sum = 0.0;
-  for (int row = 0; row < 4; ++row) {
-    std::complex<double> line = 0.0;
-    for (int column = 0; column < 4; ++column) {
-      line += along.weight[column] * field_[sample(up.index[row], along.index[column])];
-    }
-    sum += up.weight[row] * line;
-  }
-  return sum;
+  const std::optional<size_t> row = find_row(elevation), column = find_column(azimuth);
+  if (!row || !column || !lit_cells_[*row * columns_.cells().size() + *column]) return 0.0;
+  const std::array<double, 4> of_rows = rows_.cells()[*row].weights(elevation),
+                              of_columns = columns_.cells()[*column].weights(azimuth);
+  const size_t width = columns_.cells().size() + 3, first = *row * width + *column;
+  const auto sum = [&](const std::vector<double>& part) {
+    std::array<double, 4> lines{};
+    for (size_t i = 0; i < 4; ++i)
+      for (size_t j = 0; j < 4; ++j) lines[j] += of_rows[i] * part[first + i * width + j];
+    return lines[0] * of_columns[0] + lines[1] * of_columns[1] + lines[2] * of_columns[2] + lines[3] * of_columns[3];
+  };
+  return {sum(parts_[0]), parts_[1].empty() ? 0.0 : sum(parts_[1])};
 }
 
 std::complex<double> GainTable::field(const Vec3& direction) const {
@@ -234,17 +208,15 @@ std::complex<double> GainTable::field(const Vec3& direction) const {
 // Uses three Gauss points per cell and axis, exact up to the fifth degree; the squared cubic has the sixth.
 double GainTable::integrate() const {
   const double node[3] = {-std::sqrt(0.6), 0.0, std::sqrt(0.6)}, weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-  const int cells = period_ ? period_ : static_cast<int>(azimuth_.size()) - 1;
   double sum = 0.0;
-  for (size_t row = 0; row + 1 < elevation_.size(); ++row) {
-    const double up = elevation_[row + 1] - elevation_[row], middle = 0.5 * (elevation_[row + 1] + elevation_[row]);
-    for (int column = 0; column < cells; ++column) {
-      const double left = azimuth_at(column), along = azimuth_at(column + 1) - left;
+  for (const GainAxis::Cell& row : rows_.cells()) {
+    for (const GainAxis::Cell& column : columns_.cells()) {
       for (int i = 0; i < 3; ++i) {
-        const double elevation = middle + 0.5 * up * node[i];
+        const double elevation = row.begin + 0.5 * row.step * (1.0 + node[i]);
         for (int j = 0; j < 3; ++j) {
-          const double azimuth = left + 0.5 * along * (1.0 + node[j]);
-          sum += weight[i] * weight[j] * up * along * std::cos(elevation) * std::norm(field_at(azimuth, elevation));
+          const double azimuth = column.begin + 0.5 * column.step * (1.0 + node[j]);
+          sum +=
+              weight[i] * weight[j] * row.step * column.step * std::cos(elevation) * std::norm(field_at(azimuth, elevation));
         }
       }
     }
@@ -252,21 +224,13 @@ double GainTable::integrate() const {
   return sum / (4.0 * kPi);
 }
 
-bool GainTable::has_gain(int row, int column) const {
-  const int next = period_ ? (column + 1) % period_ : column + 1;
-  return field_[sample(row, column)] != 0.0 || field_[sample(row, next)] != 0.0 || field_[sample(row + 1, column)] != 0.0 ||
-         field_[sample(row + 1, next)] != 0.0;
-}
-
 bool GainTable::all_cells_in_front() const {
   const auto in_front = [](double azimuth) { return std::cos(azimuth) >= -kAngleTolerance; };
-  const int cells = period_ ? period_ : static_cast<int>(azimuth_.size()) - 1;
-  for (int column = 0; column < cells; ++column) {
-    const double left = azimuth_at(column), right = azimuth_at(column + 1);
-    if (in_front(left) && in_front(right) && in_front(0.5 * (left + right))) continue;
-    for (int row = 0; row + 1 < static_cast<int>(elevation_.size()); ++row) {
-      if (has_gain(row, column)) return false;
-    }
+  const size_t num_columns = columns_.cells().size();
+  for (size_t cell = 0; cell < lit_cells_.size(); ++cell) {
+    if (!lit_cells_[cell]) continue;
+    const auto& [left, step, index, slopes] = columns_.cells()[cell % num_columns];
+    if (!in_front(left) || !in_front(left + 0.5 * step) || !in_front(left + step)) return false;
   }
   return true;
 }

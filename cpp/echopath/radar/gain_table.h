@@ -1,9 +1,12 @@
 #pragma once
 // Interpolates measured or computed antenna patterns: gain and phase over azimuth and elevation.
 #include <complex>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "echopath/base/geometry.h"
+#include "echopath/radar/gain_axis.h"
 
 namespace echopath {
 
@@ -59,19 +62,12 @@ class GainTable {
   bool is_dark_behind() const { return dark_behind_; }  // no gain where x < 0
 
  private:
-  // Holds four samples along one axis and their weights for a point between the middle ones.
-  struct Stencil {
-    int index[4];
-    double weight[4];
-  };
-  bool find_azimuth(double azimuth, Stencil& out) const;
-  bool find_elevation(double elevation, Stencil& out) const;
-  double azimuth_at(int column) const;  // also beyond the ends of a ring
-  size_t sample(int row, int column) const;
+  std::optional<size_t> find_column(double& azimuth) const;
+  std::optional<size_t> find_row(double& elevation) const;
   std::complex<double> field_at(double azimuth, double elevation) const;
-  bool has_gain(int row, int column) const;  // of the cell between a sample and the next row and column
   void set_field();
   void close_ring();
+  void lay_out();
   double integrate() const;
   double find_sharpness() const;
   double most_beyond_samples() const;  // the largest |field| anywhere over that of the samples, at most
@@ -80,6 +76,9 @@ class GainTable {
   std::vector<double> azimuth_, elevation_, gain_, phase_;
   std::vector<std::complex<double>> field_;  // [E, A]
   int period_ = 0;                           // columns of a closed ring, 0: open
+  GainAxis columns_, rows_;
+  std::vector<double> parts_[2];    // real and, where there are phases, imaginary part of the field, as laid out
+  std::vector<uint8_t> lit_cells_;  // by row and column: whether the cell has gain
   double efficiency_ = 0.0, largest_field_ = 0.0, sharpness_ = 0.0;
   bool dark_behind_ = false;
 };

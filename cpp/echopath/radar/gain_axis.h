@@ -28,8 +28,8 @@ class GainAxis {
   };
 
   GainAxis() = default;
-  // angles: [N] rad, ascending, N >= 2. period: samples of a ring, of which the first follows the last one after a turn; 0: the
-  // axis is open.
+  // angles: [N] rad, ascending, N >= 2
+  // period: samples of a ring, of which the first follows the last one after a turn; 0: the axis is open
   GainAxis(const std::vector<double>& angles, int period);
 
   const std::vector<Cell>& cells() const { return cells_; }

@@ -171,7 +171,7 @@ std::optional<size_t> GainTable::find_column(double& azimuth) const {
   const double begin = azimuth_.front(), end = period_ ? begin + kTwoPi : azimuth_.back();
   azimuth -= kTwoPi * std::floor((azimuth - begin) / kTwoPi);  // in [begin, begin + 2 pi]
   // A direction on the first or last azimuth must not fall off the table by rounding.
-  if (azimuth > end) {
+  if (!(azimuth <= end)) {
     if (azimuth <= end + kAngleTolerance) azimuth = end;
     else if (azimuth >= begin + kTwoPi - kAngleTolerance) azimuth = begin;
     else return std::nullopt;
@@ -180,8 +180,8 @@ std::optional<size_t> GainTable::find_column(double& azimuth) const {
 }
 
 std::optional<size_t> GainTable::find_row(double& elevation) const {
-  if (elevation < elevation_.front() - kAngleTolerance || elevation > elevation_.back() + kAngleTolerance)
-    return std::nullopt;
+  const bool is_there = elevation >= elevation_.front() - kAngleTolerance && elevation <= elevation_.back() + kAngleTolerance;
+  if (!is_there) return std::nullopt;
   elevation = std::clamp(elevation, elevation_.front(), elevation_.back());
   return rows_.cell_at(elevation);
 }

@@ -180,7 +180,8 @@ std::optional<size_t> GainTable::find_column(double& azimuth) const {
 }
 
 std::optional<size_t> GainTable::find_row(double& elevation) const {
-  const bool is_there = elevation >= elevation_.front() - kAngleTolerance && elevation <= elevation_.back() + kAngleTolerance;
+  const bool is_there =
+      elevation >= elevation_.front() - kAngleTolerance && elevation <= elevation_.back() + kAngleTolerance;
   if (!is_there) return std::nullopt;
   elevation = std::clamp(elevation, elevation_.front(), elevation_.back());
   return rows_.cell_at(elevation);

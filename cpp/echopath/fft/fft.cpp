@@ -2,7 +2,6 @@
 
 #include <fftw3.h>
 
-#include <memory>
 #include <mutex>
 #include <new>
 #include <utility>

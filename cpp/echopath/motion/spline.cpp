@@ -1,6 +1,5 @@
 #include "echopath/motion/spline.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -7,7 +7,6 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/solid_angle.h"
-#include "echopath/posed/bodies.h"
 
 namespace echopath {
 namespace {

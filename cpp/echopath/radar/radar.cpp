@@ -10,7 +10,6 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/geometry.h"
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/base/text/streamed.h"
 

@@ -1,9 +1,7 @@
 #include "echopath/record/paths.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <utility>
 

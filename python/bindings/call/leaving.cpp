@@ -1,7 +1,6 @@
 #include "call/leaving.h"
 
 #include <chrono>
-#include <optional>
 #include <set>
 #include <thread>
 

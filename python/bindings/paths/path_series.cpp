@@ -18,7 +18,6 @@
 #include "echopath/record/hit_points.h"
 #include "echopath/replay/replay.h"
 #include "values/array.h"
-#include "values/choice.h"
 
 namespace echopath::bindings {
 namespace {

@@ -8,7 +8,6 @@
 #include "call/faults.h"
 #include "call/shown.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/geometry.h"
 #include "echopath/base/text/streamed.h"
 
 namespace echopath::bindings {

@@ -5,7 +5,6 @@
 //   using LayerKeywords = ListOfKeywords<Layer, Keyword<"thickness", &Layer::thickness, Real, "m, across the layer">, ...>;
 #include <pybind11/pybind11.h>
 
-#include <string>
 #include <vector>
 
 #include "call/argument.h"

@@ -1,7 +1,5 @@
 #include "values/travel.h"
 
-#include <algorithm>
-
 namespace echopath::bindings {
 
 void require_fields(const py::dict& state, const std::vector<std::string>& names) {

@@ -10,9 +10,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <complex>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <type_traits>

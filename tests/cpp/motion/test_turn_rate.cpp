@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "echopath/base/constants.h"
 #include "echopath/motion/curve_motion.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "cpp/support/scenes.h"
 #include "echopath/power/interval/outlines.h"

@@ -1,7 +1,6 @@
 #include "echopath/scene/runs/nearest_of_runs.h"
 
 #include <cmath>
-#include <limits>
 
 namespace echopath {
 namespace {

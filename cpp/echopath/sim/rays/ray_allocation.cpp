@@ -12,7 +12,6 @@
 #include "echopath/radar/noise_power.h"
 #include "echopath/sim/rays/beam_foci.h"
 #include "echopath/sim/rays/hits_per_cell.h"
-#include "echopath/sim/rays/plan_foci.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/strata/fitted_strata.h"
 #include "echopath/trace/strata/ray_targets.h"

@@ -1,7 +1,6 @@
 #include "echopath/sim/rays/still_rays.h"
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "echopath/power/faint_paths.h"
-#include "echopath/sim/rays/ray_allocation.h"
 #include "echopath/trace/strata/fitted_strata.h"
 
 namespace echopath {

@@ -1,6 +1,5 @@
 #include "echopath/trace/embree/embree_scene.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "echopath/scene/smooth/smooth.h"

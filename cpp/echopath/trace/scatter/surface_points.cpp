@@ -1,7 +1,6 @@
 #include "echopath/trace/scatter/surface_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "echopath/base/random.h"

@@ -6,7 +6,6 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/em/layers/sheet_model.h"
 #include "echopath/record/hit_points.h"
-#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 namespace {

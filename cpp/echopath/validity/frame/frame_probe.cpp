@@ -1,6 +1,5 @@
 #include "echopath/validity/frame/frame_probe.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

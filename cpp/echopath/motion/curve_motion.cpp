@@ -89,67 +89,48 @@ KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSp
 
 }  // namespace
 
-struct CurveMotion::Data {
-  MotionCurves curves;
-  Playback playback;
-  bool rests;
-};
-
-CurveMotion::CurveMotion(MotionCurves curves, const Playback& playback) {
+CurveMotion::CurveMotion(MotionCurves curves, const Playback& playback) : curves_(std::move(curves)), playback_(playback) {
   playback.validate();
-  require(curves.translation || curves.rotation || curves.scale, "translation",
+  require(curves_.translation || curves_.rotation || curves_.scale, "translation",
           "must be given where there is neither rotation nor scale", "none");
-  if (curves.translation) curves.translation->validate("translation", 3);
-  if (curves.rotation) {
-    curves.rotation->validate("rotation", 4);
-    normalise_keys(*curves.rotation);
+  if (curves_.translation) curves_.translation->validate("translation", 3);
+  if (curves_.rotation) {
+    curves_.rotation->validate("rotation", 4);
+    normalise_keys(*curves_.rotation);
   }
-  if (curves.scale) curves.scale->validate("scale", 3);
+  if (curves_.scale) curves_.scale->validate("scale", 3);
   const auto is_constant = [](const std::optional<Curve>& curve) { return !curve || curve->is_constant(); };
-  const bool rests = is_constant(curves.translation) && is_constant(curves.scale) &&
-                     (!curves.rotation || is_one_rotation(*curves.rotation));
-  data_ = std::make_shared<const Data>(Data{std::move(curves), playback, rests});
+  rests_ = is_constant(curves_.translation) && is_constant(curves_.scale) &&
+           (!curves_.rotation || is_one_rotation(*curves_.rotation));
 }
 
-CurveMotion::~CurveMotion() = default;
-
 Transform CurveMotion::at(double time) const {
-  const auto& [curves, playback, rests] = *data_;
-  if (rests) time = time_at_rest(time);
+  if (rests_) time = time_at_rest(time);
   Transform transform = Transform::Identity();
-  if (curves.translation) transform.translation() = vector_at(*curves.translation, playback, time);
-  if (curves.rotation) transform.linear() = rotation_at(*curves.rotation, playback, time).toRotationMatrix();
-  if (curves.scale) transform.linear() *= vector_at(*curves.scale, playback, time).asDiagonal();
+  if (curves_.translation) transform.translation() = vector_at(*curves_.translation, playback_, time);
+  if (curves_.rotation) transform.linear() = rotation_at(*curves_.rotation, playback_, time).toRotationMatrix();
+  if (curves_.scale) transform.linear() *= vector_at(*curves_.scale, playback_, time).asDiagonal();
   return transform;
 }
 
 std::vector<double> CurveMotion::breakpoints(const TimeSpan& during) const {
-  const auto& [curves, playback, rests] = *data_;
   std::vector<double> times;
-  for (const std::optional<Curve>* curve : {&curves.translation, &curves.rotation, &curves.scale}) {
-    if (*curve) playback.append_times((*curve)->times, during, times);
+  for (const std::optional<Curve>* curve : {&curves_.translation, &curves_.rotation, &curves_.scale}) {
+    if (*curve) playback_.append_times((*curve)->times, during, times);
   }
   std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
-bool CurveMotion::is_rigid() const { return !data_->curves.scale; }
-
-bool CurveMotion::rests() const { return data_->rests; }
-
 double CurveMotion::turn_rate(const TimeSpan& during) const {
-  const auto& [curves, playback, rests] = *data_;
   double fastest = 0.0;
-  if (curves.translation) fastest = curve_turn_rate(*curves.translation, playback, during);
-  if (curves.scale) fastest = std::max(fastest, curve_turn_rate(*curves.scale, playback, during));
-  if (!curves.rotation) return fastest;
-  const auto [first, last] = keys_played(*curves.rotation, playback, during);
-  for (size_t k = first; k < last; ++k) fastest = std::max(fastest, angular_speed(*curves.rotation, k));
+  if (curves_.translation) fastest = curve_turn_rate(*curves_.translation, playback_, during);
+  if (curves_.scale) fastest = std::max(fastest, curve_turn_rate(*curves_.scale, playback_, during));
+  if (!curves_.rotation) return fastest;
+  const auto [first, last] = keys_played(*curves_.rotation, playback_, during);
+  for (size_t k = first; k < last; ++k) fastest = std::max(fastest, angular_speed(*curves_.rotation, k));
   return fastest;
 }
-
-const MotionCurves& CurveMotion::curves() const { return data_->curves; }
-const Playback& CurveMotion::playback() const { return data_->playback; }
 
 }  // namespace echopath

@@ -1,6 +1,5 @@
 #pragma once
 // Moves a node by curves, one for the translation, one for the rotation and one for the scale, each with keys of its own.
-#include <memory>
 #include <optional>
 
 #include "echopath/motion/curve.h"
@@ -21,18 +20,18 @@ class CurveMotion : public Motion {
  public:
   // Quaternions may be off unit length by 1e-2, as files keep them in few bits. Raises invalid_argument naming the argument.
   explicit CurveMotion(MotionCurves curves, const Playback& playback = {});
-  ~CurveMotion() override;
   Transform at(double time) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
-  bool is_rigid() const override;  // without a curve of scales
-  bool rests() const override;     // all curves are constant
+  bool is_rigid() const override { return !curves_.scale; }
+  bool rests() const override { return rests_; }  // all curves are constant
   double turn_rate(const TimeSpan& during) const override;
-  const MotionCurves& curves() const;
-  const Playback& playback() const;
+  const MotionCurves& curves() const { return curves_; }
+  const Playback& playback() const { return playback_; }
 
  private:
-  struct Data;
-  std::shared_ptr<const Data> data_;
+  MotionCurves curves_;
+  Playback playback_;
+  bool rests_;
 };
 
 }  // namespace echopath

@@ -33,7 +33,6 @@ class VertexSequence : public Deformation {
  public:
   VertexSequence(std::vector<double> times, std::vector<std::vector<Vec3>> vertices,
                  Interpolation interpolation = Interpolation::kCubic);
-  ~VertexSequence() override;
   int64_t num_vertices() const override;
   std::vector<Vec3> at(double time) const override;
   void at(double time, const std::vector<uint32_t>& indices, std::vector<Vec3>& out) const override;

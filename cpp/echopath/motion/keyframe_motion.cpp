@@ -118,8 +118,6 @@ KeyframeMotion::KeyframeMotion(std::vector<double> times, std::vector<Vec3> tran
                                             std::move(rotations), std::move(rotation_derivatives), rests});
 }
 
-KeyframeMotion::~KeyframeMotion() = default;
-
 Transform KeyframeMotion::at(double time) const {
   const SplineKnots::Weights weights = data_->knots.weights(time, data_->rests);
   Transform transform = Transform::Identity();

@@ -65,7 +65,6 @@ class KeyframeMotion : public Motion {
   // 1e-6. Raises invalid_argument otherwise.
   KeyframeMotion(std::vector<double> times, std::vector<Vec3> translations, std::vector<Quaternion> rotations,
                  Interpolation interpolation = Interpolation::kCubic);
-  ~KeyframeMotion() override;
   Transform at(double time) const override;
   std::vector<double> breakpoints(const TimeSpan& during = {}) const override;
   bool rests() const override;  // all keys are equal

@@ -112,8 +112,6 @@ Skin::Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeig
   data_ = std::make_shared<const Data>(std::move(data));
 }
 
-Skin::~Skin() = default;
-
 int64_t Skin::num_vertices() const { return std::ssize(data_->vertices); }
 const std::vector<Vec3>& Skin::vertices() const { return data_->vertices; }
 const std::vector<Joint>& Skin::joints() const { return data_->joints; }

@@ -38,7 +38,6 @@ class Skin : public Deformation {
   // `shape` replaces the vertices at each time, before the joints move them; null: they stay. It must have V vertices.
   Skin(std::vector<Vec3> vertices, std::vector<Joint> joints, const SkinWeights& weights,
        std::shared_ptr<const Deformation> shape = nullptr);
-  ~Skin() override;
 
   int64_t num_vertices() const override;
   std::vector<Vec3> at(double time) const override;

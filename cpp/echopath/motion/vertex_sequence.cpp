@@ -55,8 +55,6 @@ VertexSequence::VertexSequence(std::vector<double> times, Frames vertices, Inter
   data_ = std::make_shared<const Data>(Data{std::move(knots), std::move(vertices), std::move(derivatives), rests});
 }
 
-VertexSequence::~VertexSequence() = default;
-
 int64_t VertexSequence::num_vertices() const { return std::ssize(data_->frames.front()); }
 
 std::vector<Vec3> VertexSequence::at(double time) const {

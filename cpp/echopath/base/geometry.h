@@ -35,6 +35,12 @@ inline Box box_about(std::span<const Vec3> points) {
   return box;
 }
 
+// Returns the unit vector of the part of a vector across a unit vector; zero where it lies along that.
+inline Vec3 unit_part_across(const Vec3& vector, const Vec3& unit) {
+  const Vec3 part = vector - unit.dot(vector) * unit;
+  return part.squaredNorm() > 1e-18 ? Vec3(part.normalized()) : Vec3(Vec3::Zero());
+}
+
 // Returns the point of the segment between two points, which may be one, that is nearest to another point.
 inline Vec3 nearest_of_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;

@@ -54,29 +54,12 @@ Plane plane_of_largest(size_t num_triangles, const CornersOf& corners_of) {
 
 // Holds the chain of the mirrors with some indices, by reference.
 template <class Mirror>
-class ChainOfIndices {
- public:
-  class Iterator {
-   public:
-    Iterator(const ChainOfIndices& chain, size_t at) : chain_(&chain), at_(at) {}
-    const Mirror& operator*() const { return (*chain_)[at_]; }
-    Iterator& operator++() { return ++at_, *this; }
-    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+struct ChainOfIndices {
+  const std::vector<Mirror>& mirrors;
+  std::span<const int> indices;
 
-   private:
-    const ChainOfIndices* chain_;
-    size_t at_;
-  };
-
-  ChainOfIndices(const std::vector<Mirror>& mirrors, std::span<const int> indices) : mirrors_(mirrors), indices_(indices) {}
-  size_t size() const { return indices_.size(); }
-  const Mirror& operator[](size_t k) const { return mirrors_[indices_[k]]; }
-  Iterator begin() const { return {*this, 0}; }
-  Iterator end() const { return {*this, size()}; }
-
- private:
-  const std::vector<Mirror>& mirrors_;
-  std::span<const int> indices_;
+  size_t size() const { return indices.size(); }
+  const Mirror& operator[](size_t k) const { return mirrors[indices[k]]; }
 };
 
 template <class Mirror>
@@ -87,7 +70,10 @@ ChainOfIndices<Mirror> chain_of(const std::vector<Mirror>& mirrors, std::span<co
 // Returns the image of a point over a chain of mirrors; image_over_reversed takes the last one first.
 template <class Planes>
 Vec3 image_over(const Planes& planes, Vec3 point) {
-  for (const Plane& plane : planes) point = plane.image(point);
+  for (size_t k = 0; k < planes.size(); ++k) {
+    const Plane& plane = planes[k];
+    point = plane.image(point);
+  }
   return point;
 }
 template <class Planes>
@@ -103,7 +89,10 @@ Vec3 image_over_reversed(const Planes& planes, Vec3 point) {
 // mirrored_over_reversed takes the last one first.
 template <class Planes>
 Vec3 mirrored_over(const Planes& planes, Vec3 direction) {
-  for (const Plane& plane : planes) direction = plane.mirrored(direction);
+  for (size_t k = 0; k < planes.size(); ++k) {
+    const Plane& plane = planes[k];
+    direction = plane.mirrored(direction);
+  }
   return direction;
 }
 template <class Planes>
@@ -118,7 +107,10 @@ Vec3 mirrored_over_reversed(const Planes& planes, Vec3 direction) {
 // Sets the images of a point over the first mirror of a chain, over the first two, and so on.
 template <class Planes>
 void find_images(const Planes& planes, Vec3 point, Vec3* images) {
-  for (const Plane& plane : planes) *images++ = point = plane.image(point);
+  for (size_t k = 0; k < planes.size(); ++k) {
+    const Plane& plane = planes[k];
+    images[k] = point = plane.image(point);
+  }
 }
 
 // Sets points[k] to where a wave between two points meets mirror k of a chain, from the last mirror back to the first.

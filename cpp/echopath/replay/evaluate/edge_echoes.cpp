@@ -15,12 +15,6 @@
 namespace echopath {
 namespace {
 
-// Returns the polarisation of an antenna across a direction, unit; zero along it.
-Vec3 part_across(const Vec3& polarization, const Vec3& direction) {
-  const Vec3 part = polarization - direction.dot(polarization) * direction;
-  return part.squaredNorm() > 1e-18 ? Vec3(part.normalized()) : Vec3(Vec3::Zero());
-}
-
 // Describes the wave that comes from an antenna to an edge.
 struct WaveAtEdge {
   double length, root_gain, phase;  // m; of the antenna, rad
@@ -43,7 +37,7 @@ struct MirrorsToEdge {
 struct ScalarFields {
   static constexpr bool kComeOverMirrors = false;
   static FieldVector seen(const WaveAtEdge&, const Vec3& polarization, const Vec3& direction) {
-    return part_across(polarization, direction).cast<std::complex<double>>();
+    return unit_part_across(polarization, direction).cast<std::complex<double>>();
   }
 };
 
@@ -181,7 +175,7 @@ class EdgeEchoes {
   }
 
   FieldVector over_mirrors(const PosedAntenna& antenna, Vec3 direction) const {
-    FieldVector field = part_across(antenna.polarization, direction).cast<std::complex<double>>();
+    FieldVector field = unit_part_across(antenna.polarization, direction).cast<std::complex<double>>();
     const auto pass = [&](size_t leg) {
       if (sheets_) field = sheets_->through({mirrors_.leg(leg), antenna.position, mirrors_.is_forward}, field);
     };

@@ -23,11 +23,6 @@ Vec3 centre_of_antennas(const std::vector<PosedAntenna>& antennas) {
   return sum / static_cast<double>(antennas.size());
 }
 
-Vec3 field_along(const PosedAntenna& antenna, const Vec3& direction) {
-  const Vec3 across = antenna.polarization - direction.dot(antenna.polarization) * direction;
-  return across.norm() > 1e-9 ? Vec3(across.normalized()) : Vec3(Vec3::Zero());
-}
-
 double best_gain(const std::vector<PosedAntenna>& antennas, const Vec3& direction) {
   double best = 0.0;
   for (const PosedAntenna& antenna : antennas) best = std::max(best, antenna.toward(direction).power);
@@ -40,9 +35,9 @@ double best_coupling(const Mat3& matrix, const std::vector<PosedAntenna>& transm
                      const std::vector<PosedAntenna>& receivers, const EdgeLeg& out) {
   double best = 0.0;
   for (const PosedAntenna& transmitter : transmitters) {
-    const Vec3 sent = matrix * field_along(transmitter, in.at_antenna);
+    const Vec3 sent = matrix * unit_part_across(transmitter.polarization, in.at_antenna);
     for (const PosedAntenna& receiver : receivers)
-      best = std::max(best, std::abs(field_along(receiver, out.at_antenna).dot(sent)));
+      best = std::max(best, std::abs(unit_part_across(receiver.polarization, out.at_antenna).dot(sent)));
   }
   return best;
 }
@@ -57,7 +52,7 @@ EdgeEstimate::EdgeEstimate(const Radar& radar, const Transform& world_from_radar
 double EdgeEstimate::power(const PosedEdge& edge, const Material& material) const {
   const Vec3 sender = centre_of_antennas(transmitters_), receiver = centre_of_antennas(receivers_);
   const Vec3 line = edge.line(), middle = 0.5 * (sender + receiver);
-  const Vec3 point = edge.from + std::clamp(line.dot(middle - edge.from) / line.squaredNorm(), 0.0, 1.0) * line;
+  const Vec3 point = nearest_of_segment(middle, edge.from, edge.to);
   const EdgeLeg in = edge_leg_to(sender, point), out = edge_leg_to(receiver, point);
   const Mat3 fringe = fringe_matrix(edge.wedge, in.at_antenna, out.to_antenna);
   const double coupled = best_coupling(fringe, transmitters_, in, receivers_, out);

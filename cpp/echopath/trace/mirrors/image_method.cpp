@@ -96,15 +96,16 @@ SurfaceModel ImageMethod::model_of(const Mirror& mirror, const Vec3& direction) 
 JonesMatrix ImageMethod::jones_matrix() const {
   Vec3 direction = departure();
   FieldPair fields = launched_fields(direction);
-  for (const Mirror& mirror : chain_of(mirrors_, sequence_))
-    carry_over_mirror(fields, direction, mirror.normal, model_of(mirror, direction));
+  for (const int index : sequence_)
+    carry_over_mirror(fields, direction, mirrors_[index].normal, model_of(mirrors_[index], direction));
   return arriving_components(fields, direction);
 }
 
 std::complex<double> ImageMethod::field() const {
   std::complex<double> product = 1.0;
   Vec3 direction = departure();
-  for (const Mirror& mirror : chain_of(mirrors_, sequence_)) {
+  for (const int index : sequence_) {
+    const Mirror& mirror = mirrors_[index];
     const SurfaceModel model = model_of(mirror, direction);
     const SurfaceResponse response = respond_as_mirror(model, settings_.polarization, direction, mirror.normal);
     product *= response.gamma * response.coherent;

@@ -14,8 +14,6 @@ class Tracer {
   // Raises what `trace` raises. What is kept, and the strata that were fitted before, may be null.
   Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
          KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
-  Tracer(const Tracer&) = delete;
-  Tracer& operator=(const Tracer&) = delete;
   // Shoots all rays; it returns the same record each time. `doubles`, which may be null, is that of `trace`.
   Paths run(Job* job, PlaneDoubles* doubles = nullptr) const;
   int64_t num_rays() const { return plan_.first_ray.back(); }

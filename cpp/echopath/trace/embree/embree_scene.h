@@ -57,8 +57,6 @@ class EmbreeScene {
   // Makes a scene without meshes, until update() adds them.
   EmbreeScene();
   ~EmbreeScene();
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
   // Makes the scene as if anew, with the same answers, but does only what differs from before. Where meshes overlap little,
   // and something moves, edits come (Upkeep) or there are hundreds of small ones, each has a tree of its own, or shares one
   // with small neighbours: then a mesh that has moved costs a fit of its tree (6 ns a triangle) and the tree over all

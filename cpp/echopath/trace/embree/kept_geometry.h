@@ -18,8 +18,6 @@ class GeometryLoan {
   GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, EmbreeScene::Upkeep upkeep,
                Job* job);
   ~GeometryLoan();
-  GeometryLoan(const GeometryLoan&) = delete;
-  GeometryLoan& operator=(const GeometryLoan&) = delete;
   EmbreeScene& operator*() const { return *geometry_; }
 
  private:

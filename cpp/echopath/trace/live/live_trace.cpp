@@ -1,7 +1,5 @@
 #include "echopath/trace/live/live_trace.h"
 
-#include <utility>
-
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/live/live_record.h"
 #include "echopath/trace/live/path_difference.h"
@@ -62,8 +60,6 @@ std::vector<LiveBlockPtr> without(const std::vector<LiveBlockPtr>& blocks, const
 
 LiveTrace::LiveTrace(Scenes scenes, std::function<Paths(Paths, Job*)> finish)
     : scenes_(scenes), finish_(std::move(finish)) {}
-LiveTrace::~LiveTrace() = default;
-
 LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& asked, Job* job) {
   TraceSettings settings = asked;
   settings.for_edits = true;

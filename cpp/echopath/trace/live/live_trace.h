@@ -45,7 +45,6 @@ class LiveTrace {
   // `finish` makes of all paths of some rays those of the record (power/faint_paths.h, say), alike whatever other rays'
   // paths are beside them; null: they are the record's as they are.
   explicit LiveTrace(Scenes scenes = Scenes::kOfWhatIsMet, std::function<Paths(Paths, Job*)> finish = nullptr);
-  ~LiveTrace();
   // Makes the record of the scene, radar and settings given, which `accept` puts in the place of the present one. Raises as
   // `trace`.
   Next prepare(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);

@@ -43,8 +43,6 @@ class QueryWatch {
  public:
   explicit QueryWatch(EmbreeScene& geometry);
   ~QueryWatch();
-  QueryWatch(const QueryWatch&) = delete;
-  QueryWatch& operator=(const QueryWatch&) = delete;
 
   // Has the calling thread watch the space while this lives.
   class OfThread {

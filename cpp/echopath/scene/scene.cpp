@@ -42,10 +42,10 @@ void check_content(const Node& node) {
 }
 
 bool scales_unevenly(const Mat3& linear) {
-  constexpr double kRounding = 1e-12;  // relative
+  constexpr double kSlack = 1e-12;  // relative
   const Mat3 gram = linear.transpose() * linear;
   const double mean = gram.trace() / 3.0;
-  return (gram - mean * Mat3::Identity()).cwiseAbs().maxCoeff() > kRounding * mean;
+  return (gram - mean * Mat3::Identity()).cwiseAbs().maxCoeff() > kSlack * mean;
 }
 
 bool covers(const TimeSpan& span, double begin, double end, double slack = 0.0) {

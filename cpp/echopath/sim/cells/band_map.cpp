@@ -12,10 +12,10 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kFewColumns = 4;                   // up to which cells need not be sorted to lanes
-constexpr int kTogether = TileAtChirps::kMaxChirps;  // chirps whose rows have the same cells
-constexpr int64_t kLongestTable = 1 << 16;           // of responses
-constexpr int64_t kMostProducts = 60000;             // of cells and columns, above which the samples are quicker
+constexpr int64_t kFewColumns = 4;                         // up to which cells need not be sorted to lanes
+constexpr int kChirpsTogether = TileAtChirps::kMaxChirps;  // chirps whose rows have the same cells
+constexpr int64_t kLongestTable = 1 << 16;                 // of responses
+constexpr int64_t kMostProducts = 60000;                   // of cells and columns, above which the samples are quicker
 
 // Returns transforms of 1, 2, 4, ... values, up to twice as many as the widest band has cells.
 std::vector<Fft> ffts_of_rows() {
@@ -49,7 +49,7 @@ void add_lanes_of(const RowCells* rows, int64_t first, int64_t num_cells, int64_
 
 // The rows of chirps that are read together have the same cells.
 void add_lanes(const RowCells* rows, int count, int64_t first, int64_t num_cells, int64_t stride, double* lanes) {
-  if (count == kTogether) return add_lanes_of<kTogether>(rows, first, num_cells, stride, lanes);
+  if (count == kChirpsTogether) return add_lanes_of<kChirpsTogether>(rows, first, num_cells, stride, lanes);
   for (int i = 0; i < count; ++i) add_lanes_of<1>(rows + i, first, num_cells, stride, lanes + i);
 }
 
@@ -126,12 +126,12 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
 std::vector<double> BandMap::magnitude_of(const Synthesizer& signals, int group, int num_channels) const {
   std::vector<double> largest(spread_->row_length());
   for (int channel = 0; channel < num_channels; ++channel) {
-    for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
+    for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; chirp += kChirpsTogether) {
       const RowCells cells = signals.moving_cells(channel, group, chirp);
       double* const out = largest.data() + cells.first;
-      if (chirp + kTogether <= num_chirps_) {
+      if (chirp + kChirpsTogether <= num_chirps_) {
         const int64_t stride = signals.moving_cells(channel, group, chirp + 1).re - cells.re;
-        run_simd<band_loops::find_largest_squares<kTogether>>(cells.re, cells.im, stride, cells.count, out);
+        run_simd<band_loops::find_largest_squares<kChirpsTogether>>(cells.re, cells.im, stride, cells.count, out);
         continue;
       }
       for (int last = chirp; last < num_chirps_; ++last) {
@@ -161,7 +161,7 @@ BandMap::Band BandMap::extent_of(const SummedGroups& of, int num_channels) const
   int64_t first = spread_->row_length(), end = 0;
   for (const int group : of.groups) {
     for (int channel = 0; channel < num_channels; ++channel) {
-      for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
+      for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kChirpsTogether) {
         const RowCells cells = of.signals->moving_cells(channel, group, chirp);
         first = std::min(first, cells.first);
         end = std::max(end, cells.first + cells.count);
@@ -189,9 +189,9 @@ void BandMap::gather(const SummedGroups& of, int channel, const Band& band, std:
   const int64_t stride = num_lanes_ + band_loops::kApart;
   lanes.assign(2 * band.count * stride, 0.0);
   for (const int group : of.groups) {
-    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
-      RowCells rows[kTogether];
-      const int count = static_cast<int>(std::min<int64_t>(kTogether, num_chirps_ - chirp));
+    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kChirpsTogether) {
+      RowCells rows[kChirpsTogether];
+      const int count = static_cast<int>(std::min<int64_t>(kChirpsTogether, num_chirps_ - chirp));
       for (int i = 0; i < count; ++i) rows[i] = of.signals->moving_cells(channel, group, chirp + i);
       add_lanes(rows, count, band.first, band.count, stride, lanes.data() + chirp);
     }

@@ -277,3 +277,26 @@ def test_images_and_rays_over_a_plane_stand_in_for_each_other(crossing, hidden):
     assert np.allclose(renewed[away], whole[away], rtol=1e-3)
     assert np.all(always[hidden] < 0.9 * whole[hidden])
     assert np.allclose(renewed[hidden], always[hidden], rtol=0.3)  # to 1 dB: both have few rays in the gaps
+
+
+def share_of_endless(beside):
+    """The field of a plate of 0.6 m at 5 m, whose middle is so many m beside the radar, over that of an endless plane: physical
+    optics, summed up."""
+    y, z = (0.6 * ((np.arange(n) + 0.5) / n - 0.5) for n in (600, 400))
+    r = np.sqrt(5.0**2 + (beside + y[:, None]) ** 2 + z**2)
+    return abs(np.sum(np.exp(-2j * WAVE_NUMBER * r) * 5.0 / r**3)) * 0.6**2 / r.size * WAVE_NUMBER * 5.0 / np.pi
+
+
+def test_an_echo_whose_point_of_reflection_leaves_its_plate_fades_as_physical_optics_says():
+    """It is at the rim in the fourth of eight chirps, and before that rays have what is left of the echo."""
+    radar, whole = radar_of(num_chirps=8, num_samples=16), ep.Scene()
+    whole.add(facing(2, 2), name="plane", material=ep.Material.metal(), position=(5, 0, 0))
+    endless = power_of_chirps(ep.synthesize(ep.trace(whole, radar, num_rays=100), radar))
+    scene, speed, first = ep.Scene(), 400.0, -0.42
+    scene.add(facing(0.3, 0.3), name="plate", material=ep.Material.metal(), position=(5, first, 0),
+              motion=ep.LinearMotion(velocity=(0, speed, 0)))
+    paths = ep.trace(scene, radar, num_rays=10_000)
+    assert paths.num_paths == 1     # the image
+    renewed = power_of_chirps(ep.synthesize(paths, radar, retrace="invalid", keyframes=8))
+    expected = [share_of_endless(first + speed * time) for time in chirp_times(radar)]
+    assert np.allclose(np.sqrt(renewed / endless), expected, rtol=0, atol=0.02)     # the least is 0.13

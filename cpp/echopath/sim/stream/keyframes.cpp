@@ -94,9 +94,18 @@ void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stre
     for (size_t path = 0; path < keep.size(); ++path) keep[path] |= seen.is_new[path];
     Paths found = thinned(seen.paths.select(keep, job_), job_);
     for (auto earlier = looks.rbegin(); earlier != looks.rend(); ++earlier) take_out(*earlier, radar, found, before);
-    if (found.num_paths() > 0) found_.push_back({found.with_own_hits(job_), seen.doubles.of_images_in(found)});
+    if (found.num_paths() > 0) found_.push_back(parted(found, seen.doubles));
     looks.push_back({time, std::move(seen.doubles)});
   }
+}
+
+StretchRecords::Found StretchRecords::parted(const Paths& found, const PlaneDoubles& doubles) const {
+  std::vector<uint8_t> keep(found.num_paths());
+  for (size_t path = 0; path < keep.size(); ++path) keep[path] = found.is_of_a_ray(path);
+  Found parts{found.select(keep, job_).with_own_hits(job_), {}, doubles.of_images_in(found)};
+  for (uint8_t& is_kept : keep) is_kept = !is_kept;
+  parts.others = found.select(keep, job_).with_own_hits(job_);
+  return parts;
 }
 
 // Takes out the paths that an earlier look could have had, too.
@@ -121,16 +130,27 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     settings.guide = guide_like(paths_.frame.strata);
     return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
   }
+  // Images come first, because paths of rays for which they stand need no renewal.
   std::vector<Paths> records = {renewed(paths_, stretch)};
   std::vector<PlaneDoubles> images = {own_doubles_.of_images_in(records.front())};
-  for (const auto& [paths, doubles] : found_) {
+  const auto add = [&](const Paths& paths) {
+    if (paths.num_paths() == 0) return false;
     Paths record = renewed(paths, stretch);
-    if (record.num_paths() == 0) continue;
-    images.push_back(doubles.of_images_in(record));
-    records.push_back(std::move(record));
+    const bool is_there = record.num_paths() > 0;
+    if (is_there) records.push_back(std::move(record));
+    return is_there;
+  };
+  for (const Found& found : found_) {
+    if (add(found.others)) images.push_back(found.doubles.of_images_in(records.back()));
   }
-  for (const PlaneDoubles& doubles : images) {
-    for (Paths& record : records) doubles.leave_out(record, job_);
+  const auto leave_out = [&](Paths& paths) {
+    for (const PlaneDoubles& doubles : images) doubles.leave_out(paths, job_);
+  };
+  leave_out(records.front());
+  for (const Found& found : found_) {
+    Paths of_rays = found.of_rays;
+    leave_out(of_rays);
+    add(of_rays);
   }
   return records;
 }

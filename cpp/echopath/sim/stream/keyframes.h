@@ -54,9 +54,9 @@ class StretchRecords {
   std::vector<Paths> of(const Stretch& stretch);
 
  private:
-  // Holds paths on new surface, and which paths of rays the images among them stand for.
+  // Holds paths on new surface: those of rays, the others, and which paths of rays these stand for.
   struct Found {
-    Paths paths;
+    Paths of_rays, others;
     PlaneDoubles doubles;
   };
   struct Look {
@@ -65,6 +65,7 @@ class StretchRecords {
   };
 
   void find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches);
+  Found parted(const Paths& found, const PlaneDoubles& doubles) const;
   void take_out(const Look& look, const Radar& radar, Paths& found, KeptGeometry& kept) const;
   Paths renewed(const Paths& paths, const Stretch& stretch);
 

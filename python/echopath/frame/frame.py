@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import SignalSettings
+from ..base.classes.by_partition import ByPartition
 from ..base.classes.known_attributes import known_attributes
 from ..base.classes.made_by import made_by
 from ..base.process.stages import Stage
@@ -101,6 +102,10 @@ class Frame:
     checks: list[Check] = dataclasses.field(default_factory=list)
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        for name in ("parts", "selections", "part_of_path", "part_spectra", "labels"):
+            setattr(self, name, ByPartition(getattr(self, name)))
+
     @property
     def start_time(self) -> float:
         """s, first sample of the frame; it and the next ones are called as in `ep.FrameMaps`, which small files keep."""
@@ -141,14 +146,18 @@ class Frame:
         """The cube with rain, interference, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample],
         sqrt(W): the same bits at every call. Codes of transmitters are undone (`demultiplex`).
 
-        The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
+        The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ. Raises ValueError
+        for a record of paths alone.
         """
         received = self.received.cube
         return received if self.coded_cube is None else demultiplex(received, self.radar)
 
     @property
     def received(self) -> Reception:
-        """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call."""
+        """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call.
+
+        Raises ValueError for a record of paths alone.
+        """
         return reception(self._arriving_cube, self.radar, self.noise_seed, self.paths.frame.start_time,
                          self.interference_cube)
 
@@ -158,13 +167,20 @@ class Frame:
         to it, made anew at every call; "parts" with the part "other" without partitions.
 
         Beside the parts of the paths stand those that no path makes, where there are some: "rain", "interference", "leakage",
-        "noise" (thermal), "offset" and "converter" (rounding and saturation); see `ep.receive_parts`.
+        "noise" (thermal), "offset" and "converter" (rounding and saturation); see `ep.receive_parts`. Raises ValueError for a
+        record of paths alone.
         """
+        self._require_signals()
         return received_parts(self)
+
+    def _require_signals(self) -> None:
+        if self.cube is None:
+            raise ValueError("frame: must have signals, got a record of paths alone")
 
     @property
     def _arriving_cube(self):
         """Echoes that come to the receivers, without noise: of transmitters that send at once their sum."""
+        self._require_signals()
         cube = self.cube if self.coded_cube is None else self.coded_cube
         return cube if self.rain_cube is None else cube + self.rain_cube
 
@@ -260,8 +276,8 @@ class Frame:
     @cached_property
     def mean_part_powers(self) -> dict[str, dict[str, _core.ReceivedPower]]:
         """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
-        return {partition: dict(zip(self.parts[partition], self._mean_powers.of_parts[partition]))
-                for partition in self.part_of_path}
+        return ByPartition({partition: dict(zip(self.parts[partition], self._mean_powers.of_parts[partition]))
+                            for partition in self.part_of_path})
 
     @cached_property
     def unresolved(self) -> list[Unresolved]:
@@ -317,6 +333,6 @@ def with_spectra(frame: Frame) -> Frame:
         return _core.range_doppler(cube, frame.radar, **frame.spectrum_settings)
 
     frame.spectrum = spectrum(frame.noisy_cube)
-    frame.part_spectra = {partition: {name: spectrum(cube) for name, cube in cubes.items()}
-                          for partition, cubes in frame.parts.items()}
+    frame.part_spectra = ByPartition({partition: {name: spectrum(cube) for name, cube in cubes.items()}
+                                      for partition, cubes in frame.parts.items()})
     return frame

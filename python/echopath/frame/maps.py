@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arguments.checks import refused
+from ..base.classes.by_partition import ByPartition
 from ..base.classes.equality import has_same_fields
 from ..base.classes.made_by import made_by
 from ..detections.detections import Detections
@@ -88,7 +89,7 @@ def maps_of(frame: Frame, with_power: bool) -> FrameMaps:
     """What a small file keeps of a frame; with_power: maps too, not labels alone."""
     return FrameMaps(
         start_time=frame.start_time, seed=frame.seed, noise_seed=frame.noise_seed,
-        labels={partition: _within_mask(labels) for partition, labels in frame.labels.items()},
+        labels=ByPartition({partition: _within_mask(labels) for partition, labels in frame.labels.items()}),
         detections=None if frame.detections is None else dataclasses.replace(frame.detections, echoes=None),
         velocity=frame.velocity, range=frame.range, power=frame.power if with_power else None, kept_truth=frame.kept_truth,
         azimuth=frame.azimuth if with_power else None, azimuth_power=frame.azimuth_power if with_power else None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 from .._core import Grouping
 from ..arguments.part_names import RAIN, REST
 from ..arguments.settings import FRAME_KEYWORDS
+from ..base.classes.by_partition import ByPartition
 from ..receiver.chain import transmitted_code
 from ..receiver.parts import receive_parts
 from ..signals.parts import ONLY_PARTITION
@@ -16,9 +17,10 @@ def received_parts(frame) -> dict:
     """{partition: {part: cube}} in sqrt(W), which add up to what the receiver gives (`Frame.received`)."""
     partitions = frame.parts or {ONLY_PARTITION: {REST: frame.cube}}
     rain = {} if frame.rain_cube is None else {RAIN: frame.rain_cube}
-    return {partition: receive_parts({**_arriving(frame, partition, parts), **rain}, frame.radar, seed=frame.noise_seed,
-                                     start_time=frame.paths.frame.start_time, interference=frame.interference_cube)
-            for partition, parts in partitions.items()}
+    return ByPartition({partition: receive_parts({**_arriving(frame, partition, parts), **rain}, frame.radar,
+                                                 seed=frame.noise_seed, start_time=frame.paths.frame.start_time,
+                                                 interference=frame.interference_cube)
+                        for partition, parts in partitions.items()})
 
 
 def _arriving(frame, partition: str, parts: dict) -> dict:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base.classes.by_partition import ByPartition
 from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
 from ..labels.left_out import LeftOut
 from ..paths.resolution import Interval
@@ -43,7 +44,7 @@ def write_all_labels(group, labels: dict, compress: bool = False) -> None:
 def read_all_labels(group) -> dict:
     """{partition: Labels}; the same bits that were written."""
     folders = [read_group(group, str(index)) for index in range(len(group))]
-    return {read_attribute(folder, "partition", str): read_labels(folder) for folder in folders}
+    return ByPartition({read_attribute(folder, "partition", str): read_labels(folder) for folder in folders})
 
 
 @blames_group

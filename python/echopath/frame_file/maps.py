@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.classes.by_partition import ByPartition
 from ..frame.frame import power_of_map
 from ..frame.maps import FrameMaps
 from .container import new_file, our_file
@@ -42,7 +43,7 @@ def load_maps(path) -> FrameMaps:
         seeds = {"seed": read_seed(group, "seed"), "noise_seed": read_optional_seed(group, "noise_seed")}
         axes = {name: read_array(group, name, np.float64, (None,)) for name in ("velocity", "range")}
         shape = len(axes["velocity"]), len(axes["range"])
-        labels = read_all_labels(read_group(file, "labels")) if "labels" in file else {}
+        labels = read_all_labels(read_group(file, "labels")) if "labels" in file else ByPartition()
         detections = read_detections(read_group(file, "detections"), shape, **seeds) if "detections" in file else None
         return FrameMaps(start_time=read_attribute(group, "start_time", float), **seeds, labels=labels,
                          detections=detections, **axes,

@@ -13,6 +13,7 @@ from ..arguments.names import first_names
 from ..arguments.objects import Objects
 from ..arguments.part_names import REST, require_names
 from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
+from ..base.classes.by_partition import ByPartition
 from ..paths.resolution import Interval, interval_of
 from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
@@ -117,7 +118,7 @@ def owners_of_powers(request: Request, powers):
     return lambda mask, intervals: owners_of_views(powers, mask, request.noise_floor)
 
 
-def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
+def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> ByPartition:
     """{partition: Labels} from {partition: ViewPowers}; objects and ghosts are the same in all.
 
     owners: callable (mask bool [V, R], {Family: Interval}) that gives CellOwners of the families
@@ -134,12 +135,12 @@ def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
     for name in beside:
         owned.leave(first.cells[name])
     scene_labels = _label_scene(work, owned, intervals, mask)
-    labels = {partition: _label_parts(work, of_parts, received.get(partition), scene_labels)
-              for partition, of_parts in powers.items()}
+    labels = ByPartition({partition: _label_parts(work, of_parts, received.get(partition), scene_labels)
+                          for partition, of_parts in powers.items()})
     if not work.request.errors:
         return labels
-    return {partition: _with_errors(found, work, work.selections.get(partition, {}), beside)
-            for partition, found in labels.items()}
+    return ByPartition({partition: _with_errors(found, work, work.selections.get(partition, {}), beside)
+                        for partition, found in labels.items()})
 
 
 def _label_scene(work: Labelling, owners, intervals: dict, mask) -> dict:

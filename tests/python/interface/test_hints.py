@@ -264,3 +264,26 @@ def test_keywords_of_a_dict_among_the_keywords_are_told_where_they_belong(scene,
     for call, more in ((ep.simulate, {}), (ep.Sequence, {"frames": 2, "interval": 1.0})):
         with pytest.raises(TypeError, match=rf"^{call.__name__}: unknown keyword '{word}', it belongs to {re.escape(home)}$"):
             call(scene, RADAR, **{word: True}, **more)
+
+
+@pytest.mark.parametrize("table", ["labels", "parts", "selections", "part_of_path", "part_spectra", "mean_part_powers"])
+def test_partitions_that_a_frame_lacks_say_how_to_have_them(frame, table):
+    with pytest.raises(KeyError, match=r"no partition 'parts'; the frame has none of these: simulate\(parts=\).*labels=True"):
+        getattr(frame, table)["parts"]
+
+
+def test_partitions_of_another_name_are_told(scene, tmp_path):
+    asked = ep.simulate(scene, RADAR, num_rays=500, guard=False, parts={"body": {"plate": "T 'plate' R"}}, labels=True)
+    asked.save(tmp_path / "frame.h5")
+    for made in (asked, ep.load_frame(tmp_path / "frame.h5"), pickle.loads(pickle.dumps(asked))):
+        for table in ("labels", "parts", "selections", "part_of_path", "part_spectra", "mean_part_powers", "received_parts"):
+            with pytest.raises(KeyError, match="no partition 'parts'; there are body"):
+                getattr(made, table)["parts"]
+            assert dict.get(getattr(made, table), "parts") is None
+
+
+@pytest.mark.parametrize("member", ["noisy_cube", "received", "received_parts"])
+def test_signals_that_a_record_lacks_are_missed_by_name(frame, tmp_path, member):
+    frame.paths.save(tmp_path / "record.h5")
+    with pytest.raises(ValueError, match="frame: must have signals, got a record of paths alone"):
+        getattr(ep.load_frame(tmp_path / "record.h5"), member)

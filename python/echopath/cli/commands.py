@@ -85,7 +85,7 @@ def run(options) -> None:
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time),
                  *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time),
                  *report.effects(frame.effects), *report.stages(frame.stages),
-                 *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
+                 *report.powers(frame, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, advice, file=DETECTIONS_NAME),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
                  *report.files(written), *report.unresolved(unresolved_of_frame(frame, objects), frame.paths)]:

@@ -62,7 +62,7 @@ def _report(street, frame: Frame, certificate, written, residuals: dict) -> list
     shown["legs by route"] = {name: cube for name, cube in shown["legs by route"].items() if name != REST}
     limbs = frame.part_spectra["limbs"]
     return [street.title, *report.counts(frame.paths), *report.effects(frame.effects),
-            *report.stages(frame.stages), *report.powers(frame.cube, shown), *report.mean_powers(frame),
+            *report.stages(frame.stages), *report.powers(frame, shown), *report.mean_powers(frame),
             f"radial velocities (receding positive), down to {EXTENT_BELOW_PEAK_DB:.0f} dB below the peak",
             report.extent("arms", limbs["arms"]), report.extent("legs", limbs["legs"]),
             "|whole - sum of parts| / |whole|, the whole synthesised on its own",

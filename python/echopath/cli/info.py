@@ -289,7 +289,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
-        lines += ["cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
+        lines += ["cube", shape, *report.powers(frame, frame.parts), *report.mean_powers(frame),
                   *report.labels(frame.labels or {}), *report.detections(frame.detections, frame.labels or {}),
                   *report.truth(frame.kept_truth), *report.checks(frame.checks),
                   *report.unresolved(frame.unresolved, frame.paths, missing)]

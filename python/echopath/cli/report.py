@@ -26,6 +26,8 @@ MAX_UNRESOLVED = 20  # echoes named one by one
 VAGUE_DB, UNKNOWN_DB = 1.0, 20.0  # widths of an interval from which on it is told, and from which on its upper end alone
 PEAK_OF_CELLS = "strongest of its cells"
 UNRESOLVED_MEAN = "mean over random phases where not resolved (95 %)"
+ONE_FREQUENCY = ("  Coherent echoes add up or cancel at one frequency otherwise than over the band: these powers may be far\n"
+                 "  from those of the signals, and those of parts need not add up to that of the whole.")
 ON_EACH_OTHER = "surfaces on each other"
 FOLDED = "velocities that are ambiguous"
 
@@ -124,10 +126,11 @@ def stages(all_stages) -> list[str]:
     return ["time and peak memory", *lines, line("all", f"{sum(stage.seconds for stage in all_stages):8.2f} s")]
 
 
-def powers(whole, parts: dict) -> list[str]:
-    """Mean received power of the whole and of each part of each partition, without noise."""
-    lines = ["received power, without noise, of one realisation of the random phases",
-             line("whole", _power_text(power_dbm(whole)))]
+def powers(frame, parts: dict) -> list[str]:
+    """Power of the signals of a frame, of the whole and of each part of each partition, without noise."""
+    phases = ", one realisation of the random phases" if np.any(frame.paths.diffuse) else ""
+    lines = [f"received power of the signals, without noise: mean over the band, all antennas and chirps{phases}",
+             line("whole", _power_text(power_dbm(frame.cube)))]
     for partition, cubes in parts.items():
         lines.append(f"received power, {partition}")
         lines += [line(name, _power_text(power_dbm(cube))) for name, cube in cubes.items()]
@@ -135,12 +138,15 @@ def powers(whole, parts: dict) -> list[str]:
 
 
 def mean_powers(frame) -> list[str]:
-    """Mean received power of the whole and of each part with half its 95 % interval."""
-    lines = ["mean received power over the random phases, first antennas, start frequency, +- half the 95 % interval",
+    """Mean received power of the whole and of each part with half its 95 % interval, and how far it may be from `powers`."""
+    phases = ", mean over the random phases" if np.any(frame.paths.diffuse) else ""
+    lines = [f"received power at the start frequency, between the first antennas{phases}, +- half the 95 % interval",
              line("whole", _aligned(with_error(frame.mean_power)))]
     for partition, part_powers in frame.mean_part_powers.items():
-        lines.append(f"mean received power, {partition}")
+        lines.append(f"received power at the start frequency, {partition}")
         lines += [line(name, _aligned(with_error(power))) for name, power in part_powers.items()]
+    if np.count_nonzero(frame.paths.diffuse == 0) > 1:
+        lines.append(ONE_FREQUENCY)
     return lines
 
 

@@ -70,7 +70,9 @@ def _turns(case: Case):
 @rule("transmitters send at once by a code", "Radar.empty_slots", "Radar.code_phases")
 def _codes(case: Case):
     kind = case.radar.multiplexing
-    return kind != "tdm", "they take turns" if kind == "tdm" else kind
+    if kind != "tdm":
+        return True, kind
+    return False, "they take turns" if len(case.radar.transmitters) > 1 else "one transmitter"
 
 
 @rule("chirps that differ within a frame", "ChirpSequence.extra_idle", "ChirpSequence.frequency_steps",

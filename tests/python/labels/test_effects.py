@@ -32,6 +32,11 @@ def found(scene=None, radar=None, **settings):
     return {effect.name: effect for effect in ep.effects(scene or make_scene(), radar or make_radar(), **settings)}
 
 
+def test_a_transmitter_alone_does_not_take_turns():
+    turns = found()["transmitters send at once by a code"], found()["transmitters take turns (TDM)"]
+    assert [(effect.modelled, effect.reason) for effect in turns] == [(False, "one transmitter"), (False, "1 transmitter")]
+
+
 def deforming():
     vertices = np.array([[0, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     scene = ep.Scene()

@@ -153,8 +153,8 @@ def test_a_report_gives_powers_with_their_errors():
     parts = {"object": {"rough": "T 'rough' R", "nothing": "T 'metal' 'metal' 'metal' R"}}
     frame = ep.simulate(street(), make_radar(), num_rays=6000, batches=8, parts=parts)
     lines = report.mean_powers(frame)
-    labels = [line.split()[0] for line in lines[1:]]
-    assert "95 % interval" in lines[0] and labels == ["whole", "mean", "rough", "nothing", "other"]
+    labels = [line.split()[0] for line in lines[1:-1]]
+    assert "95 % interval" in lines[0] and labels == ["whole", "received", "rough", "nothing", "other"]
     assert "dBm" in lines[3] and "nothing" in lines[4].split()[-1]
     alone = report.mean_powers(ep.simulate(street(), make_radar(), num_rays=500))
-    assert len(alone) == 2 and "dBm" in alone[1]
+    assert len(alone) == 3 and "dBm" in alone[1]

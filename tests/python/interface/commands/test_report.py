@@ -1,6 +1,7 @@
 """What the command line says of a run."""
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import echopath as ep
@@ -46,3 +47,35 @@ def test_leakage_is_not_the_surroundings():
 
 def test_names_that_are_longer_than_their_column_stand_apart():
     assert report.line("n" * 50, "value") == f"  {'n' * 50}  value"
+
+
+def balls(material, *distances):
+    """Balls one behind the other, none of which hides another, and the radar that sees them."""
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=128, num_chirps=4)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+    scene = ep.Scene()
+    for index, (distance, side) in enumerate(zip(distances, (-1.0, 1.0))):
+        scene.add(ep.actors.sphere(0.1), name=f"ball_{index}", position=(distance, side, 0.0), material=material, smooth=True)
+    return ep.simulate(scene, radar, num_rays=4000, guard=False)
+
+
+def told_power(lines):
+    return float(lines[1].replace("not resolved, ", "").split()[1])
+
+
+def test_echoes_that_cancel_at_the_start_frequency_are_told_to_be_there_over_the_band():
+    """Of two balls alike, the one farther by cells of range and a quarter wavelength, the echoes cancel at the start."""
+    wavelength = ep.speed_of_light / 77e9
+    near = np.hypot(4.0, 1.0)
+    far = np.sqrt((near + 300.25 * wavelength) ** 2 - 1.0)
+    frame = balls("metal", 4.0, far)
+    of_signals, at_start = report.powers(frame, {}), report.mean_powers(frame)
+    assert told_power(of_signals) > told_power(at_start) + 3.0
+    assert "over the band" in of_signals[0] and "start frequency" in at_start[0]
+    assert at_start[-1] == report.ONE_FREQUENCY and not any("random" in one for one in of_signals + at_start)
+
+
+def test_random_phases_are_told_where_there_are_some():
+    frame = balls(ep.Material(reflectivity=0.5, scattering=1.0), 4.0)
+    assert "random phases" in report.powers(frame, {})[0] and "random phases" in report.mean_powers(frame)[0]
+    assert report.ONE_FREQUENCY not in report.mean_powers(frame)

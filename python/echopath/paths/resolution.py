@@ -206,9 +206,10 @@ def _is_known_but_for_the_mesh(power) -> bool:
 
 
 def _times_the_rays(power) -> float:
-    """Bias falls as 1/rays at best, chance as their root at the latest."""
+    """How many times the rays make the interval narrow enough where bias falls as their root, as chance does: of one surface it
+    falls faster, of bodies of many panels or limbs as that at best."""
     bias, chance = _missing(power)
-    return max(2.0, bias, chance ** 2) if power.low > 0.0 else math.inf
+    return max(2.0, bias ** 2 + chance ** 2) if power.low > 0.0 else math.inf
 
 
 def _missing(power) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """Intervals of received powers hold the true value, and what the rays do not know is named, at most with what would help."""
 import csv
 import dataclasses
+import re
 from types import SimpleNamespace
 
 import h5py
@@ -297,6 +298,21 @@ def test_what_a_record_leaves_out_is_not_called_unmet(frame):
     assert "left out" in board.advice and board.interval.power == 0.0
 
 
+@pytest.mark.parametrize("body, distance, has_advice", [(ep.actors.pedestrian, 10.0, False), (ep.actors.cyclist, 10.0, False),
+                                                        (ep.actors.dog, 8.0, True)])
+def test_no_number_of_rays_is_advised_that_leaves_echoes_in_doubt(body, distance, has_advice):
+    """Of a body and its ghosts over a wall: echoes that 64,000 rays do not resolve are not said to take less."""
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(40, 6), name="wall", material=ep.materials["concrete"].replace(mirror=True), position=(15, 3, 0))
+    scene.add(body(), name="body", position=(distance, 0, 0), yaw=2.0)
+    few, many = ({one.title: one for one in ep.unresolved(ep.trace(scene, build_radar([(0, 0, 1)], [(0, 0.01, 1)]),
+                                                                   num_rays=num_rays, max_bounces=3))}
+                 for num_rays in (2000, 64_000))
+    found = {title: re.match("([0-9,]+) rays or more", one.advice) for title, one in few.items()}
+    advised = [title for title, words in found.items() if words and int(words[1].replace(",", "")) <= 64_000]
+    assert few and not set(advised) & set(many) and bool(advised) == has_advice
+
+
 def test_ghosts_of_one_mirror_are_told_apart():
     scene = ep.Scene()
     scene.add(ep.actors.wall(30.0, 6.0), name="wall", material=ep.materials["concrete"].replace(mirror=True), position=(10, 4, 0))
@@ -391,8 +407,8 @@ def test_no_more_can_have_been_missed_than_a_mirror_without_end_sends():
     assert of_mirror < high < of_mirror * (1.0 + 37.0 / (np.pi * distance ** 2))
 
 
-@pytest.mark.parametrize("bias, chance, times", [(0.0, 0.5, 100.0), (10.0, 0.5, 100.0), (30.0, 0.25, 30.0), (0.5, 0.01, 2.0)])
-def test_rays_that_resolve_a_power_mend_bias_as_their_number_and_chance_as_its_root(bias, chance, times):
+@pytest.mark.parametrize("bias, chance, times", [(0.0, 0.5, 100.0), (10.0, 0.5, 200.0), (30.0, 0.25, 925.0), (0.5, 0.01, 2.0)])
+def test_rays_that_resolve_a_power_mend_bias_and_chance_as_the_root_of_their_number(bias, chance, times):
     """Both over what a resolved power may have, 10^0.03 - 1 of it; twice the standard error counts."""
     wanted = 2e-9 * (10.0 ** 0.03 - 1.0)
     power = SimpleNamespace(power=2e-9, low=1e-9, bias_of_rays=bias * wanted, chance=10.0 * chance * wanted)

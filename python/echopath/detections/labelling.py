@@ -7,6 +7,7 @@ from .. import _core
 from ..arguments.checks import array
 from ..base.process.progress import with_progress
 from ..labels.cell_owners import CellOwners
+from ..spectra.range_doppler import require_finite_samples
 from .detections import NOISE
 
 HALF = 0.5  # of a cell's power above the mean noise: what echoes without noise hold less of was made by noise
@@ -45,8 +46,9 @@ def _map_of(argument: str, name: str, part, spectrum, radar):
     if isinstance(part, dict):
         raise ValueError(f"{argument}: must be those of one view, as {argument}[{name!r}], got a table of views")
     if not isinstance(part, _core.RangeDoppler):
-        return _core.range_doppler(array("[T, R, C, S]", kind="complex")(argument, part), radar, window=spectrum.window,
-                                   zero_pad=spectrum.zero_pad)
+        cube = array("[T, R, C, S]", kind="complex")(argument, part)
+        require_finite_samples(f"{argument}.{name}", cube)
+        return _core.range_doppler(cube, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
     if part.values.shape != spectrum.values.shape:
         raise ValueError(f"{argument}: maps must be as that of the spectrum, {spectrum.values.shape}, got {part.values.shape} "
                          f"of {name!r}")

@@ -19,6 +19,7 @@ from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
 from ..signals.part_pass import takes_a_pass
 from ..signals.parts import selection_rule
+from ..spectra.range_doppler import require_finite_samples
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects, occluded_objects
@@ -232,3 +233,4 @@ def _check_cubes(parts: dict, radar, start_time: float) -> None:
         if np.shape(cube) != shape:
             raise ValueError(f"parts: cubes must have shape [tx, rx, chirp, sample] = {list(shape)}, the radar's, got "
                              f"{list(np.shape(cube))} for '{name}'")
+        require_finite_samples(f"parts.{name}", cube)

@@ -66,6 +66,12 @@ def require_finite(argument: str, cube: ArrayLike, told: np.ndarray) -> None:
         raise ValueError(f"{argument}: must be finite, got {np.asarray(cube)[place]} at [tx, rx, chirp, sample] = {list(place)}")
 
 
+def require_finite_samples(argument: str, cube: ArrayLike) -> None:
+    """Raises ValueError for a cube with what is no number."""
+    with np.errstate(invalid="ignore"):  # of infinities that take each other away
+        require_finite(argument, cube, np.sum(cube))
+
+
 @checked(**CFAR_RULES)
 def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
          false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,

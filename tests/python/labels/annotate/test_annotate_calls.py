@@ -152,3 +152,12 @@ def test_other_threads_run_beside_labels(name):
         sys.setswitchinterval(interval)
         other.join()
     assert was_run
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf])
+def test_parts_with_what_is_no_number_are_refused(plates_and_wall, wrong):
+    paths, parts, _ = plates_and_wall
+    broken = dict(ep.decompose(paths, make_radar(), {"a": next(iter(parts.values()))}))
+    broken["a"][0, 0, 1, 2] = wrong
+    with pytest.raises(ValueError, match=r"^parts.a: must be finite, got .* at \[tx, rx, chirp, sample\] = \[0, 0, 1, 2\]"):
+        ep.annotate(paths, broken)

@@ -173,3 +173,12 @@ def test_detections_of_a_frame_have_the_noise_margin_of_its_labels(spheres, monk
         ep.detect(frame.spectrum, radar, paths=paths, labels=of_frame)
         assert floors[2] == of_frame.noise_floor
     assert floors[1] == pytest.approx(10.0**0.3 * ep.noise_power(radar, frame.spectrum.window))
+
+
+@pytest.mark.parametrize("argument", ["parts", "beside"])
+def test_cubes_with_what_is_no_number_are_refused(spheres, argument):
+    radar, paths, spectrum = spheres
+    cube = ep.synthesize(paths, radar)
+    cube[0, 3, 1, 2] = np.nan
+    with pytest.raises(ValueError, match=fr"^{argument}.near: must be finite, got .nan.* = \[0, 3, 1, 2\]"):
+        ep.detect(spectrum, radar, **{argument: {"near": cube}})

@@ -151,9 +151,9 @@ class Detections:
         ghosts.
 
         view: "range_doppler", or "above", which needs azimuths; ax: Matplotlib axes to draw in, None: new ones
-        title: "": how many there are
+        title: "": that of axes with a title, else how many there are
         Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame. Raises
-        ValueError for another view, and for a view from above without azimuths.
+        ValueError for another view, for a view from above without azimuths, and for axes with a picture of another view.
         """
         from ..plots import draw_detections
 

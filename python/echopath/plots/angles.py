@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
-from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new, require_drawable
+from .style import (
+    AZIMUTH_ALONE_LABEL,
+    AZIMUTH_LABEL,
+    ELEVATION_LABEL,
+    MAP_COLOURS,
+    POWER_LABEL,
+    axes_or_new,
+    require_drawable,
+)
 
 if TYPE_CHECKING:
     from .. import _core
@@ -26,7 +34,7 @@ def draw_angle_spectrum(spectrum: _core.AngleSpectrum, range: float | None = Non
     require_drawable("spectrum", "an AngleSpectrum, as ep.angle_fft makes it of a spectrum", spectrum, "values", "azimuth")
     row, column = _cell(spectrum, range, velocity)
     level = in_dbm(np.abs(spectrum.values[:, :, row, column]) ** 2, SMALLEST_POWER)
-    with axes_or_new(ax, 7.0, 4.4) as ax:
+    with axes_or_new(ax, 7.0, 4.4, _labels(spectrum)) as ax:
         _draw(ax, spectrum, level)
         place = f"at {spectrum.range[column]:.2f} m, {spectrum.velocity[row]:+z.2f} m/s"
         ax.set_title(f"{title}\n{place}" if title else place)
@@ -50,29 +58,34 @@ def _nearest(name: str, axis, value, unit: str) -> int:
     return int(np.argmin(np.abs(np.asarray(axis) - value)))
 
 
+def _labels(spectrum) -> tuple[str, str]:
+    """Of the axes across and up: a map of both angles, or the curve of the one that the array tells apart."""
+    across, up = (np.count_nonzero(np.isfinite(angles)) > 1 for angles in (spectrum.azimuth, spectrum.elevation))
+    if across and up:
+        return AZIMUTH_ALONE_LABEL, ELEVATION_LABEL
+    return ELEVATION_LABEL if up else AZIMUTH_LABEL, POWER_LABEL
+
+
 def _draw(ax, spectrum, level) -> None:
     """level: [elevation, azimuth] dBm; directions beyond +-90 degrees, from where no wave comes, are left out."""
     azimuth, elevation = np.degrees(spectrum.azimuth), np.degrees(spectrum.elevation)
     across, up = np.flatnonzero(np.isfinite(azimuth)), np.flatnonzero(np.isfinite(elevation))
     level = level[np.ix_(up, across)]
     highest = float(level.max())
+    ax.set(**dict(zip(("xlabel", "ylabel"), _labels(spectrum))))
     if len(across) > 1 and len(up) > 1:
         image = ax.pcolormesh(azimuth[across], elevation[up], level, cmap=MAP_COLOURS, vmin=highest - SHOWN_DB, vmax=highest,
                               shading="nearest", rasterized=True)
         ax.set_xlim(max(ax.get_xlim()[0], -90.0), min(ax.get_xlim()[1], 90.0))
         ax.set_ylim(max(ax.get_ylim()[0], -90.0), min(ax.get_ylim()[1], 90.0))
         ax.xaxis.set_inverted(True)  # left is left, as seen from the radar
-        ax.set_xlabel(f"{AZIMUTH_LABEL}, at elevation 0")
-        ax.set_ylabel(ELEVATION_LABEL)
         ax.figure.colorbar(image, ax=ax, label=POWER_LABEL, extend="min", pad=0.02, aspect=30)
         return
     is_upright = len(up) > 1
-    angles, label = (elevation[up], ELEVATION_LABEL) if is_upright else (azimuth[across], AZIMUTH_LABEL)
+    angles = elevation[up] if is_upright else azimuth[across]
     ax.plot(angles, level.ravel(), color="#0072b2", linewidth=1.4, marker="o" if len(angles) == 1 else None)
     peaks = [np.max(line.get_ydata()) for line in ax.lines if line.get_transform() is ax.transData]
     ax.set_ylim(min(peaks) - SHOWN_DB, max(peaks) + 3.0)  # of all curves in these axes
     if not is_upright and len(angles) > 1:
         ax.xaxis.set_inverted(True)  # left is left, as seen from the radar
-    ax.set_xlabel(label)
-    ax.set_ylabel(POWER_LABEL)
     ax.grid(alpha=0.25)

@@ -24,7 +24,8 @@ MARKS = (("transmitters", "^", 60), ("receivers", "v", 60), ("virtual elements",
 def draw_pattern(pattern: _core.AntennaPattern, *, ax: Axes | None = None, title: str = "") -> Axes:
     """Gain of a pattern all around in its xy-plane and its xz-plane, down to SHOWN_DB below the peak of both.
 
-    pattern: AntennaPattern, such as GaussianBeam or what ep.load_antenna returns; title: above the axes, "": the largest gain
+    pattern: AntennaPattern, such as GaussianBeam or what ep.load_antenna returns; title: above the axes, "": that of
+        axes with a title, else the largest gain
     ax: axes to draw in, None: new ones
     Returns the axes: degrees off the boresight across (+x of the antenna), gain in dBi up. Raises TypeError naming pattern or
     ax.
@@ -39,7 +40,7 @@ def draw_pattern(pattern: _core.AntennaPattern, *, ax: Axes | None = None, title
         for (name, line), gain, colour in zip(CUTS, gains, CURVE_COLOURS):
             ax.plot(angle, np.maximum(gain, peak - 2.0 * SHOWN_DB), line, color=colour, linewidth=1.4, label=name)
         ax.set(xlim=(-180.0, 180.0), ylim=(peak - SHOWN_DB, peak + 3.0), xlabel="Angle off the boresight in degrees",
-               ylabel="Gain in dBi", title=text("title", title) or f"{peak:.1f} dBi at most in the two cuts")
+               ylabel="Gain in dBi", title=text("title", title) or ax.get_title() or f"{peak:.1f} dBi at most in the two cuts")
         ax.set_xticks(np.arange(-180, 181, 45))
         ax.grid(alpha=0.25)
         ax.legend(loc="upper right")
@@ -50,7 +51,8 @@ def draw_array(radar: _core.Radar, *, ax: Axes | None = None, title: str = "") -
     """Transmitters and receivers about their middle, and the virtual elements that they make together about theirs, as seen from
     behind the radar.
 
-    radar: Radar; title: above the axes, "": how many there are; ax: axes to draw in, None: new ones
+    radar: Radar; title: above the axes, "": that of axes with a title, else how many there are
+    ax: axes to draw in, None: new ones
     Returns the axes: y to the left across and z up in the radar's frame, in wavelengths in the middle of the band. Raises
     TypeError naming radar or ax.
     """
@@ -67,7 +69,7 @@ def draw_array(radar: _core.Radar, *, ax: Axes | None = None, title: str = "") -
             y, z = places[:, 1:].T / found.wavelength
             ax.scatter(y, z, s=size, marker=marker, color=colour, alpha=0.8, label=f"{name}: {len(places)}", zorder=3)
         ax.set(xlabel="y in wavelengths (left: +)", ylabel="z in wavelengths (up: +)",
-               title=text("title", title) or counted(len(found.elements), "virtual element"))
+               title=text("title", title) or ax.get_title() or counted(len(found.elements), "virtual element"))
         ax.margins(0.1)
         to_one_scale(ax)
         ax.grid(alpha=0.25)

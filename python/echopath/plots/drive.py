@@ -9,9 +9,7 @@ from ..spectra.moving import STATIC_SPEED
 from .maps import (
     CELLS_OF_MARGIN,
     MAP_SIZE,
-    RANGE_LABEL,
     RANGE_MARGIN,
-    VELOCITY_LABEL,
     VELOCITY_MARGIN,
     cells_of_scene,
     chosen_limits,
@@ -21,8 +19,8 @@ from .maps import (
     margin_of,
     noise_peak_db,
 )
-from .style import MAP_COLOURS, cell_edges, colour_bar, new_figure, set_title
-from .time_maps import TIME_LABEL, image_over_time, show_within
+from .style import MAP_COLOURS, RANGE_LABEL, TIME_LABEL, VELOCITY_LABEL, cell_edges, colour_bar, new_figure, set_title
+from .time_maps import image_over_time, show_within
 
 SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
 LEAST_WIDTH = 8.0                   # inches, of the sheet

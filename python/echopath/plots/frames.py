@@ -12,7 +12,7 @@ from ..arguments.shown import refused
 from ..base.radar.velocities import folded
 from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, half_step, hold_points
 from .points import draw_points
-from .style import axes_or_new, require_drawable
+from .style import RANGE_LABEL, VELOCITY_LABEL, axes_or_new, require_drawable
 
 if TYPE_CHECKING:
     from .. import _core
@@ -59,7 +59,7 @@ def draw_frame(frame: Frame | FrameMaps, *, ax: Axes | None = None, vmin: float 
     spectrum, limits = _map_and_limits(frame)
     vmin, vmax = chosen_limits(limits, vmin, vmax)
     has_room = ax is None
-    with axes_or_new(ax, *MAP_SIZE) as ax:
+    with axes_or_new(ax, *MAP_SIZE, (RANGE_LABEL, VELOCITY_LABEL)) as ax:
         draw_range_doppler(spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title_of(frame) if title is None else title)
         if frame.detections is not None and len(frame.detections):
             found = _on_the_map(frame.detections, np.asarray(spectrum.velocity))

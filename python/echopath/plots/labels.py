@@ -12,9 +12,18 @@ from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..base.text.counts import counted
 from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
-from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
+from .maps import RANGE_MARGIN, VELOCITY_MARGIN, half_step
 from .part_powers import draw_part_powers, require_powers
-from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours, require_drawable, short_name
+from .style import (
+    AZIMUTH_LABEL,
+    RANGE_LABEL,
+    VELOCITY_LABEL,
+    axes_or_new,
+    new_figure,
+    part_colours,
+    require_drawable,
+    short_name,
+)
 
 if TYPE_CHECKING:
     from .. import _core
@@ -94,7 +103,7 @@ def draw_labels(labels: Labels, *, what: str = "parts", ax: Axes | None = None, 
     _require_labels(labels)
     areas_of = {"parts": _part_areas, "objects": _class_areas}
     choice(*areas_of)("what", what)
-    with axes_or_new(ax, 9.0, 4.8) as ax:
+    with axes_or_new(ax, 9.0, 4.8, (RANGE_LABEL, _row_label(labels))) as ax:
         _draw_cells(ax, labels, areas_of[what](labels))
         ax.set_title(title, pad=_legend_height(ax))
     return ax

@@ -14,7 +14,17 @@ from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, with_error
 from ..spectra.moving import static_speed
 from .part_powers import require_powers
-from .style import MAP_COLOURS, axes_or_new, colour_bar, is_drawable, new_figure, require_drawable, set_title
+from .style import (
+    MAP_COLOURS,
+    RANGE_LABEL,
+    VELOCITY_LABEL,
+    axes_or_new,
+    colour_bar,
+    is_drawable,
+    new_figure,
+    require_drawable,
+    set_title,
+)
 
 if TYPE_CHECKING:
     from .. import _core
@@ -30,7 +40,6 @@ CELLS_OF_MARGIN = 1.5        # likewise: the cell of the signal whole, and one b
 MAP_SIZE = 9.0, 4.4          # inches, of one map
 LEVEL = optional(real(-1e4, 1e4, "dBm"))
 _DRAWN = "values", "velocity"  # attributes that tell a map
-RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
 
 
 @functools.cache
@@ -122,7 +131,7 @@ def draw_range_doppler(spectrum: _core.RangeDoppler, *, ax: Axes | None = None, 
     Returns the axes, as of `plot_range_doppler`. Raises TypeError or ValueError naming spectrum, ax, vmin or vmax.
     """
     vmin, vmax = _limits(spectrum, vmin, vmax)
-    with axes_or_new(ax, *MAP_SIZE) as ax:
+    with axes_or_new(ax, *MAP_SIZE, (RANGE_LABEL, VELOCITY_LABEL)) as ax:
         image = _draw_whole(ax, spectrum, vmin, vmax, title)
         ax.set_ylabel(VELOCITY_LABEL)
         colour_bar(ax.figure, image, [ax])

@@ -7,15 +7,23 @@ import numpy as np
 
 from ..arguments.checks import choice, text
 from ..base.text.counts import counted
-from .maps import RANGE_LABEL, VELOCITY_LABEL
-from .style import axes_or_new, part_colours, require_drawable, to_one_scale
-from .top_view import AHEAD_LABEL, LEFT_LABEL
+from .style import (
+    AHEAD_LABEL,
+    LEFT_LABEL,
+    RANGE_LABEL,
+    VELOCITY_LABEL,
+    axes_or_new,
+    part_colours,
+    require_drawable,
+    to_one_scale,
+)
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
     from ..detections.detections import Detections
 
 VIEWS = ("range_doppler", "above")
+LABELS = {"range_doppler": (RANGE_LABEL, VELOCITY_LABEL), "above": (LEFT_LABEL, AHEAD_LABEL)}
 MOST_NAMES, FEW_NAMES = 14, 5  # in the legend beside the axes and within them; the rest are "other objects"
 SIZES = 10.0, 70.0      # points^2, of the weakest and the strongest
 SPAN_DB = 40.0          # of the sizes, below the strongest
@@ -28,27 +36,24 @@ BESIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
 def draw_detections(detections: Detections, *, view: str = "range_doppler", ax: Axes | None = None, title: str = "") -> Axes:
     """A point for each detection, coloured by the object whose echo it is, larger where it is stronger, hollow for ghosts.
 
-    detections: Detections; title: above the axes
+    detections: Detections; title: above the axes, "": that of axes with a title, else how many there are
     view: "range_doppler", or "above" (needs azimuths); ax: axes to draw in, None: new ones
     Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame.
-    Raises TypeError naming detections, ValueError for other views and for a view from above without azimuths.
+    Raises TypeError naming detections, ValueError for other views, for a view from above without azimuths, and for axes
+    that hold another picture than that of the view.
     """
     require_drawable("detections", "Detections, as frame.detections are", detections, "points", "ghost_type")
     choice(*VIEWS)("view", view)
     if view == "above" and len(detections) and not np.isfinite(detections.azimuth).any():
         raise ValueError("view: 'above' needs azimuths, which the antennas of these detections cannot tell")
     is_given = ax is not None
-    with axes_or_new(ax, *((7.6, 4.6) if view == "range_doppler" else (6.6, 5.4))) as ax:
+    with axes_or_new(ax, *((7.6, 4.6) if view == "range_doppler" else (6.6, 5.4)), LABELS[view]) as ax:
         draw_points(ax, detections, view, has_room=not is_given)
+        across, up = LABELS[view]
+        ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or counted(len(detections), "detection"))
         if view == "above":
-            ax.set_xlabel(LEFT_LABEL)
-            ax.set_ylabel(AHEAD_LABEL)
             to_one_scale(ax)
-        else:
-            ax.set_xlabel(RANGE_LABEL)
-            ax.set_ylabel(VELOCITY_LABEL)
         ax.grid(alpha=0.25)
-        ax.set_title(text("title", title) or counted(len(detections), "detection"))
     return ax
 
 

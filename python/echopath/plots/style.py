@@ -24,8 +24,15 @@ BOUNCE_COLOURS = ("#009e73", "#0072b2", "#d55e00", "#cc79a7", "#8c6d1f")
 
 CURVE_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # of the same palette
 
+RANGE_LABEL, VELOCITY_LABEL, TIME_LABEL = "Range in m", "Radial velocity in m/s (away: +)", "Time in s"
+LEFT_LABEL, AHEAD_LABEL = "To the left in m (right: \N{MINUS SIGN})", "Ahead in m"
+X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 AZIMUTH_LABEL, ELEVATION_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees (up: +)"
+AZIMUTH_ALONE_LABEL = f"{AZIMUTH_LABEL}, at elevation 0"
 POWER_LABEL = "Received power in dBm"
+_LABELS = (RANGE_LABEL, VELOCITY_LABEL, TIME_LABEL, LEFT_LABEL, AHEAD_LABEL, X_LABEL, Y_LABEL, AZIMUTH_LABEL,
+           AZIMUTH_ALONE_LABEL, ELEVATION_LABEL, POWER_LABEL)
+_FROM_ABOVE = (LEFT_LABEL, AHEAD_LABEL), (Y_LABEL, X_LABEL)
 
 LETTER = 0.56  # width of a letter over the size of the font, more than the mean
 LONGEST_NAME = 28  # letters, about, of an object in a picture
@@ -62,19 +69,34 @@ def new_figure(width: float, height: float):
 
 
 @contextmanager
-def axes_or_new(ax, width: float, height: float):
-    """Yields `ax`, or where it is None the axes of a new figure of pyplot of that size in inches, which notebooks show."""
+def axes_or_new(ax, width: float, height: float, labels: tuple[str, str] | None = None):
+    """Yields `ax`, or where it is None the axes of a new figure of pyplot of that size in inches, which notebooks show.
+
+    labels: of what is drawn, across and up; None: those of no other picture. Raises TypeError for what are no axes, ValueError
+    for axes with another picture in them, whose places are not those of what is drawn.
+    """
     import matplotlib
     from matplotlib.axes import Axes
 
     if ax is not None and not isinstance(ax, Axes):
         raise TypeError(f"ax: must be Matplotlib axes or None, got {type(ax).__name__}")
+    if ax is not None and labels is not None:
+        _require_plane(ax, labels)
     with matplotlib.rc_context(_SETTINGS):
         if ax is None:
             from matplotlib import pyplot
 
             ax = pyplot.figure(figsize=(width, height), layout="constrained").subplots()
         yield ax
+
+
+def _require_plane(ax, labels: tuple[str, str]) -> None:
+    """Raises ValueError for axes that hold a picture of this package with other axes; all those from above go together."""
+    across, up = (label.partition("\n")[0] for label in (ax.get_xlabel(), ax.get_ylabel()))
+    is_same = (across, up) == labels or {(across, up), labels} <= {*_FROM_ABOVE}
+    if ax.has_data() and {across, up} <= {*_LABELS} and not is_same:
+        raise ValueError(f"ax: must be empty or have {labels[0]!r} across and {labels[1]!r} up, got axes with {across!r} across "
+                         f"and {up!r} up")
 
 
 def to_one_scale(ax) -> None:

@@ -9,22 +9,30 @@ from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from .maps import (
     DYNAMIC_RANGE_DB,
     MARGIN_OVER_MEDIAN_DB,
-    RANGE_LABEL,
-    VELOCITY_LABEL,
     VELOCITY_MARGIN,
     chosen_limits,
     half_step,
     limits_above,
     margin_of,
 )
-from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours, require_drawable
+from .style import (
+    AZIMUTH_LABEL,
+    MAP_COLOURS,
+    RANGE_LABEL,
+    TIME_LABEL,
+    VELOCITY_LABEL,
+    axes_or_new,
+    cell_edges,
+    colour_bar,
+    part_colours,
+    require_drawable,
+)
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
     from ..in_time.maps import Spectrogram, TimeMap
     from ..in_time.spectrogram_labels import SpectrogramLabels
 
-TIME_LABEL = "Time in s"
 AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": AZIMUTH_LABEL}
 SIZE = 9.0, 4.4         # inches
 LABEL_FILL = 0.6        # opacity of a label over the map
@@ -51,7 +59,7 @@ def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = 
     noise = _noise_level(level, map.noise_power) if map.part is None else level.max() - DYNAMIC_RANGE_DB - MARGIN_OVER_MEDIAN_DB
     vmin, vmax = chosen_limits(limits_above(noise, level.max()), vmin, vmax)
     values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
-    with axes_or_new(ax, *SIZE) as ax:
+    with axes_or_new(ax, *SIZE, (TIME_LABEL, AXIS_LABELS[map.AXIS])) as ax:
         look = {"cmap": MAP_COLOURS, "vmin": vmin, "vmax": vmax}
         if map.AXIS == "velocity":
             edges, columns = _columns_and_gaps(map)
@@ -77,7 +85,7 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     vmin, vmax = limits_above(_noise_level(level, labels.noise_power), level.max())
     names = labels.part_names
     colours = part_colours(names)
-    with axes_or_new(ax, *SIZE) as ax:
+    with axes_or_new(ax, *SIZE, (TIME_LABEL, VELOCITY_LABEL)) as ax:
         owner = np.ma.masked_less(labels.dominant, 0)
         edges, columns = _columns_and_gaps(labels)
         grey = _image(ax, edges, labels.velocity, _with_gaps(level, columns), cmap="gray", vmin=vmin, vmax=vmax)

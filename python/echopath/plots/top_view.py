@@ -12,7 +12,18 @@ from ..arguments.checks import refused
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
-from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, require_drawable, set_title, short_name
+from .style import (
+    AHEAD_LABEL,
+    LEFT_LABEL,
+    MAP_COLOURS,
+    axes_or_new,
+    cell_edges,
+    colour_bar,
+    new_figure,
+    require_drawable,
+    set_title,
+    short_name,
+)
 
 if TYPE_CHECKING:
     from .. import _core
@@ -26,7 +37,6 @@ LARGE, SMALL = 4.6, 3.2         # inches, height of a sector alone and of one of
 WIDE = 1.4                     # width over height, from which three sectors do not stand in a row
 SPOKE_STEP = math.pi / 6.0     # rad
 MARGIN = 0.1                   # of the reach, around the sector: room for the angles
-LEFT_LABEL, AHEAD_LABEL = "To the left in m (right: \N{MINUS SIGN})", "Ahead in m"
 GRID_LOOK = {"color": "white", "linewidth": 0.5, "alpha": 0.35}
 TRUE_LABEL = "where the object truly is (its middle)"
 TRUE_LOOK = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markeredgecolor": "#56d4ff", "markersize": 9}
@@ -98,7 +108,7 @@ def draw_range_azimuth(map: _core.RangeAzimuth, *, ax: Axes | None = None, vmin:
     """
     require_drawable("map", _MAP_RULE, map, "azimuth", "power")
     vmin, vmax = chosen_limits(_colour_limits(map), vmin, vmax)
-    with axes_or_new(ax, LARGE * _aspect(map) + 1.6, LARGE + 0.8) as ax:
+    with axes_or_new(ax, LARGE * _aspect(map) + 1.6, LARGE + 0.8, (LEFT_LABEL, AHEAD_LABEL)) as ax:
         image = _draw(ax, map, _reach(map, vmin), vmin, vmax)
         ax.set_xlabel(LEFT_LABEL)
         ax.set_ylabel(AHEAD_LABEL)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .names import write_names
-from .style import CURVE_COLOURS, axes_or_new, require_drawable, to_one_scale
+from .style import CURVE_COLOURS, X_LABEL, Y_LABEL, axes_or_new, require_drawable, to_one_scale
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
@@ -16,8 +16,8 @@ SIZE = 6.0, 5.2  # inches
 LINES = ("-", "--", ":", "-.")  # for more tracks than there are colours
 ROWS, COLUMNS = 22, 2           # of the legend at most, which names tracks of objects; all tracks have their numbers
 COLUMN_WIDTH = 1.5              # inches, of names
+TITLE = "Tracks from above"
 WITHOUT_LABEL, WITHOUT_COLOUR = "without a detection", "0.3"
-X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 
 
 def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> Axes:
@@ -25,7 +25,7 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
 
     The legend has the tracks that follow objects, or where none does all of them: the first ROWS times COLUMNS, and how many
     more.
-    tracks: Tracks; title: above the axes
+    tracks: Tracks; title: above the axes, "": that of axes with a title, else TITLE
     Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `tracks` or `ax`.
     """
     require_drawable("tracks", "Tracks, as ep.track makes them", tracks, "track", "state")
@@ -33,14 +33,14 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
     named = np.unique(tracks.track[tracks.object != ""]) if np.any(tracks.object != "") else numbers
     listed, more = named[:ROWS * COLUMNS].tolist(), max(len(named) - ROWS * COLUMNS, 0)
     columns = max(-(-len(listed) // ROWS), 1)
-    with axes_or_new(ax, SIZE[0] + COLUMN_WIDTH * (columns - 1), SIZE[1]) as ax:
+    with axes_or_new(ax, SIZE[0] + COLUMN_WIDTH * (columns - 1), SIZE[1], (Y_LABEL, X_LABEL)) as ax:
         for place, number in enumerate(numbers):
             one, colour = tracks.of_track(number), CURVE_COLOURS[place % len(CURVE_COLOURS)]
             line = LINES[place // len(CURVE_COLOURS) % len(LINES)]
             x, y = one.state[:, :2].T
             ax.plot(y, x, line, color=colour, marker=".", markersize=3, label=_name(one, number) if number in listed else None)
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
-        ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title)
+        ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title or ax.get_title() or TITLE)
         to_one_scale(ax)
         write_names(ax, [(str(number), tracks.of_track(number).state[-1, 1::-1]) for number in numbers])
         if listed and not np.all(tracks.is_detected):

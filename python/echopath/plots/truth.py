@@ -8,9 +8,16 @@ import numpy as np
 from ..arguments.checks import choice, text
 from ..base.text.counts import counted
 from .names import write_names
-from .style import axes_or_new, require_drawable, short_name, to_one_scale
-from .top_view import AHEAD_LABEL, LEFT_LABEL
-from .tracks import X_LABEL, Y_LABEL
+from .style import (
+    AHEAD_LABEL,
+    LEFT_LABEL,
+    X_LABEL,
+    Y_LABEL,
+    axes_or_new,
+    require_drawable,
+    short_name,
+    to_one_scale,
+)
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
@@ -36,13 +43,13 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
     truth: Truth; title: above the axes, "": that of axes with a title, else how many objects
     view: in the axes of the "radar", as `plot("above")` of detections is, or of the "world"; ax: axes to draw in, None: new ones
     Returns the axes: metres to the left across, left positive, and ahead up, of the radar or of the world. Raises TypeError
-    naming truth or ax, ValueError for another view.
+    naming truth or ax, ValueError for another view and for axes that hold a picture which is none from above.
     """
     require_drawable("truth", "a Truth, as frame.truth is", truth, "corners_in_radar", "visible_share")
     choice(*VIEWS)("view", view)
     names = list(dict.fromkeys(truth.name.tolist()))
     named = _named(truth, names)
-    with axes_or_new(ax, *SIZE) as ax:
+    with axes_or_new(ax, *SIZE, LABELS[view]) as ax:
         for name in names:
             _draw_object(ax, truth.of_object(name), view)
         ax.autoscale_view()

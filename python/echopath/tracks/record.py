@@ -82,11 +82,12 @@ class Tracks:
         """
         write_csv(path, self._columns() | {"is_detected": self.is_detected.astype(int)}, _UNITS)
 
-    def plot(self, *, ax: Axes | None = None, title: str = "Tracks from above") -> Axes:
+    def plot(self, *, ax: Axes | None = None, title: str = "") -> Axes:
         """Draws each track as a line from above, with its number and the object that it follows most.
 
-        ax: Matplotlib axes to draw in, None: new ones; title: above it
-        Returns the axes: y in m across, left positive, x in m up. Raises TypeError.
+        ax: Matplotlib axes to draw in, None: new ones; title: above it, "": that of axes with a title, else what is shown
+        Returns the axes: y in m across, left positive, x in m up. Raises TypeError, ValueError for axes that hold a picture which
+        is none from above.
         """
         from ..plots import draw_tracks
 

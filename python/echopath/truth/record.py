@@ -151,7 +151,8 @@ class Truth:
 
         view: in the axes of the "radar", as `frame.detections.plot("above")` is, or of the "world"
         ax: Matplotlib axes to draw in, None: new ones; title: "": that of axes with a title, else how many objects
-        Returns the axes: metres to the left across, left positive, and ahead up. Raises ValueError for another view.
+        Returns the axes: metres to the left across, left positive, and ahead up. Raises ValueError for another view,
+        and for axes that hold a picture which is none from above.
         """
         from ..plots import draw_truth
 

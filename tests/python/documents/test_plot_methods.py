@@ -67,6 +67,38 @@ def test_what_are_no_axes_is_refused_by_name(frame, kind):
         results(frame)[kind].plot(ax="here")
 
 
+@pytest.mark.parametrize("overlay", ["Detections", "Truth", "Tracks"])
+def test_what_is_drawn_over_axes_with_a_title_leaves_it(frame, ax, overlay):
+    drawn = (results(frame) | {"Tracks": ep.track([[(9.0, 1.0)]] * 5, 0.1 * np.arange(5))})[overlay]
+    assert drawn.plot(ax=ax).get_title() and drawn.plot(ax=ax, title="Ours").get_title() == "Ours"
+    ax.set_title("Mine")
+    assert drawn.plot(ax=ax).get_title() == "Mine"
+
+
+def test_axes_with_a_picture_of_other_axes_are_refused(frame):
+    """Boxes in metres to the left and ahead would stand anywhere between ranges and velocities."""
+    every = results(frame) | {"Tracks": ep.track([[(9.0, 1.0)]] * 5, 0.1 * np.arange(5)), "RangeTime": ep.range_time(frame)}
+    planes = [{"RangeDoppler", "Frame", "Labels", "Detections"}, {"RangeAzimuth", "Truth", "Tracks"}, {"AngleSpectrum"},
+              {"RangeTime"}]
+    for below, first in every.items():
+        ax = first.plot()
+        for over, second in every.items():
+            if any({below, over} <= plane for plane in planes):
+                second.plot(ax=ax)
+                continue
+            count = len(ax.get_children())
+            with pytest.raises(ValueError, match="^ax: must be empty or have '.*' across and '.*' up, got axes with '"):
+                second.plot(ax=ax)
+            assert len(ax.get_children()) == count
+        close(ax.figure)
+
+
+def test_axes_with_something_else_in_them_are_taken(frame, ax):
+    ax.plot([0.0, 1.0], [0.0, 1.0])
+    ax.set(xlabel="east in m", ylabel="north in m")
+    assert frame.truth.plot(ax=ax) is ax
+
+
 def test_axes_are_saved_as_their_figure_is_and_again_with_the_same_bytes(frame, tmp_path):
     """The layout that Matplotlib makes goes on from the one before."""
     ax = frame.plot()

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .path import Path
+from .path import ON_THE_SPOT, Path
 from .profile import GRID, MOST_PLACES, Profile, of_phases
 
 
@@ -27,7 +27,8 @@ def over_distance(start_time: float, table, path: Path, limits: Limits) -> Profi
     """Speeds [[distance in m, m/s], ...] along a path, of constant acceleration between, within limits.
 
     At every place the square of the speed is the least of what the table, the curve, and the way from the last and to the next
-    slower place allow; between two places it is linear in the distance, so that the acceleration is constant.
+    slower place allow, and 0 where a path whose curves are limited turns back on itself; between two places it is linear in the
+    distance, so that the acceleration is constant.
     Raises ValueError where it would stand without a stop.
     """
     table = np.asarray(table, float)
@@ -35,6 +36,7 @@ def over_distance(start_time: float, table, path: Path, limits: Limits) -> Profi
     squares = np.interp(places, table[:, 0], table[:, 1] ** 2)
     if limits.lateral is not None:
         squares = np.minimum(squares, limits.lateral / np.maximum(_turns(path, places), 1e-12))
+        squares[_nearest(places, _turning_places(path, limits.stops[:, 0]))] = 0.0
     if limits.are_any:
         squares[np.isin(places, limits.stops[:, 0])] = 0.0
         squares = _within(places, squares, limits)
@@ -56,7 +58,7 @@ def _places(table, path: Path, limits: Limits):
         places.append(np.linspace(0.0, path.length, min(int(path.length / GRID) + 2, MOST_PLACES)))
         places.append(path.junctions)
     if limits.lateral is not None:
-        places.append(path.fine_places(MOST_PLACES))
+        places += [path.fine_places(MOST_PLACES), _turning_places(path, limits.stops[:, 0])]
     stops, speed = limits.stops[:, 0], table[0, 1]
     places += [stops - speed**2 / (2.0 * limits.deceleration), stops + speed**2 / (2.0 * limits.acceleration)]
     share = limits.acceleration + limits.deceleration
@@ -68,6 +70,17 @@ def _places(table, path: Path, limits: Limits):
     for k in near:
         kept[k - 1 if found[k] in stops or found[k] == path.length else k] = False
     return found[kept]
+
+
+def _turning_places(path: Path, stops):
+    """Distances [N] in m at which the path turns back, but where it stops anyhow."""
+    found = path.turning_places()
+    return found[np.all(np.abs(found[:, None] - stops) > ON_THE_SPOT, axis=1)]
+
+
+def _nearest(places, wanted):
+    """Indices [N] of the places that are nearest to those that are wanted."""
+    return np.argmin(np.abs(places - wanted[:, None]), axis=1)
 
 
 def _turns(path: Path, places):

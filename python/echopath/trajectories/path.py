@@ -12,6 +12,7 @@ PIECES = 4             # of each interval between knots, for the integral of the
 MOST_HALVINGS = 24     # of a piece: those that a hairpin needs lie in it alone
 FINE_PARTS = 256       # of each interval between knots, of even u: |p'| is small where a spline bends within little way
 DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance, and by which distances may lie beyond the end
+ON_THE_SPOT = 1e-5     # m, of way, in less of which a path that looks the other way turns back
 TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
 NEWTON_STEPS = 5       # after which a distance is met to rounding, where the most pieces do not meet the tolerance
 SLOWEST = 1e-30        # |p'|, which vanishes where a path turns back on itself
@@ -45,6 +46,15 @@ class Path:
         """Distances [N] in m, about `most` of them at the most, which lie close where the path bends within little way."""
         parts = np.linspace(0.0, 1.0, int(np.clip(most / len(self.knots), 1, FINE_PARTS)), endpoint=False)
         return self.distances((self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts).ravel())
+
+    def turning_places(self):
+        """Distances [N] in m at which it turns back on itself: no curve has so small a radius."""
+        slopes = self.slopes_at(self._u)
+        lengths = np.linalg.norm(slopes, axis=-1)
+        moves = lengths > 1e-12 * lengths.max()
+        tangents, distances = slopes[moves] / lengths[moves, None], self._s[moves]
+        is_back = (np.sum(tangents[:-1] * tangents[1:], axis=-1) < 0.0) & (np.diff(distances) < ON_THE_SPOT)
+        return 0.5 * (distances[:-1] + distances[1:])[is_back]
 
     def at(self, distances):
         """(points [N, 3] in m, unit tangents [N, 3], curvature vectors [N, 3] in 1/m) at distances [N] in m."""

@@ -54,7 +54,8 @@ class Trajectory(_core.CurveMotion):
     turn_radius: m; straight lines between the points, joined by arcs. None: a C2 spline over the chord lengths
     stops: [N, 2]: distances in m (math.inf: the end) and waiting times in s; one at 0 lets it start from rest. Needs no times
     acceleration, deceleration: m/s^2, by which it leaves and reaches its stops
-    lateral_acceleration: m/s^2, the most that it takes in curves, before which it slows down; None: it does not
+    lateral_acceleration: m/s^2, the most that it takes in curves, before which it slows down, and until it stands where it turns
+        back on the spot; None: it does not
     speed_over: "distance", or "time": the first column of `speed` is the time in s since its begin, the speed linear between
     start_time: s, when it is at its first point; of `times`, their own
     goes_on: s, so long it goes straight on at its first and last speed before its begin and after its end

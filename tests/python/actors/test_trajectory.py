@@ -168,6 +168,20 @@ def test_near_stops_are_reached_by_full_throttle_and_brakes():
     assert one.speed(times).max() == pytest.approx(np.sqrt(2 * 10 * 2 * 3 / 5), rel=1e-6)
 
 
+@pytest.mark.parametrize("points, num_turns", [([(0, 0), (10, 0), (0, 0)], 1), ([(0, 0), (8, 6), (4, 3), (16, 12)], 2),
+                                               ([(0, 0), (10, 0), (10, 0.01), (0, 0.02)], 0)])
+def test_what_turns_back_on_the_spot_stands_there_where_curves_are_limited(points, num_turns):
+    """The narrower a hairpin, the slower it is taken: back on itself at full speed it would have no finite acceleration."""
+    one = ep.Trajectory(points, speed=10.0, lateral_acceleration=2.0)
+    times, step = np.linspace(one.begin, one.end, 4001, retstep=True)
+    velocities = np.diff(one.position(times), axis=0) / step
+    assert np.linalg.norm(np.diff(velocities, axis=0), axis=1).max() / step < 3.7  # hypot of 2 aside and 3 of the brakes
+    turned = np.sum(velocities[:-1] * velocities[1:], axis=1) < 0.0
+    assert np.sum(turned) == num_turns and np.linalg.norm(velocities, axis=1).max() > 5.0
+    stop = ep.Trajectory(points, speed=10.0, lateral_acceleration=2.0, stops=[(10.0, 1.0)])
+    assert stop.speed(stop.time_at(10.0) + 0.5) == 0.0
+
+
 def test_curves_slow_down_to_the_lateral_acceleration():
     one = corner(speed=15.0, lateral_acceleration=3.0)
     times = np.linspace(one.begin, one.end, 2001)

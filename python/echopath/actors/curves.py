@@ -45,8 +45,13 @@ class PeriodicCurve:
 
 
 def monotone_cubic(knots, values, at):
-    """Cubic Hermite through the knots whose extremes are its knots (Fritsch and Carlson 1980, harmonic mean slopes).
+    """Cubic Hermite through the knots whose extremes are its knots (Fritsch and Butland 1984, harmonic mean slopes), level at
+    both ends.
 
+    The core follows keys by the same slopes (`KeyframeMotion(interpolation="monotone")`, cpp/echopath/motion/spline.h), but for
+    the ends, where its curves are parabolas, and in three dimensions alone: shapes and steps of actors are tables of any number
+    of columns. Distances over time have those of parabolas throughout (trajectories/profile.py), which are exact where the
+    acceleration is constant.
     knots [N]; values [N] or [N, K], of K curves; at [T]. Returns [T] or [T, K].
     """
     values, each = np.asarray(values), (slice(None),) + (None,) * (np.ndim(values) - 1)

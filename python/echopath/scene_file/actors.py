@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import create_model
 
 from .. import actors
+from ..base.storage.files import named_file
 from .errors import blamed, validated
 from .models import material_of
 from .tables.actor_keywords import actor_names, material_keywords, parameters_of
@@ -34,7 +35,7 @@ def actor_maker(name: str, parameters: dict, folder: Path, key: str) -> Callable
         material = material_of(value, f"{key}.parameters.{keyword}")
         known[keyword] = value if isinstance(value, str) else material  # a name is told in what is made of it
     if "path" in known:
-        known["path"] = folder / known["path"]  # of a motion capture, relative to the scene file
+        known["path"] = named_file(folder, known["path"])  # of a motion capture, relative to the scene file
     return functools.partial(factory, **known)
 
 

@@ -12,7 +12,7 @@ from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.storage.data_folder import data_folder
-from ..base.storage.files import bytes_of
+from ..base.storage.files import bytes_of, named_file
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
@@ -194,7 +194,7 @@ def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, ke
 def _radar_of(table: RadarTable, folder: Path, trajectories: Trajectories, key: str):
     if table.sensor is not None:
         with blamed(key, file="sensor"):
-            radar = load_radar(folder / table.sensor, table.board, subframe=table.subframe)
+            radar = load_radar(named_file(folder, table.sensor), table.board, subframe=table.subframe)
             given = {name: getattr(table, name) for name in _BESIDE_SENSOR if name in table.model_fields_set}
             return radar.replace(**given, **_place(table, trajectories, key))
     with blamed(f"{key}.waveform"):
@@ -259,7 +259,7 @@ def _pattern(table, folder: Path, key: str):
         if table.kind == "isotropic":
             return _core.Isotropic(gain=table.gain)
         if table.kind == "table":
-            return load_antenna(folder / table.file, normalize=table.normalize, boresight=table.boresight)
+            return load_antenna(named_file(folder, table.file), normalize=table.normalize, boresight=table.boresight)
         if table.kind == "gaussian_beam":
             return _core.GaussianBeam(azimuth=math.radians(table.azimuth_deg), elevation=math.radians(table.elevation_deg),
                                       peak_gain=table.peak_gain)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .. import _core
 from ..base.materials import known_with, material_fields, materials
+from ..base.storage.files import named_file
 from ..readers import load_model
 from ..readers.model import Model
 from ..trajectories import Trajectory
@@ -30,7 +31,7 @@ def model_of(table: ModelKeys, folder: Path, key: str) -> Model:
     settings = {name: getattr(table, name) for name in MODEL_KEYS if getattr(table, name) is not None}
     settings["materials"] = {name: material_of(value, f"{key}.materials.{name}") for name, value in table.materials.items()}
     with blamed(f"{key}.model"):
-        return load_model(folder / table.model, **settings)
+        return load_model(named_file(folder, table.model), **settings)
 
 
 def model_along(model: Model, table: ModelKeys, key: str, trajectory: Trajectory | None) -> Model:

@@ -5,6 +5,7 @@ import functools
 from pathlib import Path
 
 from .. import _core
+from ..base.storage.files import named_file
 from ..scene.meshes import load_meshes
 from ..scene.scene import Scene
 from ..weather import Weather
@@ -52,7 +53,7 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file,
         return None, None
     if table.mesh is not None:
         with blamed(f"{key}.mesh"):
-            meshes = meshes_of_file(str(folder / table.mesh), unit=table.unit or 1.0)
+            meshes = meshes_of_file(str(named_file(folder, table.mesh)), unit=table.unit or 1.0)
         return (meshes[0][1] if len(meshes) == 1 else meshes), material
     if table.model is not None:
         return model_along(model_of(table, folder, key), table, key, trajectory), material

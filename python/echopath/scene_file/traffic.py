@@ -8,6 +8,7 @@ from .. import _core
 from ..actors.vehicles.trucks import DRIVE_AXLE
 from ..arguments.checks import refused
 from ..arguments.names import first_names
+from ..base.storage.files import named_file
 from ..scene.scene import Scene
 from ..scene.traffic import MakerOfKinds, chosen_of, object_names, put_traffic
 from ..trajectories import Trajectory
@@ -63,7 +64,7 @@ class _File:
     def __init__(self, table: TrafficTable, folder: Path, key: str, rows: KeptRows):
         self._table, self._key = table, key
         self._shapes = {glob: traffic_shape(value, glob, f"{key}.actors.{glob}", folder) for glob, value in table.actors.items()}
-        path = folder / table.file
+        path = named_file(folder, table.file)
         with blamed(key, file="file"):
             self._tracks = TrackFile(
                 path, origin=table.origin, smoothing=table.smoothing, vehicle_length=self._vehicle_length(), rows=rows.of(path),

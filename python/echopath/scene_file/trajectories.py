@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.storage.files import named_file
 from ..trajectories import Trajectory
 from ..trajectories.files.rows import KeptRows
 from ..trajectories.files.track_file import TrackFile, Way
@@ -34,7 +35,7 @@ class Trajectories:
                 values = given.model_dump()
                 yaw = values.pop("yaw_deg")
                 return Trajectory(**values, yaw=None if yaw is None else np.radians(yaw))
-            file = self._file(self._folder / given)
+            file = self._file(named_file(self._folder, given))
         with blamed(f"{key}.id"):
             name = _chosen(file.ways, table.id)
         with blamed(f"{key}.trajectory"):

@@ -140,6 +140,12 @@ def test_parameters_and_included_files_are_filled_in(tmp_path):
     assert corners(model)[:, 0].mean() == pytest.approx(7)
 
 
+def test_files_are_found_as_programs_of_windows_write_their_paths(tmp_path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "more.xml").write_text(f'<scene version="3.0.0">{rectangle("")}</scene>')
+    assert len(corners(mitsuba(tmp_path, '<include filename="parts\\more.xml"/>'))) == 4
+
+
 def test_a_camera_with_y_upwards_says_the_vertical_axis(tmp_path):
     camera = ('<sensor type="perspective"><transform name="to_world"><lookat origin="0 0 5" target="0 0 0" up="0 1 0"/>'
               "</transform></sensor>")

@@ -30,6 +30,13 @@ def bytes_of(path: Path) -> bytes:
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
 
 
+def named_file(folder: Path, name: str) -> Path:
+    """The file that a file in a folder names, relative to it: with backslashes, as programs of Windows write paths, also where
+    folders are told apart by slashes alone."""
+    as_named, with_slashes = folder / name, folder / name.replace("\\", "/")
+    return with_slashes if os.path.exists(with_slashes) and not os.path.exists(as_named) else as_named
+
+
 def _is_device_or_pipe(path) -> bool:
     return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 

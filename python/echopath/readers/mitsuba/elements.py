@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
+from ...base.storage.files import named_file
 from ...base.storage.lines import refuse
 from ...base.storage.markup import parse
 
@@ -152,7 +153,7 @@ def file_of(element: Element, name: str) -> Path:
     """The regular file that an element names, relative to the file that it stands in."""
     if not name:
         element.refuse("names no file")
-    path = element.file.parent / name
+    path = named_file(element.file.parent, name)
     try:
         found = path.is_file()
     except (OSError, ValueError):

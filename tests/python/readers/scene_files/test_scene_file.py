@@ -13,7 +13,7 @@ import echopath as ep
 from echopath.cli.run import simulate_file
 from echopath.scene_file.tables import motion_tables, object_tables, radar_tables, run_tables, schema, traffic_tables
 from echopath.scene_file.tables.table import Table
-from support.files.scene_files import RADAR, fault_of, mesh_object
+from support.files.scene_files import QUAD, RADAR, fault_of, mesh_object
 
 DATA = Path(__file__).resolve().parents[4] / "data"
 ROUNDING = 1e-12  # m
@@ -309,3 +309,25 @@ group = true
     tip = scene.world_vertices(0, 0.0)[:, 1].argmax()
     np.testing.assert_allclose(scene.world_vertices(0, 0.0)[tip, 1], 1.2, rtol=0, atol=ROUNDING)
     np.testing.assert_allclose(scene.world_vertices(0, 1.0)[tip, 2], 2.2, rtol=0, atol=ROUNDING)
+
+
+@pytest.mark.parametrize("written", ["meshes\\quad.obj", "..\\{here}\\meshes\\quad.obj", "meshes/quad.obj"])
+def test_files_are_found_as_programs_of_windows_write_their_paths(write, written):
+    path = write("[[objects]]\nname = 'quad'\nmesh = 'there.obj'\nmaterial = 'metal'\n")
+    (path.parent / "meshes").mkdir()
+    (path.parent / "meshes" / "quad.obj").write_text(QUAD)
+    path.write_text(path.read_text().replace("there.obj", written.format(here=path.parent.name)))
+    (mesh,) = ep.load_scene(path).scene.meshes
+    assert mesh.name == "quad" and len(mesh.triangles) == 2
+
+
+def test_a_name_with_backslashes_is_that_of_a_file_that_has_them(write):
+    """As Linux allows; and a file that is not there is named as it was written."""
+    path = write("[[objects]]\nname = 'quad'\nmesh = 'meshes\\quad.obj'\nmaterial = 'metal'\n")
+    with pytest.raises(ep.FileError, match=r"objects\[0\].mesh: .*meshes\\quad.obj: cannot be opened"):
+        ep.load_scene(path)
+    (path.parent / "meshes").mkdir()
+    (path.parent / "meshes" / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    (path.parent / "meshes\\quad.obj").write_text(QUAD)
+    (mesh,) = ep.load_scene(path).scene.meshes
+    assert len(mesh.triangles) == 2

@@ -23,8 +23,9 @@ BODY_COLOUR = np.array([0.35, 0.38, 0.44])
 MIRROR_COLOUR = (0.55, 0.65, 0.80)
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
 CUT = 1e-6                              # m: what lies as near to the border of the picture was cut there
-MARGIN = 0.6                            # m around the rays
-FLOOR = 0.02                            # of the height of what is drawn: grounds end no farther above its lowest point
+MARGIN, SHARE_OF_MARGIN = 0.6, 0.25      # m around the rays, and most of the longest side of what is smaller
+FLOOR = 0.02                            # of the height of what is drawn: level grounds end no farther above its lowest point
+WIDE_GROUND, LYING = 0.5, 0.7           # of the longest side of the picture, and mean cosine of the slope, of grounds that rise
 ELEVATION, AZIMUTH = 22.0, -118.0       # degrees, of the eye
 WIDE = 2.2                              # width of the view in perspective over its height
 FILLED, MOST_ZOOM = 0.72, 1.75          # share of the height that a scene fills; the rest is for the labels of the axes
@@ -40,8 +41,13 @@ DASHES = (0, (4, 3))
 CUT_LABEL, MIRROR_LABEL = "cut here, it goes on beyond the picture", "surface that mirrors"
 EDGE_ON = 1e-3                          # area over the square of the length, below which a polygon is drawn as a line
 NAME_PLACE = 0.93                       # along x of a mirror, where its name stands
-TICK_SPACE = 0.06                       # of the longest side: room that a number on an axis in perspective needs
+TICK_SPACE = 0.06                       # of the longest axis that perspective draws: room that a number on an axis needs
+SHORTEST_AXIS = 0.03                    # likewise: shorter axes bear no numbers, which flat views tell
+FLAT_TICKS = 30.0, 13.0                 # points, that numbers need across and up, on axes of flat views of the size FLAT_SIZE
+FLAT_SIZE = 310.0, 160.0                # points, about
 LABEL_SPACE, OWN_PAD = 34.0, 21.0       # points from an axis of a cube to its label, of which Matplotlib adds the second itself
+NUMBER_SPACE, OWN_NUMBER_PAD = 11.5, 8.0  # likewise to its numbers
+THIN = 0.16                             # of the longest side: beside thinner ones labels and numbers stay as far from an axis
 
 
 @dataclasses.dataclass
@@ -62,6 +68,7 @@ class _Drawing:
     high: np.ndarray
     names: dict
     mirror_names: dict
+    margin: float  # m, around what is drawn
 
 
 def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, time: float | None = None,
@@ -123,9 +130,10 @@ def _collect(scene, shown, time: float, names) -> _Drawing:
                 for count in np.unique(shown.num_bounces)}
     corners = np.concatenate([points, transmitter[None], receiver[None], _object_vertices(scene, time)])
     corners = np.concatenate([corners, _small_mirrors(scene, time, corners.min(axis=0), corners.max(axis=0))])
-    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    margin = min(MARGIN, max(SHARE_OF_MARGIN * np.ptp(corners, axis=0).max(), CUT))
+    low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     middle = 0.5 * (transmitter + receiver)
-    drawing = _Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, time), {})
+    drawing = _Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, time), {}, margin)
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
         _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh)
@@ -203,11 +211,21 @@ def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
             _add_mirror_name(drawing.mirror_names, object_of(mesh.name), np.concatenate(polygons))
         return
     if polygons:
-        height = triangles[..., 2].max()
-        if height <= drawing.low[2] + MARGIN + FLOOR * (drawing.high - drawing.low)[2]:
-            drawing.grounds.append((height, len(drawing.bodies), len(drawing.bodies) + len(polygons)))
+        if _is_ground(drawing, triangles):
+            drawing.grounds.append((triangles[..., 2].max(), len(drawing.bodies), len(drawing.bodies) + len(polygons)))
         drawing.bodies += polygons
         drawing.body_colours += _shaded(np.array([polygon[:3] for polygon in polygons]))
+
+
+def _is_ground(drawing: _Drawing, triangles) -> bool:
+    """Whether triangles [N, 3, 3] lie at the lowest point of the picture: level ones, or those of a wide slope or hills."""
+    sides, lowest = drawing.high - drawing.low, drawing.low[2] + drawing.margin
+    if triangles[..., 2].max() <= lowest + FLOOR * sides[2]:
+        return True
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    is_lying = np.abs(normals[:, 2]).sum() >= LYING * np.linalg.norm(normals, axis=1).sum()
+    is_wide = np.ptp(triangles[..., :2], axis=(0, 1)).max() >= WIDE_GROUND * sides.max()
+    return bool(is_lying and is_wide and triangles[..., 2].min() <= lowest + FLOOR * sides[2])
 
 
 def _add_mirror_name(names: dict, name: str, corners) -> None:
@@ -364,21 +382,33 @@ def _zoom(sides) -> float:
     return float(min(MOST_ZOOM, filled * diagonal / height, filled * WIDE * diagonal / width))
 
 
-def _frame_box(axes, drawing: _Drawing) -> None:
+def _set_ticks(axis, count: int) -> None:
+    """Gives an axis so many round numbers at the most, and no more than eight."""
     from matplotlib.ticker import MaxNLocator
 
+    axis.set_major_locator(MaxNLocator(nbins=min(max(count, 1), 8), steps=(1, 2, 5, 10), min_n_ticks=1 if count < 2 else 2))
+
+
+def _frame_box(axes, drawing: _Drawing) -> None:
     axes.set_xlim(drawing.low[0], drawing.high[0])
     axes.set_ylim(drawing.low[1], drawing.high[1])
     axes.set_zlim(drawing.low[2], drawing.high[2])
-    axes.set_box_aspect(drawing.high - drawing.low, zoom=_zoom(drawing.high - drawing.low))
+    sides = drawing.high - drawing.low
+    zoom = _zoom(sides)
+    axes.set_box_aspect(sides, zoom=zoom)
     axes.view_init(elev=ELEVATION, azim=AZIMUTH)
     axes.set_xlabel("x in m")
     axes.set_ylabel("y in m")
     axes.set_zlabel("z in m")
-    shares = (drawing.high - drawing.low) / (drawing.high - drawing.low).max()
-    for k, (axis, share) in enumerate(zip((axes.xaxis, axes.yaxis, axes.zaxis), shares)):
-        axis.labelpad = LABEL_SPACE / np.sqrt(np.delete(shares, k).max()) - OWN_PAD  # it counts along the other two sides
-        axis.set_major_locator(MaxNLocator(nbins=min(max(int(share / TICK_SPACE), 1), 8), steps=(1, 2, 5, 10)))
+    shares, drawn = sides / sides.max(), sides / np.linalg.norm(sides) * zoom / MOST_ZOOM
+    for k, (axis, length) in enumerate(zip((axes.xaxis, axes.yaxis, axes.zaxis), drawn)):
+        beside = np.delete(shares, k).max()  # pads count along the other two sides
+        axis.labelpad = LABEL_SPACE * max(1.0 / np.sqrt(max(beside, THIN)), np.sqrt(THIN) / beside) - OWN_PAD
+        axis.set_tick_params(pad=NUMBER_SPACE * max(1.0, THIN / beside) - OWN_NUMBER_PAD)
+        _set_ticks(axis, int(length / TICK_SPACE))
+        if length < SHORTEST_AXIS:
+            axis.set_ticks([])
+            axis.label.set_visible(False)
         axis.pane.set_visible(False)
         axis._axinfo["grid"].update(color=(0.85, 0.85, 0.85), linewidth=0.4)
 
@@ -407,6 +437,9 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])
     axes.set_aspect("equal")
     axes.apply_aspect()
+    sides = (drawing.high - drawing.low)[columns]
+    for axis, side, room in zip((axes.xaxis, axes.yaxis), sides * min(FLAT_SIZE / sides), FLAT_TICKS):
+        _set_ticks(axis, int(side / room))
     axes.set_title(title, pad=TITLE_PAD + _draw_flat_names(axes, drawing, plane))
     axes.set_xlabel("xyz"[plane[0]] + " in m")
     axes.set_ylabel("xyz"[plane[1]] + " in m")
@@ -419,7 +452,7 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
         axes.annotate(short_name(name), place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
 
     line_height = LINE * NAME_LOOK["fontsize"]
-    top = drawing.high[plane[1]] - 2.0 * MARGIN  # the title is right above
+    top = drawing.high[plane[1]] - 2.0 * drawing.margin  # the title is right above
     above = 0.0
     is_high = drawing.radar[plane[1]] > top
     write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)

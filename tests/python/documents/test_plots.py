@@ -334,6 +334,52 @@ def test_names_of_axes_stand_beside_their_numbers_and_titles_above_names(size):
     assert not from_above.title.get_window_extent().count_overlaps(names)
 
 
+@pytest.mark.parametrize("size", [(600.0, 4.0, 2.0), (3.0, 300.0, 2.0), (0.3, 0.04, 0.03)])
+def test_numbers_and_names_of_the_axes_of_thin_scenes_stand_apart(size):
+    """As measured on the page once it is drawn: all numbers and names of each view beside each other."""
+    figure = on_a_field(*size, box_size=0.4 * size[2])
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        shown = []
+        for axis in (getattr(axes, name) for name in ("xaxis", "yaxis", "zaxis") if hasattr(axes, name)):
+            low, high = sorted(axis.get_view_interval())
+            shown += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high and tick.label1.get_text()]
+            shown += [axis.label] if axis.label.get_visible() else []
+        assert len(shown) > 3
+        boxes = [text.get_window_extent() for text in shown]
+        for number, one in enumerate(boxes):
+            assert not one.count_overlaps(boxes[number + 1:]), [text.get_text() for text in shown]
+
+
+def test_a_scene_of_a_hand_fills_its_picture():
+    """The radar stands 1 m above a field of 0.3 m in `on_a_field`; here nothing is farther than 0.3 m."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.02, 0.02), name="plate", material="metal", position=(0.3, 0.0, 0.0))
+    radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    left, right = plot_scene(scene, ep.trace(scene, radar, num_rays=500)).axes[1].get_xlim()
+    assert left < 0.0 and right > 0.3 and right - left < 0.6
+
+
+def test_a_slope_hides_neither_what_stands_on_it_nor_rays():
+    """As `test_a_field_hides_...`, of a field that rises by 12 m."""
+    scene, rise = ep.Scene(), 0.2
+    corners = np.array([[0.0, -10.0, 0.0], [60.0, -10.0, 12.0], [60.0, 10.0, 12.0], [0.0, 10.0, 0.0]])
+    scene.add(ep.Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]])), name="slope", material="grass")
+    scene.add(ep.actors.box(2.0), name="box", material="metal", position=(48.0, 4.0, 48.0 * rise + 1.0))
+    radar = build_radar([(0, 0, 2)], [(0, 0, 2)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    figure.canvas.draw()
+    axes, picture = figure.axes[0], np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+
+    def colours(*place) -> np.ndarray:
+        across, up = axes.transData.transform(proj_transform(*place, axes.get_proj())[:2])
+        return picture[int(len(picture) - up) - 4:int(len(picture) - up) + 5, int(across)]
+
+    field = colours(30.0, -5.0, 30.0 * rise)[4]
+    assert np.abs(colours(47.0, 4.0, 48.0 * rise + 1.0) - field).max() > 10  # the side of the box that faces the radar
+    assert np.abs(colours(23.5, 2.0, 24.0 * rise + 1.5) - field).max() > 10  # half-way between the radar and that side
+
+
 def test_names_of_objects_behind_each_other_stand_apart():
     """As measured on the page once it is drawn."""
     scene = ep.Scene()

@@ -55,6 +55,20 @@ def test_the_cell_that_was_clicked_is_told_of_again(frame, tmp_path):
         assert second.cell == (distance, velocity)
 
 
+def test_the_beam_that_was_chosen_lights_its_rays_again(frame, tmp_path):
+    """Without it all rays of the cell are lit, and the cell tells of the echoes of one channel."""
+    first = Session(from_frame(frame))
+    first.select_beam(45, 0.1, 0.0)
+    save_state(state_of(first), tmp_path / "view.json")
+    second = Session(from_frame(frame))
+    assert apply_state(second, load_state(tmp_path / "view.json")) == [] and second.beam == (0.1, 0.0)
+    assert second.where_lit() == first.where_lit() and np.array_equal(second.lit, first.lit)
+    assert 0 < np.count_nonzero(first.lit) < np.count_nonzero(first.index.mask_of(first.box))
+    first.select_cells(first.box)
+    apply_state(second, state_of(first))
+    assert second.beam is None and np.array_equal(second.lit, first.lit)
+
+
 def test_colours_of_meshes_are_told_once_where_some_are_others(session):
     told = []
     session.listen(lambda topics: told.append(topics))
@@ -107,7 +121,8 @@ def test_maps_of_meshes_and_parts_of_them_are_loaded_too(frame, tmp_path):
     ("part", "whole"), ("part", ["whole"]), ("partition", 1), ("channel", "ab"), ("channel", [0]), ("channel", [0, -1]),
     ("color_by", "mood"), ("color_by", ["mesh"]), ("max_rays", None), ("max_rays", 0), ("max_rays", 10**12),
     ("dynamic_range_db", "60"), ("dynamic_range_db", 0), ("dynamic_range_db", float("nan")), ("chirp", 1.5), ("chirp", True),
-    ("box", [1, 2]), ("box", "1234"), ("cell", [1]), ("cell", [-1, 2]), ("ray", -1), ("ray", "3"),
+    ("box", [1, 2]), ("box", "1234"), ("cell", [1]), ("cell", [-1, 2]), ("beam", [0.1]), ("beam", ["a", 0]), ("ray", -1),
+    ("ray", "3"),
     ("hidden_meshes", "car"), ("hidden_meshes", [1]),
     ("mesh_colours", []), ("mesh_colours", {"car": [1, 2]}), ("mesh_colours", {"car": [1, 2, 300]}), ("camera", {}),
     ("camera", {"position": [0, 0, 0], "focal_point": [1, 0, 0], "up": [0, 0], "view_angle": 30}), ("show_hits", 1),

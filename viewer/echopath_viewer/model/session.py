@@ -227,6 +227,10 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         strongest, velocity_index = (int(index) for index in np.unravel_index(levels.argmax(), levels.shape))
         elevation = float(elevations[strongest])
         self.select_cells(CellBox.around(range_index, velocity_index, reach), (range_index, velocity_index))
+        self.light_beam(azimuth, elevation)
+
+    def light_beam(self, azimuth: float, elevation: float) -> None:
+        """Lights the paths of the selected cells that lie in a beam, whose contributions are told. azimuth, elevation: rad"""
         self.beam = azimuth, elevation
         inside = paths_in_beam(self.paths, self.index.mask_of(self.box), self.paths.frame.trace_time, azimuth, elevation)
         self._light(f"the beam at {np.degrees(azimuth):+z.1f}°, {np.degrees(elevation):+z.1f}°", inside)

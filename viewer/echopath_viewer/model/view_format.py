@@ -103,6 +103,7 @@ _RULES = {
     "chirp": (_is_index, "an index"),
     "box": (_or_none(lambda value: _is_list(value, 4, _is_index)), "null or four indices of cells"),
     "cell": (_or_none(lambda value: _is_list(value, 2, _is_index)), "null or [range index, velocity index]"),
+    "beam": (_or_none(lambda value: _is_list(value, 2, _is_number)), "null or [azimuth, elevation] in rad"),
     "ray": (_or_none(_is_index), "null or an index"),
     "hidden_meshes": (lambda value: _is_list(value, None, _is_text), "a list of names"),
     "layers": (lambda value: _is_list(value, None, lambda layer: layer in LAYERS), f"a list of {', '.join(LAYERS)}"),

@@ -25,7 +25,8 @@ def state_of(session) -> dict:
         "color_by": session.color_by, "max_rays": session.max_rays, "sampling": session.sampling,
         "dynamic_range_db": session.dynamic_range_db,
         "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None,
-        "cell": None if session.cell is None or session.tells_highest_cell else list(session.cell), "ray": session.ray,
+        "cell": None if session.cell is None or session.tells_highest_cell else list(session.cell),
+        "beam": None if session.beam is None else [float(angle) for angle in session.beam], "ray": session.ray,
         "layers": sorted(session.layers),
         "hidden_meshes": sorted(session.mesh_names[mesh] for mesh in session.hidden_meshes),
         "mesh_colours": {name: [int(value) for value in rgb] for name, rgb in zip(session.mesh_names, session.palette)},
@@ -48,7 +49,7 @@ def apply_state(session, state: dict) -> list[str]:
     _attempt(misfits, "part", lambda: _set_part(session, state.get("part", (WHOLE, WHOLE))))
     _apply_looks(session, state, misfits)
     session.set_chirp(state.get("chirp", session.chirp))
-    _attempt(misfits, "cells", lambda: _select_cells(session, state.get("box"), state.get("cell")))
+    _attempt(misfits, "cells", lambda: _select_cells(session, state.get("box"), state.get("cell"), state.get("beam")))
     _apply_layers(session, state, misfits)
     ray = state.get("ray")
     if ray is not None and ray < session.paths.num_paths and session.visible[ray]:
@@ -109,14 +110,17 @@ def _add_part(session, name: str, recipe: dict) -> None:
         session.set_filters(before[1])
 
 
-def _select_cells(session, box, cell) -> None:
-    """cell: (range index, velocity index) whose contributions are told, None: the highest of the box."""
+def _select_cells(session, box, cell, beam) -> None:
+    """cell: (range index, velocity index) whose contributions are told, None: the highest of the box; beam: (azimuth, elevation)
+    in rad of those of its echoes that are meant, None: all."""
     spectrum = session.parts.whole.spectrum
     if box is not None and not (box[0] < len(spectrum.range) and box[2] < len(spectrum.velocity)):
         raise ValueError(f"the map has no cells {list(box)}")
     chosen = None if box is None else CellBox(*box).within(len(spectrum.range), len(spectrum.velocity))
     is_told = chosen is not None and cell is not None and chosen.holds(*cell)
     session.select_cells(chosen, tuple(cell) if is_told else None)
+    if chosen is not None and beam is not None:
+        session.light_beam(*beam)
 
 
 def _set_node(session, name: str | None, base) -> None:

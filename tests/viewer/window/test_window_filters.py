@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import WHOLE, CellBox, from_frame, from_paths
+from echopath_viewer.model import WHOLE, CellBox, Filters, from_frame, from_paths
 from echopath_viewer.model.maps import signals
 from echopath_viewer.window.main_window import SIGNAL_PAUSE_MS
 from echopath_viewer.window.qt import Qt
@@ -52,6 +52,18 @@ def test_bounces_and_power_filter(qtbot, window):
     assert np.array_equal(window.session.visible, (columns.num_bounces >= 2) & (columns.power_dbm() >= -140))
     qtbot.mouseClick(window.filter_box.reset_button, LEFT)
     assert window.session.visible.all() and window.filter_box.from_box.value() == 0
+
+
+def test_a_level_that_a_view_has_stays_as_it_is(window):
+    """Rounded in the box, it would be another one with the next change of any filter."""
+    window.session.set_filters(Filters(min_power_dbm=-137.625))
+    window.filter_box.read(window.session)
+    assert window.filter_box.power_box.text() == "-137.625 dBm" and window.filter_box.filters() == window.session.filters
+    window.filter_box.from_box.setValue(2)
+    assert window.session.filters == Filters(min_bounces=2, min_power_dbm=-137.625)
+    assert "-137.625 dBm" in window.session.filters.describe()
+    window.filter_box.power_box.setValue(-140.0)
+    assert window.filter_box.power_box.text() == "-140 dBm"
 
 
 def test_a_named_part_joins_the_maps_at_once(qtbot, window):

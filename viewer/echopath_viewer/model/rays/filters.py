@@ -62,7 +62,7 @@ class Filters:
         if self.min_bounces > 0 or self.max_bounces < MAX_BOUNCES:
             words.append(f"{self.min_bounces} to {self.max_bounces} bounces")
         if self.min_power_dbm is not None:
-            words.append(f"at least {self.min_power_dbm:.0f} dBm")
+            words.append(f"at least {self.min_power_dbm:g} dBm")
         if self.mesh.strip():
             words.append(f"over {self.mesh.strip()}")
         if self.expression.strip():

@@ -8,6 +8,7 @@ from ..qt import QtCore, QtGui, QtWidgets, Signal
 
 TYPING_PAUSE_MS = 350
 COUNT_LINES = 3
+LEVEL_DECIMALS = 6  # of dBm, which saved views have as they were set
 UNKNOWN_PATHS = "Which paths are behind this map is not known: its signal was given without selections."
 ERROR_WIDTH, MIN_ERROR_WIDTH = 34, 160  # letters, pixels
 EXAMPLE = "T .* 'wall*' .* R"
@@ -28,7 +29,7 @@ class FilterBox(QtWidgets.QWidget):
         self.from_box = QtWidgets.QSpinBox(minimum=0, maximum=MAX_BOUNCES)
         self.to_box = QtWidgets.QSpinBox(minimum=0, maximum=MAX_BOUNCES)
         self.power_check = QtWidgets.QCheckBox("at least")
-        self.power_box = QtWidgets.QDoubleSpinBox(minimum=-400.0, maximum=100.0, decimals=0, singleStep=5.0, suffix=" dBm")
+        self.power_box = _LevelBox(minimum=-400.0, maximum=100.0, decimals=LEVEL_DECIMALS, singleStep=5.0, suffix=" dBm")
         self.mesh_box = QtWidgets.QComboBox(editable=True)
         self.expression_edit = QtWidgets.QLineEdit(placeholderText=EXAMPLE, clearButtonEnabled=True)
         self.expression_edit.setToolTip(EXPRESSION_HELP)
@@ -188,6 +189,13 @@ class FilterBox(QtWidgets.QWidget):
             text = errors.get(field, "")
             label.setText(text)
             edit.setStyleSheet("border: 1px solid #c0392b" if text else "")
+
+
+class _LevelBox(QtWidgets.QDoubleSpinBox):
+    """A level with as many digits as it has."""
+
+    def textFromValue(self, value: float) -> str:
+        return self.locale().toString(value, "g", 9)
 
 
 def _row(*widgets) -> QtWidgets.QWidget:

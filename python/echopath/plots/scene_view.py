@@ -323,9 +323,14 @@ def _grounds(drawing: _Drawing) -> list:
     return [range(first, last) for _, first, last in sorted(drawing.grounds)]
 
 
+def _on_grounds(drawing: _Drawing) -> list:
+    """Indices of the polygons of all grounds."""
+    return list(itertools.chain.from_iterable(_grounds(drawing)))
+
+
 def _above_ground(drawing: _Drawing) -> list:
     """Indices of the polygons of all other bodies."""
-    on_ground = set(itertools.chain.from_iterable(_grounds(drawing)))
+    on_ground = set(_on_grounds(drawing))
     return [k for k in range(len(drawing.bodies)) if k not in on_ground]
 
 
@@ -429,6 +434,8 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
                                            alpha=_ray_opacity(segments)), autolim=False)
     toward_viewer = 1.0 if depth == 2 else -1.0
     order = np.argsort(toward_viewer * _middles(drawing.bodies, depth), kind="stable")
+    if depth == 2:  # the middle of a wide slope lies above what stands at its foot
+        order = order[np.argsort(~np.isin(order, _on_grounds(drawing)), kind="stable")]
     bodies = _of_equal_length(drawing.bodies)[order][:, :, columns]
     axes.add_collection(PolyCollection(bodies, facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="face",
                                        linewidths=np.where(_is_edge_on(bodies), 0.8, 0.0)), autolim=False)

@@ -321,6 +321,28 @@ def test_a_field_hides_neither_what_stands_on_its_farther_half_nor_rays():
     assert np.abs(colour(47.25, 2.0, 1.75) - field).max() > 10  # half-way between the radar and that side
 
 
+@pytest.mark.parametrize("view, dark_side", [(0, (-0.5, -0.7, -0.5)), (1, (0.6, 0.5, 0.6))])
+def test_a_hill_hides_neither_what_stands_on_it_nor_rays(view, dark_side):
+    """A road of 10 % whose middle lies above the ball at its foot, in perspective and from above, as seen on the page."""
+    corners = [(x, y, max(0.0, 0.1 * (x - 30.0))) for x in (-20.0, 30.0, 110.0) for y in (-15.0, 15.0)]
+    scene = ep.Scene()
+    scene.add(ep.Mesh(corners, [(0, 2, 3), (0, 3, 1), (2, 4, 5), (2, 5, 3)]), name="hill", material="grass")
+    scene.add(ep.actors.sphere(1.0), name="ball", material="grass", position=(36.0, 4.0, 1.6))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=200), objects=["hill", "ball"])
+    figure.canvas.draw()
+    axes = figure.axes[view]
+    picture = np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+
+    def colour(*place) -> np.ndarray:
+        across, up = axes.transData.transform(place[:2] if view else proj_transform(*place, axes.get_proj())[:2])
+        return picture[int(len(picture) - up), int(across)]
+
+    slope, flat = colour(60.0, -10.0, 3.0), colour(10.0, -10.0, 0.0)
+    assert np.abs(colour(*(36.0, 4.0, 1.6) + np.array(dark_side)) - slope).max() > 30
+    assert np.abs(colour(17.5, 1.945, 1.29) - flat).max() > 10  # half-way between the radar and the side that faces it
+
+
 @pytest.mark.parametrize("size", [(120.0, 20.0, 6.0), (20.0, 20.0, 6.0), (20.0, 60.0, 6.0), (5.0, 2.0, 1.5)])
 def test_names_of_axes_stand_beside_their_numbers_and_titles_above_names(size):
     """As measured on the page once it is drawn: of long scenes the name of x stood on a number, that of a field in a title."""

@@ -1,32 +1,42 @@
 """Names of things in pictures from above."""
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 NAME_ASIDE, NAME_SIZE = 5.0, 7.0  # points, from a place to its name, and of its letters
 NAME_LETTER, NAME_LINE = 4.5, 9.0  # points, about, of the names
-CORNERS = (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)  # to the right of a place and up, where its name may stand
+FEW = 12             # names, of which one may stand lines away from its place; among more it could be taken for that of another
+LINES_AWAY, UP, RIGHT = (1.0, 2.0, 3.0), (1.0, -1.0), (1.0, -1.0)  # where a name may stand, in this order
 NAME_RIM = 2.5       # points, white around names
 
 
 def write_names(ax, places) -> None:
-    """Names beside their places, on the other side or below where they would be over another name.
+    """Names beside their places, on the other side or below where they would be over another name; few also some lines away. One
+    that finds no room is left out.
 
-    ax: of one scale for both directions, left on the left, whose limits are set; places: pairs of a name and (left, ahead) in m
+    ax: of one scale for both directions, left on the left, whose limits are set; places: pairs of a name and (left, ahead) in m,
+        those first that are to find room
     """
     from matplotlib.patheffects import withStroke
 
+    places = list(places)
+    tried = list(itertools.product(LINES_AWAY if len(places) <= FEW else LINES_AWAY[:1], UP, RIGHT))
     scale, taken = _points_per_metre(ax), []  # (leftmost, rightmost, height) of the names so far, points
     for name, (left, ahead) in places:
-        for side, height in CORNERS:
+        for line, up, side in tried:
             begin, end = sorted(-left * scale + side * np.array([NAME_ASIDE, NAME_ASIDE + NAME_LETTER * len(name)]))
-            level = ahead * scale + height * (NAME_ASIDE + 0.5 * NAME_SIZE)
+            away = up * (NAME_ASIDE + (line - 1.0) * NAME_LINE)
+            level = ahead * scale + away + 0.5 * up * NAME_SIZE
             if all(right <= begin or end <= first or abs(other - level) >= NAME_LINE for first, right, other in taken):
                 break
+        else:
+            continue
         taken.append((begin, end, level))
-        ax.annotate(name, (left, ahead), xytext=(side * NAME_ASIDE, height * NAME_ASIDE), textcoords="offset points",
+        ax.annotate(name, (left, ahead), xytext=(side * NAME_ASIDE, away), textcoords="offset points",
                     color="0.1", fontsize=NAME_SIZE, horizontalalignment="left" if side > 0.0 else "right",
-                    verticalalignment="bottom" if height > 0.0 else "top",
+                    verticalalignment="bottom" if up > 0.0 else "top",
                     path_effects=[withStroke(linewidth=NAME_RIM, foreground="white")])
 
 

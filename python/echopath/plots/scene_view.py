@@ -32,7 +32,9 @@ FILLED, MOST_ZOOM = 0.72, 1.75          # share of the height that a scene fills
 NEARER = 0.35                           # how much larger the perspective draws the near end of a scene that is all depth
 RADAR_LABEL = "radar"
 MIDDLE = 0.1                            # of the longer side of an object, to either side of its middle: what has its name above
-MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
+MOST_NAMES = 20                         # objects, and mirrors, that bear their names in a picture; more would hide each other
+FEW_NAMES = 12                          # as many all find room
+MOST_RAISED = 3                         # lines that one of more stands above its object at most: farther up it is of none
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
 MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
 TITLE_PAD = 6.0                         # points between axes and title
@@ -66,7 +68,7 @@ class _Drawing:
     radar: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    names: dict
+    names: dict  # from the one with the strongest echo on
     mirror_names: dict
     margin: float  # m, around what is drawn
 
@@ -81,7 +83,8 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
         anything but mirrors (of all, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
     objects: as in `families`, such as those of labels; None: the children of the scene's root
-    Mirrors are drawn translucent, dashed where they go on beyond the picture; up to 12 objects bear their names.
+    Mirrors are drawn translucent, dashed where they go on beyond the picture. The objects with the strongest echoes bear their
+    names, up to 20 that find room, and the 20 largest mirrors.
     title: above them. Returns a matplotlib figure with three views in metres. Raises TypeError or ValueError naming the
     argument.
     """
@@ -92,8 +95,10 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
     time = paths.frame.trace_time if time is None else time
     power = paths.power if power is None else array(f"[{len(paths)}]")("power", power)
     names = _names_of_meshes(scene, objects)
-    chosen = _chosen(names, paths, power, num_rays)
-    drawing = _collect(scene, subset(paths, chosen), time, names if objects is None else _named(names, objects))
+    numbers, of_path = _objects_of_paths(names, paths)
+    chosen = strongest_of_each(power, of_path, len(numbers), num_rays) if (of_path >= 0).any() else strongest(power, num_rays)
+    asked = numbers if objects is None else {name: numbers[name] for name, _ in named_globs(objects) if name in numbers}
+    drawing = _collect(scene, subset(paths, chosen), time, names, _loudest(asked, of_path, power))
     with new_figure(10.5, 8.0) as figure:
         grid = figure.add_gridspec(2, 2, height_ratios=(1.75, 1.0))
         perspective = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
@@ -116,14 +121,23 @@ def _names_of_meshes(scene, objects) -> list:
     return names
 
 
-def _named(names, objects) -> list:
-    """Of names of meshes those of `objects`, None elsewhere."""
-    known = {name for name, _ in named_globs(objects)}
-    return [name if name in known else None for name in names]
+def _objects_of_paths(names, paths) -> tuple:
+    """({object: its number}, the number of the first object along each path [P], -1 for none); names: of the objects of meshes,
+    None of mirrors"""
+    numbers = {}
+    of_mesh = np.array([-1 if name is None else numbers.setdefault(name, len(numbers)) for name in names], np.int64)
+    return numbers, first_group(paths, of_mesh)
 
 
-def _collect(scene, shown, time: float, names) -> _Drawing:
-    """names: of the objects of meshes that bear one in the picture, None of others"""
+def _loudest(numbers: dict, of_path, power) -> list:
+    """The names of {object: its number} by their echoes, the strongest first."""
+    among = of_path >= 0
+    echoes = np.bincount(of_path[among], power[among], minlength=1 + max(numbers.values(), default=0))
+    return sorted(numbers, key=lambda name: -echoes[numbers[name]])
+
+
+def _collect(scene, shown, time: float, names, named: list) -> _Drawing:
+    """names: of the objects of meshes, None of others; named: those of them that the picture may bear"""
     transmitter, receiver = np.asarray(shown.frame.transmitter), np.asarray(shown.frame.receiver)
     points = np.asarray(shown.points(time)).reshape(-1, 3)
     segments = {int(count): _segments(shown, points, count, transmitter, receiver)
@@ -133,19 +147,11 @@ def _collect(scene, shown, time: float, names) -> _Drawing:
     margin = min(MARGIN, max(SHARE_OF_MARGIN * np.ptp(corners, axis=0).max(), CUT))
     low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     middle = 0.5 * (transmitter + receiver)
-    drawing = _Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, time), {}, margin)
+    drawing = _Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, named, time), {}, margin)
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
         _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh)
     return drawing
-
-
-def _chosen(names, paths, power, num_rays: int):
-    """Indices of the paths that are drawn; names: of the objects of meshes, None of mirrors"""
-    numbers = {}
-    of_mesh = np.array([-1 if name is None else numbers.setdefault(name, len(numbers)) for name in names], np.int64)
-    of_path = first_group(paths, of_mesh)
-    return strongest_of_each(power, of_path, len(numbers), num_rays) if (of_path >= 0).any() else strongest(power, num_rays)
 
 
 def _segments(paths, points, count: int, transmitter, receiver):
@@ -178,17 +184,14 @@ def _small_mirrors(scene, time: float, low, high):
     return np.concatenate(found)
 
 
-def _places_of(scene, names, time: float) -> dict:
-    """(lowest, highest) corner [3] of the middle of each object, {name: corners}; {} of too many. names: of the objects of
-    meshes, or None"""
-    objects = {}
+def _places_of(scene, names, named: list, time: float) -> dict:
+    """(lowest, highest) corner [3] of the middle of each object that is named, {name: corners}. names: of the objects of meshes,
+    or None"""
+    objects = {name: [] for name in named}
     for mesh_id, name in enumerate(names):
-        if name is not None:
-            objects.setdefault(name, []).append(np.asarray(scene.world_vertices(mesh_id, time)))
-    if len(objects) > MOST_NAMES:
-        return {}
-    vertices = {name: np.concatenate(parts) for name, parts in objects.items()}
-    return {name: _middle_of(points) for name, points in vertices.items()}
+        if name in objects:
+            objects[name].append(np.asarray(scene.world_vertices(mesh_id, time)))
+    return {name: _middle_of(np.concatenate(parts)) for name, parts in objects.items()}
 
 
 def _middle_of(points) -> tuple:
@@ -347,19 +350,23 @@ def _draw_names_in_perspective(axes, names: dict) -> None:
 
 
 def _free_lines(axes, places: dict) -> dict:
-    """{name: by how many lines it is raised, so that it stands on no other}, from the lowest name on.
+    """{name: by how many lines it is raised, so that it stands on no other}: all of few, the first ones that find room of many.
 
     places: {name: place [2] of its middle in the coordinates of the axes}
     """
     letter, line = LETTER * NAME_LOOK["fontsize"], LINE * NAME_LOOK["fontsize"]
-    points = {name: axes.transData.transform(place) * POINTS_PER_INCH / axes.figure.dpi for name, place in places.items()}
     taken, raised = [], {}  # taken: (middle, half of the width, height) of the names so far in points of the page
-    for name, (middle, height) in sorted(points.items(), key=lambda one: one[1][1]):
+    for name, place in places.items():
+        middle, height = axes.transData.transform(place) * POINTS_PER_INCH / axes.figure.dpi
         half = 0.5 * letter * (len(short_name(name)) + 1)
-        raised[name] = next(k for k in itertools.count() if all(
+        tried = range(MOST_RAISED + 1) if len(places) > FEW_NAMES else itertools.count()
+        free = (k for k in tried if all(
             abs(middle - other) >= half + its_half or abs(height + k * line - its_height) >= line
             for other, its_half, its_height in taken))
-        taken.append((middle, half, height + raised[name] * line))
+        lines = next(free, None)
+        if lines is not None and len(raised) < MOST_NAMES:
+            raised[name] = lines
+            taken.append((middle, half, height + lines * line))
     return raised
 
 
@@ -370,7 +377,9 @@ def _halo() -> list:
 
 
 def _named_mirrors(drawing: _Drawing) -> dict:
-    return drawing.mirror_names if len(drawing.mirror_names) <= MOST_NAMES else {}
+    """Those of the largest."""
+    largest = sorted(drawing.mirror_names.items(), key=lambda one: -np.linalg.norm(np.subtract(*one[1])))
+    return dict(largest[:MOST_NAMES])
 
 
 def _zoom(sides) -> float:
@@ -465,8 +474,10 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
     write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)
     tops = {name: (0.5 * (low[0] + high[0]), high[1]) for name, (low, high) in drawing.names.items()} if plane == (0, 1) else {}
     for name, line in _free_lines(axes, tops).items():
-        write(name, tops[name], (0, 3 + line * line_height), "center", **NAME_LOOK)
-        above = max(above, (line + 1) * line_height if tops[name][1] > top else 0.0)
+        raised = 3 + line * line_height
+        write(name, tops[name], (0, raised), "center", **NAME_LOOK)
+        below_top = (axes.transAxes.transform((0.0, 1.0)) - axes.transData.transform(tops[name]))[1]
+        above = max(above, raised + line_height - below_top * POINTS_PER_INCH / axes.figure.dpi)
     for name, (low, high) in _named_mirrors(drawing).items():
         if high[plane[1]] - low[plane[1]] < CUT:
             write(name, (low[0], high[plane[1]]), (4, 2), "left", **MIRROR_NAME_LOOK)

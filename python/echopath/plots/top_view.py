@@ -41,7 +41,7 @@ GRID_LOOK = {"color": "white", "linewidth": 0.5, "alpha": 0.35}
 TRUE_LABEL = "where the object truly is (its middle)"
 TRUE_LOOK = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markeredgecolor": "#56d4ff", "markersize": 9}
 NAME_ASIDE, NAME_LINE, NAME_LETTER = 0.035, 0.065, 0.024  # of the reach: beside a place, a line, a letter
-MOST_NAMES = 12                 # true places that bear their names; more would hide each other
+MOST_NAMES = 12                 # true places that bear their names, the nearest ones; more would hide each other
 LEGEND_LOOK = {"facecolor": "black", "labelcolor": "white", "framealpha": 1.0}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
@@ -57,7 +57,7 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
 
     maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
-    places: {object: (range in m, azimuth in rad)} that get a ring, in the first map with names; None: none
+    places: {object: (range in m, azimuth in rad)} that get a ring, the 12 nearest in the first map with names; None: none
     leaked: map of the leakage in the first map, which sets no scale, or None
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
     TypeError or ValueError naming maps, vmin or vmax.
@@ -121,7 +121,7 @@ def _draw_places(axes, one, places: dict, reach: float, *, is_named: bool) -> li
     """A ring at each place that the map shows; returns the rings."""
     shown = {name: (distance * math.sin(azimuth), distance * math.cos(azimuth)) for name, (distance, azimuth) in places.items()
              if distance <= reach and _covers(one, azimuth)}
-    if is_named and len(shown) <= MOST_NAMES:
+    if is_named:
         _name_places(axes, shown, reach)
     return axes.plot(*zip(*shown.values()), label=TRUE_LABEL, zorder=4, **TRUE_LOOK) if shown else []
 
@@ -137,7 +137,8 @@ def _name_places(axes, shown: dict, reach: float) -> None:
     from matplotlib.patheffects import withStroke
 
     taken = [(left, left, ahead) for left, ahead in shown.values()]  # (leftmost, rightmost, height) in m of rings and names
-    for name, (left, ahead) in sorted(shown.items(), key=lambda one: -one[1][1]):
+    nearest = sorted(shown.items(), key=lambda one: math.hypot(*one[1]))[:MOST_NAMES]
+    for name, (left, ahead) in sorted(nearest, key=lambda one: -one[1][1]):
         name = short_name(name)
         length, aside, line = NAME_LETTER * reach * len(name), NAME_ASIDE * reach, NAME_LINE * reach
         tried = ((left + side * aside, side, ahead - row * line) for row in itertools.count(1) for side in (-1.0, 1.0))

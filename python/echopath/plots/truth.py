@@ -48,7 +48,6 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
     require_drawable("truth", "a Truth, as frame.truth is", truth, "corners_in_radar", "visible_share")
     choice(*VIEWS)("view", view)
     names = list(dict.fromkeys(truth.name.tolist()))
-    named = _named(truth, names)
     with axes_or_new(ax, *SIZE, LABELS[view]) as ax:
         for name in names:
             _draw_object(ax, truth.of_object(name), view)
@@ -56,15 +55,15 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
         across, up = LABELS[view]
         ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names, view))
         to_one_scale(ax)
-        write_names(ax, [(short_name(name), _centres(truth.of_object(name), view)[-1, 1::-1]) for name in names if name in named])
+        write_names(ax, [(short_name(name), _centres(truth.of_object(name), view)[-1, 1::-1]) for name in _named(truth, names)])
         ax.grid(alpha=0.25)
     return ax
 
 
-def _named(truth, names) -> set:
-    """The names that are written: those of which the radar sees most."""
+def _named(truth, names) -> list:
+    """The names that may be written: those of which the radar sees most, in this order."""
     share = [truth.visible_share[truth.name == name].max() for name in names]
-    return {names[place] for place in np.argsort(share, kind="stable")[::-1][:MOST_NAMES]}
+    return sorted(names, key=dict(zip(names, share)).get, reverse=True)[:MOST_NAMES]
 
 
 def _centres(rows, view: str) -> np.ndarray:

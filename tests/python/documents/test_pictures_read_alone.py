@@ -112,6 +112,18 @@ def test_maps_from_above_ring_the_true_places_and_have_minus_signs():
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["where the object truly is (its middle)"]
 
 
+def test_of_many_true_places_the_nearest_bear_names():
+    azimuth, distance = np.radians(np.arange(-60.0, 61.0, 2.0)), np.arange(128) * 0.5
+    power = np.full((len(azimuth), len(distance)), 1e-16)
+    power[25, 120] = 1e-10
+    map = SimpleNamespace(azimuth=azimuth, range=distance, power=power)
+    places = {f"car_{k}": (55.0 - 2.0 * k, np.radians(3.0 * k - 30.0)) for k in range(20)}
+    axes = plots.plot_range_azimuth(map, places=places).figure.axes[0]
+    ring = next(line for line in axes.get_lines() if line.get_marker() == "o")
+    assert len(ring.get_xdata()) == 20
+    assert {text.get_text() for text in axes.texts} & set(places) == {f"car_{k}" for k in range(8, 20)}
+
+
 def test_names_of_true_places_stand_nearer_to_their_rings_than_to_others():
     """On the page: that of the car stood right below the ring of the person beside it, and that of the person farther below."""
     azimuth, distance = np.radians(np.arange(-60.0, 61.0, 2.0)), np.arange(64) * 0.5

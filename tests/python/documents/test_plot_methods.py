@@ -1,5 +1,6 @@
 """Methods `plot` of results: they draw in the axes that they are given, return them, and show what the result says."""
 import dataclasses
+import itertools
 
 import matplotlib
 import matplotlib.text
@@ -516,3 +517,17 @@ def test_figures_without_a_window_are_shown_by_pyplot(frame, monkeypatch):
     plt.close("all")
     with pytest.raises(TypeError, match="figure: must be a figure of matplotlib, or axes in it, got"):
         ep.plots.show(frame)
+
+
+@pytest.mark.parametrize("count, most_named", [(6, 6), (20, 4)])
+def test_names_of_objects_that_stand_together_stand_apart_and_near(count, most_named):
+    """As measured on the page: all of few, of many those that find room right beside what they name."""
+    scene = ep.Scene()
+    for k in range(count):
+        scene.add(ep.actors.plate(0.3, 0.3), name=f"plate_{k}", material="metal", position=(5.0, 1e-4 * k, 0.0))
+    ax = ep.truth(ep.trace(scene, build_radar(num_samples=64, num_chirps=4), num_rays=200)).plot()
+    ax.figure.draw_without_rendering()
+    names = [text for text in ax.texts if text.get_text().startswith("plate")]
+    boxes = [text.get_window_extent() for text in names]
+    assert 2 <= len(names) <= most_named and (count > 12 or len(names) == count)
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))

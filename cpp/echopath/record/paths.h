@@ -196,6 +196,8 @@ struct Paths {
   bool is_reversed(size_t path) const { return (flags[path] & kReversedPath) != 0; }
   // Returns whether a ray found the path; its amplitude, where it is coherent, then is that of the ray's launch cell.
   bool is_of_a_ray(size_t path) const { return stratum[path] != kNoStratum; }
+  // Returns whether the image method found the path, over planes alone: no ray did, and no edge turns it aside.
+  bool is_over_images_alone(size_t path) const { return !is_of_a_ray(path) && !(flags[path] & kEdgePath); }
   bool is_coherent_with_cell(size_t path) const { return diffuse[path] == 0 && is_of_a_ray(path); }
   // Returns the launch cell that the path brings along, behind curved bounces, or null: then it follows from its stratum.
   const std::array<float, 7>* curved_cell_of(size_t path) const {

@@ -24,10 +24,10 @@ void begin_with(int64_t slot, std::vector<double>& extra_idle) {
 
 bool is_whole(const Paths& paths) { return paths.num_paths() == paths.frame.statistics.num_paths; }
 
-// Returns whether the record has paths that no ray found, over planes that nobody flagged.
+// Returns whether the record has images over planes that nobody flagged.
 bool has_images_over_planes(const Paths& paths) {
   for (size_t path = 0; path < paths.offsets.size(); ++path) {
-    if (paths.is_of_a_ray(path) || (paths.flags[path] & kEdgePath)) continue;
+    if (!paths.is_over_images_alone(path)) continue;
     if (!paths.scene->node_of(paths.hits_of(static_cast<int64_t>(path))->mesh_id).material->mirror) return true;
   }
   return false;
@@ -147,7 +147,12 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     for (const PlaneDoubles& doubles : images) doubles.leave_out(paths, job_);
   };
   leave_out(records.front());
+  const bool stand_for_rays = std::ranges::any_of(images, &PlaneDoubles::any);
   for (const Found& found : found_) {
+    if (!stand_for_rays) {
+      add(found.of_rays);
+      continue;
+    }
     Paths of_rays = found.of_rays;
     leave_out(of_rays);
     add(of_rays);

@@ -23,14 +23,19 @@ using Outermost = std::array<size_t, kNumOutward>;
 
 Outermost outermost_of(const std::vector<Vec3>& points) {
   Outermost found{};
-  for (int at = 0; at < kNumOutward; ++at) {
+  for (int at = 0; at < kNowhere; ++at) {
+    const int opposite = kNumOutward - 1 - at;
     const Vec3 outward = Eigen::Vector3i(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1).cast<double>();
-    double farthest = outward.dot(points.front());
+    double farthest = outward.dot(points.front()), nearest = farthest;
     for (size_t i = 1; i < points.size(); ++i) {
       const double distance = outward.dot(points[i]);
-      if (distance <= farthest) continue;
-      farthest = distance;
-      found[at] = i;
+      if (distance > farthest) {
+        farthest = distance;
+        found[at] = i;
+      } else if (distance < nearest) {
+        nearest = distance;
+        found[opposite] = i;
+      }
     }
   }
   found[kNowhere] = found[kNowhere - 1];
@@ -51,12 +56,20 @@ class InnerPolytope {
         if (a != b) add_tetrahedra(kSteps[a], kSteps[b], kSteps[3 - a - b]);
   }
 
-  bool holds(const Vec3& point) const {
+  // `last` is the index of the tetrahedron that held the point before, which most often holds its neighbours, too.
+  bool holds(const Vec3& point, size_t& last) const {
     const Vec3 offset = point - middle_;
-    return std::ranges::any_of(inverses_, [&](const Mat3& inverse) {
-      const Vec3 shares = inverse * offset;
+    const auto is_in = [&](size_t i) {
+      const Vec3 shares = inverses_[i] * offset;
       return shares.minCoeff() >= -kOnFace && shares.sum() <= 1.0 + kOnFace;
-    });
+    };
+    if (last < inverses_.size() && is_in(last)) return true;
+    for (size_t i = 0; i < inverses_.size(); ++i) {
+      if (!is_in(i)) continue;
+      last = i;
+      return true;
+    }
+    return false;
   }
 
  private:
@@ -87,9 +100,10 @@ std::vector<Vec3> outer_points_of_hull(const std::vector<Vec3>& points) {
   const Outermost outermost = outermost_of(points);
   const InnerPolytope inner(points, outermost);
   std::vector<Vec3> outer;
+  size_t last = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     const bool is_corner = std::ranges::find(outermost, i) != outermost.end();
-    if (is_corner || !inner.holds(points[i])) outer.push_back(points[i]);
+    if (is_corner || !inner.holds(points[i], last)) outer.push_back(points[i]);
   }
   return outer;
 }

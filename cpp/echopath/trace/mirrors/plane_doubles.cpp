@@ -72,7 +72,7 @@ PlaneDoubles PlaneDoubles::of_images_in(const Paths& paths) const {
   of_images.plane_of_triangle = plane_of_triangle;
   Sequence of_path;
   for (size_t path = 0; path < paths.offsets.size(); ++path) {
-    if (paths.is_of_a_ray(path) || (paths.flags[path] & kEdgePath)) continue;
+    if (!paths.is_over_images_alone(path)) continue;
     if (const OrdersAboutCorners* orders = find(paths, path, of_path)) of_images.add(*orders);
   }
   return of_images;

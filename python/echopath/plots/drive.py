@@ -31,8 +31,8 @@ FILM_DPI = 110
 class Driving(NamedTuple):
     """Of a radar that moves, in whose maps standing echoes have velocities, too, those of its own motion.
 
-    own_speed: [T] m/s, of the radar in the world; movers: list [T] of arrays [N, 4], where what moves in the world is seen:
-        nearest and farthest range in m, lowest and highest radial velocity in m/s, not folded
+    own_speed: [T] m/s, by which the radar nears what stands straight ahead of it; movers: list [T] of arrays [N, 4], where what
+        moves in the world is seen: nearest and farthest range in m, lowest and highest radial velocity in m/s, not folded
     """
 
     own_speed: np.ndarray

@@ -37,8 +37,10 @@ class _Mover(NamedTuple):
 
 
 def own_speed(radar, time: float) -> float:
-    """How fast the middle of a radar's antennas moves in the world at a time in s, m/s."""
-    return float(np.linalg.norm(_instant(radar, time).velocity))
+    """How fast the middle of a radar's antennas nears what stands straight ahead of them at a time in s, m/s; negative where they
+    look back. Of antennas that look all around: how fast it moves in the world."""
+    velocity, ahead = _instant(radar, time).velocity, ahead_of(radar, time)
+    return float(velocity @ ahead if ahead.any() else np.linalg.norm(velocity))
 
 
 def movers_at(scene, radar, time: float) -> NDArray[np.float64]:

@@ -52,7 +52,7 @@ def drive_of(frames: Frames, progress: Progress = None) -> Drive:
 
 
 def _driving(frames: Frames, times) -> Driving:
-    """What the maps of a radar that moves do not tell: how fast it was, and where what moves in the world was."""
+    """What the maps of a radar that moves do not tell: how fast it went ahead, and where what moves in the world was."""
     from ..plots import Driving
 
     scene, radar, middles = frames.scene, frames.radar, [frames.radar.middle_of_frame(time) for time in times]

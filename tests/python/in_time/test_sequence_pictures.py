@@ -96,6 +96,20 @@ def test_what_moves_before_a_radar_that_drives_is_what_moves_in_the_world(tmp_pa
             assert np.abs(signal - 9.0).min() < 0.6 and np.abs(signal - far).min() < 0.6
 
 
+@pytest.mark.parametrize("yaw", [np.pi, 0.5 * np.pi, 2.0])
+def test_straight_ahead_is_where_the_antennas_look_whichever_way_the_radar_drives(yaw):
+    """A corner stands before them: to a radar that looks back it goes away as fast as that drives, to one aside not at all."""
+    scene, drives = ep.Scene(), 3.0
+    scene.add(ep.actors.trihedral(0.2), name="standing", material="metal", yaw=yaw,
+              position=(6.0 * np.cos(yaw), 6.0 * np.sin(yaw), 0.0))
+    radar = make_radar(yaw=yaw, motion=ep.LinearMotion((drives, 0.0, 0.0)))
+    drive_by = drive_of(ep.Sequence(scene, radar, frames=1, interval=INTERVAL, num_rays=500, guard=False))
+    strongest = drive_by.velocity[drive_by.level[0].max(axis=1).argmax()]
+    (seen,) = -drive_by.driving.own_speed
+    assert seen == pytest.approx(-drives * np.cos(yaw), abs=1e-6)
+    assert strongest == pytest.approx(seen, abs=np.ptp(drive_by.velocity[:2]))
+
+
 def test_a_large_wall_that_comes_nearer_is_as_near_as_its_middle():
     """40 m x 40 m, 5 m away: at its middle it comes as fast as it goes, at its corners by the cosine of their angle."""
     scene = ep.Scene()

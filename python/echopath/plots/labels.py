@@ -12,13 +12,14 @@ from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..base.text.counts import counted
 from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
-from .maps import RANGE_MARGIN, VELOCITY_MARGIN, half_step
+from .maps import RANGE_MARGIN, VELOCITY_MARGIN, tick_single_cells
 from .part_powers import draw_part_powers, require_powers
 from .style import (
     AZIMUTH_LABEL,
     RANGE_LABEL,
     VELOCITY_LABEL,
     axes_or_new,
+    cell_edges,
     new_figure,
     part_colours,
     require_drawable,
@@ -118,19 +119,19 @@ def _draw_map(figure, labels, areas: list, title: str) -> None:
 
 
 def _draw_cells(axes, labels, areas: list) -> None:
-    rows = _rows(labels)
+    across, up = cell_edges(labels.range), cell_edges(_rows(labels))
     (bottom, top), (near, far) = _shown(labels)
     shown = labels.whole[bottom:top, near:far]
     level = in_dbm(shown, SMALLEST_POWER)
-    image = axes.pcolormesh(labels.range[near:far], rows[bottom:top], level, cmap="gray", shading="nearest", rasterized=True,
+    image = axes.pcolormesh(across[near:far + 1], up[bottom:top + 1], level, cmap="gray", rasterized=True,
                             **_grey_limits(labels, shown))
     for name, colour, is_inside in areas:
         if is_inside.any():
-            _draw_area(axes, labels.range, rows, is_inside, colour)
+            _draw_area(axes, across, up, is_inside, colour)
             words = f"{name}: {_cells(np.count_nonzero(is_inside))}"
             axes.fill_between([], [], color=colour, alpha=FILL + 0.2, label=words)
-    for limit, axis, first, last in ((axes.set_xlim, labels.range, near, far - 1), (axes.set_ylim, rows, bottom, top - 1)):
-        limit(axis[first] - half_step(axis), axis[last] + half_step(axis))  # whole cells, be it one
+    axes.set(xlim=(across[near], across[far]), ylim=(up[bottom], up[top]))  # whole cells, be it one
+    tick_single_cells(axes, labels.range, _rows(labels))
     axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
     axes.set_ylabel(_row_label(labels))
     if any(label.peak is not None for label in labels.objects):
@@ -143,14 +144,13 @@ def _draw_cells(axes, labels, areas: list) -> None:
     _name_objects(axes, labels)  # last: by the size of the axes, of which colour bars take some
 
 
-def _draw_area(axes, distance, rows, is_inside, colour) -> None:
-    """Fills and outlines the cells [V, R] where `is_inside`, along their edges."""
+def _draw_area(axes, across, up, is_inside, colour) -> None:
+    """Fills and outlines the cells [V, R] where `is_inside`, along their edges: across [R + 1], up [V + 1]."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    left, low = distance - half_step(distance), rows - half_step(rows)
-    right, high = left + 2.0 * half_step(distance), low + 2.0 * half_step(rows)
     v, r = np.nonzero(is_inside)
-    corners = np.stack([[left[r], low[v]], [right[r], low[v]], [right[r], high[v]], [left[r], high[v]]], -1)  # [2, N, 4]
+    left, right, low, high = across[r], across[r + 1], up[v], up[v + 1]
+    corners = np.stack([[left, low], [right, low], [right, high], [left, high]], -1)  # [2, N, 4]
     axes.add_collection(PolyCollection(corners.transpose(1, 2, 0), facecolors=[colour], edgecolors="none", alpha=FILL,
                                        rasterized=True), autolim=False)
     padded = np.pad(is_inside, 1)
@@ -275,11 +275,10 @@ def _strongest_ghosts(labels) -> list:
 def _draw_extents(panels, labels, rows: list) -> None:
     """A bar for the box of each label along range and along velocity or azimuth, a mark at its peak."""
     across, up = panels
-    half_range, half_row = half_step(labels.range), half_step(_rows(labels))
     for place, label in enumerate(rows):
         colour = CLASSES[getattr(label, "ghost_type", "real")][1]
-        _draw_span(across, place, [(label.box[0], label.box[1])], half_range, label.peak[0], colour)
-        _draw_span(up, place, _row_spans(labels, label), half_row, _in_plot_units(labels, label.peak[1]), colour)
+        _draw_span(across, place, [(label.box[0], label.box[1])], labels.range, label.peak[0], colour)
+        _draw_span(up, place, _row_spans(labels, label), _rows(labels), _in_plot_units(labels, label.peak[1]), colour)
         words = for_pictures(f" {float(in_dbm(label.peak.power)):.0f} dBm, {_cells(label.cells)}")
         up.annotate(words, (1.0, place), xycoords=("axes fraction", "data"), va="center", fontsize=7.5)
     across.set_yticks(range(len(rows)), [_row_name(label) for label in rows], fontsize=7.5)
@@ -297,9 +296,13 @@ def _draw_extents(panels, labels, rows: list) -> None:
         axes.autoscale_view(scaley=False)
 
 
-def _draw_span(axes, place: int, spans: list, half: float, peak: float, colour) -> None:
-    for low, high in spans:
-        axes.barh(place, high - low + 2.0 * half, left=low - half, height=0.6, color=colour, alpha=FILL + 0.2)
+def _draw_span(axes, place: int, spans: list, values, peak: float, colour) -> None:
+    """Bars from the first to the last cell of each span, whole cells of an axis with these values [N]."""
+    edges = cell_edges(values)
+    for ends in spans:
+        first, last = (int(np.abs(values - end).argmin()) for end in ends)
+        left, right = edges[first], edges[last + 1]
+        axes.barh(place, right - left, left=left, height=0.6, color=colour, alpha=FILL + 0.2)
     axes.plot([peak, peak], [place - 0.3, place + 0.3], color="black", linewidth=1.2)
 
 

@@ -251,17 +251,19 @@ def _draw(axes, spectrum, vmin: float, vmax: float):
 
 
 def draw_level(axes, level, distance, velocity, vmin: float, vmax: float):
-    """Levels [V, R] in dBm at [R] m and [V] m/s as an image whose pixels are centred on their cells.
-
-    A single cell, as the velocity of one chirp, tells nothing apart and has its value alone on its axis.
-    """
+    """Levels [V, R] in dBm at [R] m and [V] m/s as an image whose pixels are centred on their cells."""
     half_range, half_velocity = half_step(distance), half_step(velocity)
     extent = (distance[0] - half_range, distance[-1] + half_range, velocity[0] - half_velocity, velocity[-1] + half_velocity)
-    for axis, set_ticks in ((distance, axes.set_xticks), (velocity, axes.set_yticks)):
-        if len(axis) == 1:
-            set_ticks(axis)
+    tick_single_cells(axes, distance, velocity)
     return axes.imshow(level, origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax,
                        interpolation="nearest")
+
+
+def tick_single_cells(axes, across, up) -> None:
+    """A single cell of an axis [1], as the velocity of one chirp, tells nothing apart and has its value alone on it."""
+    for axis, set_ticks in ((across, axes.set_xticks), (up, axes.set_yticks)):
+        if len(axis) == 1:
+            set_ticks(axis)
 
 
 def half_step(axis) -> float:

@@ -244,6 +244,32 @@ def test_labels_show_parts_or_objects(frame, ax):
         labels.plot("cars", ax=ax)
 
 
+def test_labels_of_one_chirp_lie_over_a_map_that_is_seen(ax):
+    """Its one row has no neighbour that tells how high it is. White is the strongest level, and all of it was white."""
+    radar = build_radar([ep.Antenna()], [ep.Antenna()], num_samples=64, sampling_rate=10e6, num_chirps=1, transmit_power=1.0)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(RANGE, 0, 0), yaw=np.pi)
+    ep.annotate(ep.trace(scene, radar, num_rays=500), {"plate": "T . R"}).plot(ax=ax)
+    ax.figure.canvas.draw()
+    left, right = (int(end) for end in (ax.bbox.x0, ax.bbox.x1))
+    row = np.asarray(ax.figure.canvas.buffer_rgba())[::-1][int(ax.bbox.y0 + 0.1 * ax.bbox.height), left + 3:right - 3, :3]
+    assert row[:5].max() < 30 and row[-5:].max() < 30
+    assert ax.get_yticks().tolist() == [0.0]
+
+
+def test_labels_of_uneven_azimuths_fill_their_cells(frame, ax):
+    """A cell reaches half-way to its neighbours, whatever the distance of the first two, as the map below it does."""
+    azimuth = np.radians([-60.0, -58.0, 0.0, 20.0, 40.0, 60.0])
+    labels = ep.annotate(frame.paths, {"plate": "T 'plate' R"}, plane="range_azimuth", angles={"azimuth": azimuth})
+    labels.plot("objects", ax=ax)
+    filled = np.concatenate([path.vertices for path in ax.collections[1].get_paths()])
+    rows = np.flatnonzero((labels.object_map >= 0).any(axis=1))
+    edges = np.array([-61.0, -59.0, -29.0, 10.0, 30.0, 50.0, 70.0])
+    assert np.allclose([filled[:, 1].min(), filled[:, 1].max()], [edges[rows[0]], edges[rows[-1] + 1]])
+    bars = ep.plots.plot_ghosts(labels).subfigs[1].axes[1].patches
+    assert np.allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [edges[rows[0]], edges[rows[-1] + 1]])
+
+
 def test_names_of_objects_at_one_place_do_not_cover_each_other(ax):
     from support.labelled import ROUGH, make_radar
 

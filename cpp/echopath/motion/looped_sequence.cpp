@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/motion/spline.h"
 
 namespace echopath {
 namespace {
@@ -46,7 +47,22 @@ std::vector<double> LoopedSequence::breakpoints(const TimeSpan& during) const {
   return ascending_times(playback_, own, during);
 }
 
-double LoopedSequence::turn_rate(const TimeSpan&) const { return VertexSequence::turn_rate(VertexSequence::span()); }
+// A vertex may turn where one run ends and the next begins, so several of them are looked at, one behind the other.
+double LoopedSequence::turn_rate(const TimeSpan&) const {
+  constexpr int kRunsThatTell = 3;  // the others repeat them
+  double fastest = VertexSequence::turn_rate(VertexSequence::span());
+  for (size_t vertex = 0; vertex < vertices().front().size(); ++vertex) {
+    TurningPoints turns;
+    for (int run = 0; run < kRunsThatTell; ++run) {
+      for (size_t k = 0; k < times().size(); ++k) {
+        const bool is_played = times()[k] >= 0.0 && times()[k] < playback_.period;
+        if (is_played) turns.add(run * playback_.period + times()[k], vertices()[k][vertex]);
+      }
+    }
+    fastest = std::max(fastest, turns.rate());
+  }
+  return fastest;
+}
 
 std::vector<double> LoopedSequence::knots(const TimeSpan& during) const {
   return ascending_times(playback_, times(), during);

@@ -65,6 +65,13 @@ TEST(LoopedSequence, ItsBreakpointsAreTheEndsOfRunsAndTheFramesOfLines) {
   EXPECT_NEAR(circling(4, 0.0, Interpolation::kLinear).turn_rate({0.0, 1.0}), 2.0 * kPi / kPeriod, 1e-6);
 }
 
+// Between its turns at the middle of a run and at the next run's begin lies half a period.
+TEST(LoopedSequence, TurnsAtTheEndsOfRunsCount) {
+  const Vec3 there = Vec3::UnitX(), here = Vec3::Zero();
+  const LoopedSequence swinging({0.0, 0.25, kPeriod}, {{there}, {here}, {there}}, Interpolation::kLinear, {0.1, kPeriod});
+  EXPECT_NEAR(swinging.turn_rate({0.0, 2.0}), kPi / (0.5 * kPeriod), 1e-9);
+}
+
 TEST(LoopedSequence, TimesMustHoldThePeriod) {
   const std::vector<std::vector<Vec3>> frames(2, std::vector<Vec3>(1, Vec3::Zero()));
   const auto make = [&](double begin, double end, double period) {

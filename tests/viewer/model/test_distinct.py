@@ -61,3 +61,9 @@ def test_points_that_are_nowhere_are_told_from_others_without_a_warning(cell):
 
 def test_nothing_is_a_normal_case():
     assert len(first_of_each(np.zeros((0, 3)), np.zeros((0, 2), int), 0.1)) == 0
+
+
+def test_segments_of_points_far_from_the_origin_are_one_only_where_these_are():
+    """Single precision would take points for one that lie 0.1 m apart, 5000 km away."""
+    points = np.array([[0.0, 0, 0], [5334760.0, 0, 0], [5334760.1, 0, 0], [5334760.0, 0, 0]])
+    assert list(first_of_each(points, [(0, 1), (0, 2), (3, 0)])) == [0, 1]

@@ -365,3 +365,48 @@ def test_translucent_rays_are_drawn_as_often_as_they_are_there(plotter):
     segments = SimpleNamespace(points=np.eye(3)[:2], ends=np.array([[0, 1], [0, 1]]), num_segments=2, hits=[])
     layer.show(segments, np.uint8([(9, 0, 0), (7, 0, 0)]))
     assert layer._rays.GetMapper().GetInput().n_lines == 2
+
+
+MUNICH = np.array([691607.0, 5334760.0, 520.0])  # m, in UTM zone 32: single precision lies half a metre apart there
+
+
+def session_at(place) -> Session:
+    """A ball 5 m before a radar at a place [3] in m."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=place + (5.0, 0.5, 0.25), smooth=True)
+    radar = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=32, sampling_rate=10e6, num_chirps=4,
+                                      chirp_interval=1e-4),
+                     transmitters=[ep.Antenna()], receivers=[ep.Antenna((0.0, 0.25, 0.0))], position=place)
+    return Session(from_paths(scene, ep.trace(scene, radar, num_rays=400, max_bounces=1, seed=1)))
+
+
+def test_what_stands_far_from_the_origin_is_drawn_as_what_stands_there(tmp_path):
+    """Single precision makes a lump of half a metre of the ball, and the rays of its neighbours end in one point of it."""
+    pictures = []
+    for place in (np.zeros(3), MUNICH):
+        plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+        session = session_at(place)
+        builder = SceneBuilder(plotter, session)
+        builder.look("fit")
+        pictures.append(plotter.screenshot(return_img=True).astype(float))
+        segments = session.segments(session.listed_rays())
+        assert len({tuple(point) for point in segments.points[segments.hits]}) == len(session.listed_rays())
+        plotter.close()
+        export_meshes(session, tmp_path / "ball.vtp")
+        assert np.allclose(pv.read(tmp_path / "ball.vtp").points, session.scene.world_vertices(0), rtol=0.0, atol=1e-6)
+    assert np.abs(pictures[0] - pictures[1]).mean() < BASELINE_DIFFERENCE
+
+
+def test_axes_of_a_page_begin_near_what_stands_far_from_the_origin():
+    """The library of the page draws in single precision, whatever it is given."""
+    pytest.importorskip("plotly")
+    from echopath_viewer.scene_builder.web_page import ScenePage
+
+    near, far = (ScenePage(session_at(place)) for place in (np.zeros(3), MUNICH))
+    begin = np.array([692e3, 5335e3, 0.0])
+    for one, other in zip(near._traces, far._traces, strict=True):
+        if one.type == "mesh3d" or one.name in ("rays", "antennas"):
+            places = [np.array([trace.x, trace.y, trace.z], float).T for trace in (one, other)]
+            np.testing.assert_allclose(places[1] + begin - MUNICH, places[0], rtol=0.0, atol=1e-4)
+    titles = [[page._layout()["scene"][f"{name}axis"]["title"] for name in "xyz"] for page in (near, far)]
+    assert titles == [["x in m", "y in m", "z in m"], ["x in m from 692000", "y in m from 5335000", "z in m"]]

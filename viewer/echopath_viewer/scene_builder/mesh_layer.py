@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import numpy as np
 import pyvista as pv
 
+from ..model.drawn_points import as_drawn
 from .polydata import add_actors, lines_of, move_points, plain_actor, triangles_of
 from .quick_meshes import QuickMeshes
 
@@ -35,7 +36,7 @@ class MeshLayer:
         for mesh in scene.meshes:
             vertices = scene.world_vertices(mesh.id, time)
             self._polys.append(triangles_of(vertices, mesh.triangles))
-            self._placed.append(vertices.astype(np.float32))
+            self._placed.append(as_drawn(vertices))
             self._box(mesh.id)
             self.actors.append(self._body(self._polys[-1], mesh.material.mirror))
             edges = self._edges_of(mesh, vertices)
@@ -72,7 +73,7 @@ class MeshLayer:
                 self._place(mesh, time)
 
     def _place(self, mesh: int, time: float) -> None:
-        vertices = self._scene.world_vertices(mesh, time).astype(np.float32)
+        vertices = as_drawn(self._scene.world_vertices(mesh, time))
         if np.array_equal(vertices, self._placed[mesh]):
             return
         self._placed[mesh] = vertices

@@ -6,6 +6,8 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
+from ..model.drawn_points import as_drawn
+
 IN_FRONT = -66000.0  # units of depth resolution: in front of whatever else there is
 # Shows the colours of points as they are. Most of the time of a software picture goes into what VTK does at each pixel of a ray.
 OPAQUE_SHADER = """//VTK::System::Dec
@@ -21,7 +23,7 @@ void main()
 def lines_of(points, ends) -> pv.PolyData:
     """Two-point segments: points [V, 3], ends [S, 2]."""
     poly = pv.PolyData()
-    poly.points = np.asarray(points, np.float32).reshape(-1, 3)
+    poly.points = as_drawn(points).reshape(-1, 3)
     poly.SetLines(pv.CellArray.from_regular_cells(np.ascontiguousarray(ends, np.int64).reshape(-1, 2)))
     poly.verts = np.empty(0, np.int64)  # pyvista makes vertex cells of bare points, which would shift the IDs of cells
     return poly
@@ -29,21 +31,22 @@ def lines_of(points, ends) -> pv.PolyData:
 
 def loose_lines_of(points, ends) -> pv.PolyData:
     """The same, each segment with two points of its own, which may have other colours than those of its neighbours."""
-    own = np.asarray(points, np.float32)[np.asarray(ends)].reshape(-1, 3)
+    own = as_drawn(points)[np.asarray(ends)].reshape(-1, 3)
     return lines_of(own, np.arange(len(own)).reshape(-1, 2))
 
 
 def vertices_of(points) -> pv.PolyData:
     """One vertex cell for each point [N, 3]."""
     poly = pv.PolyData()
-    poly.points = np.asarray(points, np.float32).reshape(-1, 3)
+    poly.points = as_drawn(points).reshape(-1, 3)
     poly.SetVerts(pv.CellArray.from_regular_cells(np.arange(poly.n_points, dtype=np.int64)[:, None]))
     return poly
 
 
-def triangles_of(vertices, triangles, dtype=np.float32) -> pv.PolyData:
-    """vertices [V, 3] m, triangles [F, 3]; dtype: of the points."""
-    return pv.PolyData.from_regular_faces(np.asarray(vertices, dtype), np.asarray(triangles, np.int64))
+def triangles_of(vertices, triangles, dtype=None) -> pv.PolyData:
+    """vertices [V, 3] m, triangles [F, 3]; dtype: of the points, None: as they are drawn."""
+    points = as_drawn(vertices) if dtype is None else np.asarray(vertices, dtype)
+    return pv.PolyData.from_regular_faces(points, np.asarray(triangles, np.int64))
 
 
 def set_texts(poly: pv.PolyData, name: str, texts) -> None:
@@ -125,4 +128,4 @@ def add_actors(plotter, actors: dict, *, is_picked: bool = False) -> None:
 
 def move_points(actor: vtkActor, points) -> None:
     """Puts the points of what an actor shows elsewhere: [V, 3] m."""
-    actor.GetMapper().GetInput().SetPoints(pv.vtk_points(np.asarray(points, np.float32)))
+    actor.GetMapper().GetInput().SetPoints(pv.vtk_points(as_drawn(points)))

@@ -10,11 +10,13 @@ from echopath.base.process.libraries import needed_module
 from echopath.base.storage.files import written_whole
 from echopath.base.storage.origin import origin_texts
 
+from ..model.drawn_points import NEAR
 from ..model.palette import objects_of
 from .joined import joined_meshes
 
 MESH_OPACITY, MIRROR_OPACITY, RAY_WIDTH, CHOSEN_WIDTH = 0.6, 0.18, 2, 7
 CHOSEN_COLOUR = "#000000"
+ROUND = 1000.0  # m, of the place where axes begin that is far from the origin of the world
 EYE = np.array([-0.8, -0.9, 0.65])  # from behind, right and above, in sizes of what is looked at
 HINT = ("Drag: turn. Wheel: zoom. Point at a ray or body: what it is. Click a ray: all of it. Legend: click hides, double click "
         "isolates.")
@@ -41,6 +43,7 @@ class ScenePage:
         """session: model.Session, of which what is drawn is taken. Raises ModuleNotFoundError without plotly."""
         self._plotly = needed_module("plotly.graph_objects", "the scene as HTML", extra="html")
         self._session, self._seed = session, session.paths.frame.seed
+        self._origin = _origin_near(session.antennas_at(session.time)[0])
         self._traces = [*self._bodies(), self._antennas(), *self._ray_colours()]
         self._rays = len(self._traces)
         self._traces += [self._ray_lines(), self._chosen()]
@@ -82,14 +85,14 @@ class ScenePage:
         joined = joined_meshes(session, meshes)
         colour = {mesh: _css(session.palette[mesh]) for mesh in meshes}
         text = {mesh: escape(session.mesh_names[mesh]) for mesh in meshes}
-        (x, y, z), (i, j, k) = joined.points.astype(np.float32).T, joined.triangles.T
+        (x, y, z), (i, j, k) = self._drawn_at(joined.points).T, joined.triangles.T
         return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=[colour[mesh] for mesh in joined.mesh_of_triangle],
                                    hovertext=[text[mesh] for mesh in joined.mesh_of_point], hoverinfo="text", opacity=opacity,
                                    flatshading=True, showlegend=is_listed, name=escape(name), legendgroup=escape(name),
                                    showscale=False, color=colour[meshes[0]])
 
     def _antennas(self):
-        x, y, z = np.array(self._session.antennas_at(self._session.time)).T
+        x, y, z = self._drawn_at(self._session.antennas_at(self._session.time)).T
         return self._plotly.Scatter3d(x=x, y=y, z=z, mode="markers", name="antennas", hovertext=["transmitter", "receiver"],
                                       hoverinfo="text", marker={"size": 5, "color": ["#cc3311", "#0066cc"]})
 
@@ -115,7 +118,7 @@ class ScenePage:
         """All rays as one line with gaps; each point knows its path."""
         segments = self._session.segments(self._drawn())
         rgb = self._session.colouring(segments).rgb
-        corners = segments.points[segments.ends].reshape(-1, 3)
+        corners = self._drawn_at(segments.points)[segments.ends].reshape(-1, 3)
         rows = np.repeat(np.arange(segments.num_segments), 2)
         order = np.arange(len(corners)) + np.arange(len(corners)) // 2  # a gap behind each pair
         points = np.full((3 * segments.num_segments, 3), np.nan, np.float32)
@@ -141,13 +144,17 @@ class ScenePage:
     def _layout(self) -> dict:
         axis = {"showbackground": False, "gridcolor": "#dddddd", "zeroline": False}
         low, high = self._ends()
-        axes = {f"{name}axis": axis | {"title": f"{name} in m", "range": [float(low[row]), float(high[row])]}
-                for row, name in enumerate("xyz")}
+        axes = {f"{name}axis": axis | {"title": _axis_title(name, begin), "range": [float(low[row]), float(high[row])]}
+                for row, (name, begin) in enumerate(zip("xyz", self._origin))}
         note = {"text": "", "xref": "paper", "yref": "paper", "x": 0.01, "y": 0.98, "xanchor": "left", "yanchor": "top",
                 "align": "left", "showarrow": False, "bgcolor": "rgba(255,255,255,.8)", "font": {"color": "black"}}
         title = {"text": f"{escape(self._session.title or 'Rays')}<br><sub>{HINT}</sub>", "font": {"size": 16}}
         return {"scene": axes | {"aspectmode": "manual"} | self._camera(low, high), "title": title, "annotations": [note],
                 "margin": {"l": 0, "r": 0, "b": 0, "t": 60}, "legend": {"itemsizing": "constant"}, "paper_bgcolor": "white"}
+
+    def _drawn_at(self, points) -> np.ndarray:
+        """Points [..., 3] in m from where the axes begin: the page's library draws in single precision alone."""
+        return (np.asarray(points, float) - self._origin).astype(np.float32)
 
     def _ends(self) -> tuple:
         """(lowest, highest), [3] m each, of all that is drawn."""
@@ -159,10 +166,19 @@ class ScenePage:
         """All axes to one scale, in which the eye looks at the rays: planes may reach far behind them."""
         unit = float((high - low).max())  # m
         rays = self._session.segments(self._drawn()).points
-        seen = np.concatenate([rays, self._session.antennas_at(self._session.time)])
+        seen = self._drawn_at(np.concatenate([rays, self._session.antennas_at(self._session.time)]))
         centre = (0.5 * (seen.min(axis=0) + seen.max(axis=0)) - 0.5 * (low + high)) / unit
         size = max(float(np.linalg.norm(seen.max(axis=0) - seen.min(axis=0))) / unit, 1e-2)
         return {"aspectratio": _xyz((high - low) / unit), "camera": {"center": _xyz(centre), "eye": _xyz(centre + size * EYE)}}
+
+
+def _origin_near(place) -> np.ndarray:
+    """[3] m, where the axes of a scene begin with a radar at a place [3] m: a round place by it where that is far."""
+    return np.where(np.abs(place) > NEAR, np.round(np.asarray(place, float) / ROUND) * ROUND, 0.0)
+
+
+def _axis_title(name: str, begin: float) -> str:
+    return f"{name} in m" if begin == 0.0 else f"{name} in m from {begin:.0f}"
 
 
 def _xyz(values) -> dict:

@@ -13,12 +13,12 @@ FAR = 2.0**62  # cells: nothing that is drawn lies farther, and it fits into 64 
 def first_of_each(points, ends, cell: float = 0.0) -> np.ndarray:
     """Ascending indices of the segments that lie on none before them, in either direction.
 
-    points: [V, 3] f32 m; ends: [S, 2] the two points of each segment; cell: m, ends in the same cube of a grid of that
+    points: [V, 3] f32 or f64 m; ends: [S, 2] the two points of each segment; cell: m, ends in the same cube of a grid of that
     spacing count as one, 0: only equal ones do.
     What is infinite or NaN counts as far away where there is a cell.
     Ends are compared by 64 random bits: of 100 000 segments one is taken for another once in 4e9 times.
     """
-    points = np.ascontiguousarray(points, np.float32).reshape(-1, 3)
+    points = np.ascontiguousarray(points).reshape(-1, 3)
     of_point = _mixed((_words(points, cell) * OF_AXES).sum(axis=1, dtype=np.uint64))
     begin, end = of_point[np.reshape(ends, (-1, 2))].T
     return np.sort(np.unique(_mixed(begin + end), return_index=True)[1])
@@ -27,7 +27,7 @@ def first_of_each(points, ends, cell: float = 0.0) -> np.ndarray:
 def _words(points, cell: float):
     """[V, 3] unsigned, the same where points count as one."""
     if cell == 0.0:
-        return (points + np.float32(0.0)).view(np.uint32)  # -0 becomes 0
+        return (points + points.dtype.type(0.0)).view(f"u{points.dtype.itemsize}").astype(np.uint64)  # -0 becomes 0
     cells = np.rint(points.astype(np.float64) / cell)  # NumPy before 2 would divide in f32
     return np.fmax(np.fmin(cells, FAR), -FAR).astype(np.int64).view(np.uint64)
 

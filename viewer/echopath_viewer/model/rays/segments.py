@@ -7,6 +7,8 @@ import numpy as np
 
 from echopath.paths.subset import subset
 
+from ..drawn_points import as_drawn
+
 NO_MESH = -1
 
 
@@ -14,7 +16,7 @@ NO_MESH = -1
 class Segments:
     """Rays as two-point segments, ray by ray in the order they were asked for.
 
-    rays: [N] index of the path of each ray; points: [V, 3] f32 m; ends: [S, 2] the two points of each segment
+    rays: [N] index of the path of each ray; points: [V, 3] m, as they are drawn; ends: [S, 2] the two points of each segment
     ray: [S] row in `rays`; bounce: [S] 0 for the leg that leaves the transmitter
     mesh_id: [S] mesh of the hit that the segment leads to; the last leg has that of its last hit; -1: no hit
     hits: [K] which of the points are hits; hit_mesh: [K] their meshes
@@ -79,9 +81,9 @@ class RayBundle:
         return self._made
 
     def _segments_at(self, time: float, transmitter, receiver) -> Segments:
-        points = np.empty((self._num_points, 3), np.float32)
+        replayed = as_drawn(self._kept.points(time)).reshape(-1, 3)
+        points = np.empty((self._num_points, 3), np.result_type(replayed, as_drawn([transmitter, receiver])))
         points[self._first], points[self._last] = transmitter, receiver
-        replayed = np.asarray(self._kept.points(time), np.float32).reshape(-1, 3)
         points[self._joined["hits"]] = np.take(replayed, self._hit, axis=0)  # four times as fast as [hit]
         return Segments(rays=self.rays, points=points, **self._joined)
 

@@ -283,8 +283,9 @@ def _draw_extents(panels, labels, rows: list) -> None:
         up.annotate(words, (1.0, place), xycoords=("axes fraction", "data"), va="center", fontsize=7.5)
     across.set_yticks(range(len(rows)), [_row_name(label) for label in rows], fontsize=7.5)
     across.set_ylim(max(len(rows), FEWEST_ROWS) - 0.5, -0.5)
-    across.set_xlabel(RANGE_LABEL)
-    up.set_xlabel(_row_label(labels))
+    for axes, values, label in ((across, labels.range, RANGE_LABEL), (up, _rows(labels), _row_label(labels))):
+        axes.set_xlabel(label)
+        tick_single_cells(axes, values, ())
     up.tick_params(left=False)
     num_hidden = max(0, sum(ghost.peak is not None for ghost in labels.ghosts) - MAX_GHOSTS)
     words = "Where each echo appears: from its first to its last cell, line at its strongest, whose level is told"

@@ -147,6 +147,8 @@ def image_over_time(ax, times, values, level, **look):
 
 def _image(ax, edges, values, level, **look):
     """The cells [T, X] between the edges [T + 1] in s as an image."""
+    if len(values) == 1:
+        ax.set_yticks(values)  # nor does its height
     return ax.pcolormesh(edges, cell_edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
 
 

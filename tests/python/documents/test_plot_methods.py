@@ -249,12 +249,22 @@ def test_labels_of_one_chirp_lie_over_a_map_that_is_seen(ax):
     radar = build_radar([ep.Antenna()], [ep.Antenna()], num_samples=64, sampling_rate=10e6, num_chirps=1, transmit_power=1.0)
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(RANGE, 0, 0), yaw=np.pi)
-    ep.annotate(ep.trace(scene, radar, num_rays=500), {"plate": "T . R"}).plot(ax=ax)
+    labels = ep.annotate(ep.trace(scene, radar, num_rays=500), {"plate": "T . R"})
+    labels.plot(ax=ax)
     ax.figure.canvas.draw()
     left, right = (int(end) for end in (ax.bbox.x0, ax.bbox.x1))
     row = np.asarray(ax.figure.canvas.buffer_rgba())[::-1][int(ax.bbox.y0 + 0.1 * ax.bbox.height), left + 3:right - 3, :3]
     assert row[:5].max() < 30 and row[-5:].max() < 30
-    assert ax.get_yticks().tolist() == [0.0]
+    assert ax.get_yticks().tolist() == [0.0] == ep.plots.plot_ghosts(labels).subfigs[1].axes[1].get_xticks().tolist()
+
+
+@pytest.mark.filterwarnings("ignore:no signal of:RuntimeWarning")
+def test_a_single_cell_over_time_has_no_numbers_but_its_own(frame):
+    """The velocity of one chirp, and the range of one sample: half a metre to either side of it is nobody's."""
+    for count, show in (({"num_chirps": 1}, ep.spectrogram), ({"num_samples": 1}, ep.range_time)):
+        radar = frame.radar.replace(waveform=frame.radar.waveform.replace(**count))
+        drawn = show(ep.Sequence(frame.scene, radar, frames=2, interval=0.05, num_rays=100, guard=False)).plot()
+        assert drawn.get_yticks().tolist() == [0.0] and drawn.get_ylim() == (-0.5, 0.5)
 
 
 def test_labels_of_uneven_azimuths_fill_their_cells(frame, ax):

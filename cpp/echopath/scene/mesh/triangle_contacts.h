@@ -20,7 +20,8 @@ class TriangleContacts {
 
   // Returns the triangles that touch a triangle, each at least once.
   std::vector<uint32_t> touching(uint32_t triangle) const;
-  // Returns the length in m of the sides of a triangle at which none of `others` goes on, on the other side of them.
+  // Returns the length in m of the sides of a triangle at which none of those that `is_other` tells goes on, on the other
+  // side of them.
   double open_length(uint32_t triangle, const std::function<bool(uint32_t)>& is_other) const;
 
  private:

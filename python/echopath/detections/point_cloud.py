@@ -42,6 +42,7 @@ def write_las(detections, path) -> int:
     header.add_extra_dims([laspy.ExtraBytesParams(name=name, type=np.float64, description=told) for name, told in _EXTRA.items()])
     cloud = laspy.LasData(header)
     cloud.x, cloud.y, cloud.z = points.T
+    cloud.return_number = cloud.number_of_returns = np.ones(len(points), np.uint8)  # the first of one: LAS 1.4 counts from 1
     snr = np.nan_to_num(detections.snr_db[is_placed], posinf=655.35, neginf=0.0)
     cloud.intensity = np.clip(np.rint(100.0 * snr), 0, 65535).astype(np.uint16)
     for name in _EXTRA:

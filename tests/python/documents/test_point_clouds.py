@@ -171,3 +171,12 @@ def test_las_files_are_read_by_their_library(detections, tmp_path):
     np.testing.assert_allclose(cloud.intensity / 100.0, detections.snr_db, atol=0.01)
     told = {one.name: one.description for one in cloud.point_format.extra_dimensions}
     assert told["velocity"] == "m/s, receding positive" and told["azimuth"] == "rad, left positive" and all(told.values())
+
+
+def test_points_of_las_files_are_the_only_return_of_their_pulse(detections, tmp_path):
+    """Returns count from 1 in LAS 1.4: 0 is invalid, and tools that take first or last returns find no points."""
+    laspy = pytest.importorskip("laspy")
+    detections.to_las(tmp_path / "points.las")
+    cloud = laspy.read(tmp_path / "points.las")
+    assert len(cloud) > 0 and np.all(cloud.return_number == 1) and np.all(cloud.number_of_returns == 1)
+    assert cloud.header.number_of_points_by_return.tolist() == [len(cloud)] + 14 * [0]

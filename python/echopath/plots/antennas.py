@@ -49,29 +49,32 @@ def draw_pattern(pattern: _core.AntennaPattern, *, ax: Axes | None = None, title
 
 def draw_array(radar: _core.Radar, *, ax: Axes | None = None, title: str = "") -> Axes:
     """Transmitters and receivers about their middle, and the virtual elements that they make together about theirs, as seen from
-    behind the radar.
+    behind the antennas: the row of a radar that looks aside in the frame of its car is a row.
 
     radar: Radar; title: above the axes, "": that of axes with a title, else how many there are
     ax: axes to draw in, None: new ones
-    Returns the axes: y to the left across and z up in the radar's frame, in wavelengths in the middle of the band. Raises
-    TypeError naming radar or ax.
+    Returns the axes: to the left across, of the mean azimuth of where the antennas look, and z of the radar's frame up, in
+    wavelengths in the middle of the band. Raises TypeError naming radar or ax.
     """
     from ..spectra.angles import virtual_array
 
     require_drawable("radar", "a Radar", radar, "transmitters", "receivers", "waveform")
     found = virtual_array(radar)
-    antennas = [np.array([antenna.position for antenna in some]) for some in (radar.transmitters, radar.receivers)]
-    middle = 0.5 * (np.concatenate(antennas).min(axis=0) + np.concatenate(antennas).max(axis=0))
-    virtual = found.elements - 0.5 * (found.elements.min(axis=0) + found.elements.max(axis=0))
-    shown = *(places - middle for places in antennas), virtual
+    axes = np.array([[-np.sin(found.boresight), np.cos(found.boresight), 0.0], [0.0, 0.0, 1.0]]) / found.wavelength
+    antennas = [[antenna.position for antenna in some] @ axes.T for some in (radar.transmitters, radar.receivers)]
+    virtual = found.elements @ axes.T
+    shown = *(places - _middle(np.concatenate(antennas)) for places in antennas), virtual - _middle(virtual)
     with axes_or_new(ax, *ARRAY_SIZE) as ax:
         for (name, marker, size), places, colour in zip(MARKS, shown, CURVE_COLOURS):
-            y, z = places[:, 1:].T / found.wavelength
-            ax.scatter(y, z, s=size, marker=marker, color=colour, alpha=0.8, label=f"{name}: {len(places)}", zorder=3)
-        ax.set(xlabel="y in wavelengths (left: +)", ylabel="z in wavelengths (up: +)",
+            ax.scatter(*places.T, s=size, marker=marker, color=colour, alpha=0.8, label=f"{name}: {len(places)}", zorder=3)
+        ax.set(xlabel="To the left in wavelengths (right: \N{MINUS SIGN})", ylabel="z in wavelengths (up: +)",
                title=text("title", title) or ax.get_title() or counted(len(found.elements), "virtual element"))
         ax.margins(0.1)
         to_one_scale(ax)
         ax.grid(alpha=0.25)
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     return ax
+
+
+def _middle(places: np.ndarray) -> np.ndarray:
+    return 0.5 * (places.min(axis=0) + places.max(axis=0))

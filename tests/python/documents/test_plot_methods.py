@@ -458,6 +458,19 @@ def test_an_array_is_drawn_in_wavelengths_with_the_elements_that_it_makes(ax):
     assert np.sort(virtual[:, 0]) == pytest.approx(0.5 * np.arange(12) - 2.75) and np.ptp(virtual[:, 1]) == pytest.approx(0.0)
 
 
+@pytest.mark.parametrize("yaw", np.radians([90.0, -120.0, 180.0]))
+def test_an_array_that_looks_aside_is_drawn_as_seen_from_behind(ax, yaw):
+    """Antennas turned with their places about the radar's z, as those at the side of a car in its frame, keep their picture."""
+    half = 0.5 * build_radar(num_samples=64, num_chirps=4).waveform.wavelength
+    left = half * np.array([-np.sin(yaw), np.cos(yaw), 0.0])
+    radar = build_radar([ep.Antenna(4.0 * k * left, yaw=yaw) for k in range(2)],
+                        [ep.Antenna(k * left, yaw=yaw) for k in range(4)], num_samples=64, num_chirps=4)
+    ep.plots.draw_array(radar, ax=ax)
+    transmitters, receivers, virtual = (np.asarray(one.get_offsets()) for one in ax.collections)
+    assert transmitters[:, 0] == pytest.approx([-1.0, 1.0]) and receivers[:, 0] == pytest.approx([-1.0, -0.5, 0.0, 0.5])
+    assert np.sort(virtual[:, 0]) == pytest.approx(0.5 * np.arange(8) - 1.75) and np.ptp(virtual[:, 1]) == pytest.approx(0.0)
+
+
 def test_the_truth_of_files_without_directions_in_the_radar_tells_of_no_arrows(frame, ax):
     old = dataclasses.replace(frame.truth, velocity=np.array([[4.0, 0.0, 0.0]]),
                               direction_in_radar=np.full_like(frame.truth.direction_in_radar, np.nan))

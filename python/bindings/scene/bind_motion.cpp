@@ -98,7 +98,7 @@ void define_in_time(py::class_<Timed, std::shared_ptr<Timed>>& type, const char*
 void bind_motions(py::module_& m) {
   py::class_<Motion, std::shared_ptr<Motion>> type(
       m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.");
-  define_no_init(type, "LinearMotion and KeyframeMotion");
+  define_no_init(type, "LinearMotion, KeyframeMotion and CurveMotion");
   define_in_time(type, "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.");
 }
 
@@ -150,7 +150,7 @@ Between two keys a rotation goes the shorter way. Raises TypeError or ValueError
 void bind_deformation(py::module_& m) {
   py::class_<Deformation, std::shared_ptr<Deformation>> type(
       m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.");
-  define_no_init(type, "VertexSequence and Skin");
+  define_no_init(type, "VertexSequence, Skin and MorphTargets");
   define_in_time(type, "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.");
   type.def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant");
 }

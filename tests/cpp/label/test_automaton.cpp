@@ -124,6 +124,8 @@ TEST(Automaton, TooManyStatesIsAClearErrorInShortTime) {
   EXPECT_NE(error_of("T .* S .{20} R").find("at most 4096 states"), std::string::npos);  // 2^21 subsets
   EXPECT_NE(error_of("T (((S{64}){64}){64}){64} R").find("at most 4096 states"), std::string::npos);
   EXPECT_NE(error_of("T .{0,64} (.{0,64} D?){64} R").find("at most 4096 states"), std::string::npos);
+  const std::string of_long_text = error_of(join({"T .* ", std::string(9000, 'S'), " R"}));
+  EXPECT_TRUE(of_long_text.ends_with(join({"got T .* ", std::string(75, 'S'), "..."}))) << of_long_text.size();
   std::string nothing = "S{0}";
   for (int i = 0; i < 50; ++i) nothing = join({"(", nothing, "){64}"});
   EXPECT_TRUE(takes(join({"T ", nothing, " R"}), {}));

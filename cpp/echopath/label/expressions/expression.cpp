@@ -200,9 +200,9 @@ PathExpression read_path_expression(std::string_view text, size_t& position) {
 
 bool is_expression_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-std::string found_in_expression(std::string_view text, size_t position) {
+std::string found_in_expression(std::string_view text, size_t position, size_t length) {
   if (position >= text.size()) return "the end";
-  size_t end = position + 1;
+  size_t end = std::min(position + length, text.size());
   while (end < text.size() && is_continuation_byte(text[end])) ++end;
   return std::string(text.substr(position, end - position));
 }

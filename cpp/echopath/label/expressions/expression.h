@@ -66,8 +66,8 @@ PathExpression read_path_expression(std::string_view text, size_t& position);
 // caret under it.
 [[noreturn]] void throw_expression_error(std::string_view text, size_t position, std::string_view what);
 
-// Returns what stands at `position`, for such a message: a whole character or "the end".
-std::string found_in_expression(std::string_view text, size_t position);
+// Returns what stands at `position`, for such a message: whole characters of `length` bytes or more, or "the end".
+std::string found_in_expression(std::string_view text, size_t position, size_t length = 1);
 
 bool is_expression_space(char c);
 

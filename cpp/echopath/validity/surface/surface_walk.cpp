@@ -89,15 +89,17 @@ std::optional<SurfaceWalk::Spot> SurfaceWalk::find(uint32_t mesh_id, uint32_t tr
     return Spot{{mesh_id, at, static_cast<float>(inside[1]), static_cast<float>(inside[2])}, is_near};
   };
   uint32_t at = triangle, last = kNoTriangle;
-  bool in_plane = true;
+  bool in_plane = true, turned_back = false;
   for (int step = 0; step < kMaxCrossings; ++step) {
     const Vec3 weights = barycentric(over.corners(at, vertices), over.cross(at, vertices), point);
     if (weights.minCoeff() >= kInside) return spot(at, weights, in_plane);
     const Crossing crossing = over.cross_toward(at, weights, vertices);
     if (crossing.triangle == kNoTriangle) return std::nullopt;
     // A point off the surface may lie outside of all the facets that meet at an edge or at a vertex.
-    const bool is_over_edge = crossing.triangle == last || step + 1 == kMaxCrossings;
+    const bool turns_back = crossing.triangle == last, is_over_edge = turns_back || step + 1 == kMaxCrossings;
     if (is_over_edge && weights.minCoeff() > kOverEdge) return spot(at, weights, in_plane);
+    if (turns_back && turned_back) return std::nullopt;  // it would go to and fro for ever
+    turned_back = turns_back;
     in_plane = in_plane && crossing.in_plane;
     last = at;
     at = crossing.triangle;

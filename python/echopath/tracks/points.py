@@ -13,7 +13,7 @@ from ..base.radar.velocities import ambiguity_of
 from ..detections import Detections
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
-_NONE = np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(3)
+_NONE = np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(3), False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -69,32 +69,43 @@ def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std
         there, without speeds, as what is ambiguous and how the radar moves is not known
     range_std: m, azimuth_std: rad, speed_std: m/s, of each; speed_std None: the speeds tell nothing
     """
-    own, weights, speeds, centre = _own_points(detections)
+    own, weights, speeds, centre, has_heights = _own_points(detections)
     own, speeds = _merged(own, weights, speeds, merge_distance)
     sight = own - centre
-    distance = np.linalg.norm(sight, axis=1)
-    along = sight[:, :2] / np.maximum(np.linalg.norm(sight[:, :2], axis=1), 1e-12)[:, None]
-    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    covariances = range_std**2 * _outer(along) + (distance * azimuth_std)[:, None, None] ** 2 * _outer(across)
+    covariances = _covariances(sight, has_heights, range_std, azimuth_std)
     if carrier is None:
-        return Points(own[:, :2], covariances, np.zeros(len(own)), np.zeros((len(own), 2)))
+        return Points(own[:, :2], covariances[:, :2, :2], np.zeros(len(own)), np.zeros((len(own), 2)))
     turn, shift = carrier.world_from_radar[:3, :3], carrier.world_from_radar[:3, 3]
-    sights = sight @ turn.T / np.maximum(distance, 1e-12)[:, None]
-    points, covariances = (own @ turn.T + shift)[:, :2], turn[:2, :2] @ covariances @ turn[:2, :2].T
+    sights = _units(sight) @ turn.T
+    points, covariances = (own @ turn.T + shift)[:, :2], turn[:2] @ covariances @ turn[:2].T
     if speed_std is None or np.any(np.isnan(speeds)):
         return Points(points, covariances, np.zeros(len(own)), np.zeros((len(own), 2)))
     return Points(points, covariances, speeds + sights @ carrier.velocity, sights[:, :2], speed_std, carrier.ambiguity)
 
 
+def _covariances(sight, has_heights: bool, range_std: float, azimuth_std: float):
+    """[M, 3, 3] m^2, in the radar's frame, of points whose ways from the radar are `sight` [M, 3] in m: in all directions across
+    these, or in azimuth alone where heights are not known."""
+    along, left = _outer(_units(sight)), _outer(_units(np.cross([0.0, 0.0, 1.0], sight)))
+    across = np.eye(3) - along if has_heights else left
+    return range_std**2 * along + (azimuth_std * np.linalg.norm(sight, axis=1))[:, None, None] ** 2 * across
+
+
+def _units(vectors):
+    """Vectors [M, 3] of length 1; zeros stay."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1), 1e-12)[:, None]
+
+
 def _own_points(detections) -> tuple:
-    """Points [D, 3], weights [D], radial velocities [D] in m/s, NaN where they are not known, and the place [3] that they are
-    counted from, in the radar's frame."""
+    """Points [D, 3], weights [D], radial velocities [D] in m/s, NaN where they are not known, the place [3] that they are counted
+    from, in the radar's frame, and whether their heights are known."""
     if isinstance(detections, Detections):
         points, weights = detections.points, detections.power
         is_known = np.isfinite(points).all(axis=1)
         if len(points) and not is_known.any():
             raise ValueError("detections: must have azimuths, which the radar's antennas cannot tell")
-        return points[is_known], weights[is_known], detections.velocity[is_known], detections.centre
+        has_heights = bool(np.isfinite(detections.elevation[is_known]).all())
+        return points[is_known], weights[is_known], detections.velocity[is_known], detections.centre, has_heights
     if isinstance(detections, np.ndarray) and detections.dtype.kind in "fiu" and detections.size == 0:
         return _NONE
     if isinstance(detections, (list, tuple)) and not len(detections):
@@ -102,7 +113,7 @@ def _own_points(detections) -> tuple:
     points = _POINTS("detections", detections)
     flat = np.zeros((len(points), 3))
     flat[:, :points.shape[1]] = points
-    return flat, np.ones(len(points)), np.full(len(points), np.nan), np.zeros(3)
+    return flat, np.ones(len(points)), np.full(len(points), np.nan), np.zeros(3), points.shape[1] == 3
 
 
 def _merged(points, weights, speeds, merge_distance: float) -> tuple:

@@ -45,7 +45,8 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
         does, only the track that follows it best; None: no names
     radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar, and radial
         velocities are not used
-    range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight
+    range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight, across it upwards, too,
+        where elevations or heights are known
     velocity_std: m/s, by which the radial velocity of a detection differs from that of its object, with limbs and wheels; None:
         radial velocities are not used
     acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin:

@@ -310,6 +310,27 @@ def test_points_of_detections_have_the_errors_of_their_line_of_sight_and_the_spe
         assert covariance == pytest.approx(0.3**2 * np.outer(along, along) + 0.01**2 * (way @ way) * np.outer(across, across))
 
 
+@pytest.mark.parametrize("pitch", [-0.5 * np.pi, -0.6])
+def test_a_radar_that_looks_down_knows_places_to_the_errors_of_its_elevations(pitch):
+    """The covariance of drawn errors, along the line of sight and in both directions across it, carried into the world."""
+    radar, generator = radar_of(50.0).replace(position=(1, 2, 3), yaw=0.4, pitch=pitch), np.random.default_rng(1)
+    own = 2.5, 0.6, -0.9
+    axes = np.linalg.svd(np.array([own]))[2]
+    errors = generator.normal(size=(100_000, 3)) * [0.1, *np.full(2, 0.05 * np.linalg.norm(own))] @ axes
+    expected = np.cov((errors @ radar.world_from_radar(0.0)[:3, :3].T)[:, :2].T)
+    tracks = ep.track([[own]], [0.0], radar=radar, range_std=0.1, azimuth_std=0.05, min_hits=1)
+    assert tracks.covariance[0, :2, :2] == pytest.approx(expected, rel=0.05, abs=2e-4)
+
+
+def test_who_walks_below_a_radar_that_looks_down_is_one_track():
+    """Along the world's x, which only elevations tell, at 1 m/s and 2 m below; the errors are those that are told."""
+    radar, generator = radar_of(50.0).replace(position=(0, 0, 3), pitch=-0.5 * np.pi), np.random.default_rng(2)
+    own = np.stack([np.full(FRAMES, 2.0), np.full(FRAMES, 0.3), TIMES - 2.0], axis=1) + generator.normal(0.0, 0.1, (FRAMES, 3))
+    tracks = ep.track(own[:, None], TIMES, radar=radar, range_std=0.1, azimuth_std=0.04)
+    assert tracks.num_tracks == 1 and tracks.is_detected.mean() > 0.9
+    assert tracks.state[-1] == pytest.approx([TIMES[-1] - 2.0, 0.3, 1.0, 0.0], abs=0.4)
+
+
 @pytest.mark.parametrize("probability", [0.5, 0.9, 0.99])
 def test_gates_hold_the_share_of_chi_square_that_is_asked_for(probability):
     """Of squared distances of two coordinates, and of one speed: SciPy's quantiles."""

@@ -125,6 +125,25 @@ def glance_of(time: float, radar, distance: float, detections=None, velocity: fl
     return Glance(time, axis, axis, axis, axis, found, radar)
 
 
+def test_tracks_below_a_mast_have_the_ranges_and_velocities_of_the_map(stored_run):
+    """A radar 6 m above what goes away from its foot at 4 m/s, 8 m away at first: ranges by Pythagoras, and their rates. In the
+    fourth frame nothing was found."""
+    radar, times = stored_run.radar.replace(position=(0.0, 0.0, 6.0)), 0.2 * np.arange(6)
+    ways = 8.0 + 4.0 * times
+    distances = np.hypot(ways, 6.0)
+    glances = []
+    for time, way, distance in zip(times, ways, distances):
+        one = glance_of(float(time), radar, float(distance), stored_run[0].detections, float(4.0 * way / distance))
+        found = dataclasses.replace(one.detections, elevation=-np.arctan2([6.0], way))
+        glances.append(dataclasses.replace(one, detections=found))
+    nothing = {name: value[:0] for name, value in vars(glances[3].detections).items() if np.ndim(value) and name != "centre"}
+    glances[3] = dataclasses.replace(glances[3], detections=dataclasses.replace(glances[3].detections, **nothing))
+    tracks = tracks_of(glances)
+    assert tracks.num_tracks == 1 and len(tracks) == 6
+    assert track_values(tracks, glances, "range") == pytest.approx(distances, rel=0, abs=0.1)
+    assert track_values(tracks, glances, "velocity")[-1] == pytest.approx(4.0 * ways[-1] / distances[-1], rel=0, abs=0.2)
+
+
 def test_tracks_stand_still_before_a_radar_that_was_moved_between_files(stored_run):
     """Three radars, each at rest, 1 m apart, turned to look at what stands at (9, 0): the file of each has a radar of its own."""
     places = (np.array([0.0, 0.0]), np.array([0.6, 0.8]), np.array([1.2, 1.6]))

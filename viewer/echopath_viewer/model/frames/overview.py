@@ -113,17 +113,40 @@ def track_values(tracks, glances, axis: str):
     glances: those that the tracks are of
     """
     radars, times = [glances[frame].radar for frame in tracks.frame], np.asarray(tracks.time)
-    way = tracks.state[:, :2] - _for_each(middle_of_antennas, radars, times)
+    way = _places(tracks, glances) - _for_each(middle_of_antennas, radars, times)
     distance = np.linalg.norm(way, axis=1)
     if axis == "range":
         return distance
     own = _for_each(velocity_of_antennas, radars, times)
     sights = way / np.maximum(distance, 1e-9)[:, None]
-    spread = np.sqrt(np.einsum("ni,nij,nj->n", sights, tracks.covariance[:, 2:, 2:], sights))
+    level = sights[:, :2]
+    spread = np.sqrt(np.einsum("ni,nij,nj->n", level, tracks.covariance[:, 2:, 2:], level))
     spans = np.array([velocity_span_of(radar) for radar in radars])
-    return np.where(spread <= KNOWN * spans, np.einsum("ni,ni->n", sights, tracks.state[:, 2:] - own), np.nan)
+    speeds = np.sum(level * tracks.state[:, 2:], axis=1) - np.sum(sights * own, axis=1)
+    return np.where(spread <= KNOWN * spans, speeds, np.nan)
+
+
+def _places(tracks, glances):
+    """[N, 3] m, in the world, of each row: with the height of the detection that is nearest from above, between these where a
+    track goes on without one. Tracks have no heights of their own."""
+    heights = np.zeros(len(tracks))
+    for row in np.flatnonzero(tracks.is_detected):
+        points = _points_in_world(glances[tracks.frame[row]], float(tracks.time[row]))
+        heights[row] = points[np.linalg.norm(points[:, :2] - tracks.state[row, :2], axis=1).argmin(), 2]
+    for number in np.unique(tracks.track):
+        own = tracks.track == number
+        seen = own & tracks.is_detected
+        heights[own] = np.interp(tracks.time[own], tracks.time[seen], heights[seen])
+    return np.column_stack([tracks.state[:, :2], heights])
+
+
+def _points_in_world(glance: Glance, time: float):
+    """[D, 3] m, of the detections whose directions are known."""
+    world = glance.radar.world_from_radar(time)
+    points = glance.detections.points
+    return points[np.isfinite(points).all(axis=1)] @ world[:3, :3].T + world[:3, 3]
 
 
 def _for_each(of_radar, radars, times):
-    """[N, 2], x and y of what `of_radar` gives in the world for each radar and time in s."""
-    return np.array([of_radar(radar, float(time))[:2] for radar, time in zip(radars, times)]).reshape(-1, 2)
+    """[N, 3], what `of_radar` gives in the world for each radar and time in s."""
+    return np.array([of_radar(radar, float(time)) for radar, time in zip(radars, times)]).reshape(-1, 3)

@@ -5,10 +5,13 @@ import dataclasses
 import multiprocessing
 import os
 import resource
+import sys
 import time
 import traceback
 import warnings
+from multiprocessing import forkserver
 from pathlib import Path
+from unittest.mock import patch
 
 import echopath as ep
 
@@ -36,8 +39,8 @@ def run(target: str, numbers, seconds: float = float("inf"), make=None) -> tuple
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the workers: a second thread would wait at full speed
     begin, done, findings = time.monotonic(), 0, []
-    context = multiprocessing.get_context("forkserver")  # which has imported what all workers need, and has no threads
-    context.set_forkserver_preload(["fuzz.targets"])
+    context = multiprocessing.get_context("forkserver")
+    _start_server()
     while numbers and time.monotonic() - begin < seconds:
         at, since = context.Value("q", -1, lock=False), context.Value("d", time.monotonic(), lock=False)
         results = context.SimpleQueue()
@@ -55,6 +58,16 @@ def run(target: str, numbers, seconds: float = float("inf"), make=None) -> tuple
             return done, findings  # no case of this target would begin
         numbers = range(last + 1, numbers[-1] + 1)
     return done, findings
+
+
+def _start_server() -> None:
+    """Starts the process whose forks are the workers, unless it runs: it has imported what they need, and has no threads.
+
+    It looks for that where this process does, as a variable tells it: Python 3.11 hands its path to the forks alone.
+    """
+    forkserver.set_forkserver_preload(["fuzz.targets", "scipy.interpolate"])
+    with patch.dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path))):
+        forkserver.ensure_running()
 
 
 def _watch(process, at, since, results, target: str, findings: list) -> str:

@@ -19,12 +19,12 @@ METHODS = 0.1              # relative: the two statistics ask for nearly the sam
 
 
 @pytest.mark.parametrize("of_map", [
-    NoiseMap("rect"), NoiseMap("hann"), NoiseMap(("chebyshev", 60)), NoiseMap("hann", receivers=3),
-    NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True), NoiseMap(("hann", ("chebyshev", 60))),
-    NoiseMap("hann", receivers=4, low_pass=8e6)], ids=str)
+    NoiseMap("rect"), NoiseMap("hann"), NoiseMap(("chebyshev", 60)), NoiseMap("hann", receivers=4),
+    NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", receivers=4, low_pass=8e6), NoiseMap("hann", real=True),
+    NoiseMap(("hann", ("chebyshev", 60)))], ids=str)
 def test_false_alarms_come_at_the_rate_asked_for(of_map):
     """A thousand false alarms; ten times as many, and rarer ones, in the benchmark. Also of real samples, and of antennas that
-    take turns."""
+    take turns. Maps of as many channels follow each other: they share their thresholds, which take most of the time."""
     for row in measure_false_alarms(330_000, maps=[of_map], rates=[3e-3]):
         assert row["ratio"] == pytest.approx(1.0, abs=RATE_TOLERANCE) and row["holds"], row
 
@@ -196,7 +196,7 @@ def test_an_echo_in_noise_is_found_with_its_power_and_that_of_the_noise(method):
 
 
 def test_ordered_statistics_find_the_weaker_of_two_neighbours():
-    radar = radar_with(receivers=2)
+    radar = radar_with(receivers=4)
     noise = noise_in_a_cell(radar)
     spectrum = spectrum_of_tones(radar, [(20, 40, 1e5 * noise), (20, 47, 100 * noise)])
     assert not ep.cfar(spectrum, radar, method="ca").mask[20, 47]

@@ -132,7 +132,7 @@ def test_a_ball_of_glass_that_spins_has_the_echo_of_one_at_rest(polarization):
     scene = ep.Scene()
     scene.add(ep.actors.sphere(radius, edge=0.01), name="ball", smooth=True, material=ep.Material(permittivity=PERMITTIVITY),
               position=(distance, 0, 0), motion=ep.LinearMotion(angular_velocity=(0, 0, 2 * np.pi / radar.frame_duration)))
-    paths = ep.trace(scene, radar, num_rays=20000, max_bounces=1, polarization=polarization)
+    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=1, polarization=polarization)
     cube = ep.synthesize(paths, retrace="invalid", keyframes=num_chirps)[0, 0]
     nearest, wavelength = distance - radius, ep.speed_of_light / FREQUENCY
     at_rest = np.sqrt(radar.transmit_power) * fresnel(1.0, True) * wavelength / (4 * np.pi) * radius / (2 * nearest * distance)

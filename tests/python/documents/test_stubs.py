@@ -68,7 +68,7 @@ def look(frame: ep.Frame) -> None:
 @pytest.fixture(scope="module")
 def complaints(tmp_path_factory):
     """What mypy --strict says of files that use echopath, and of the stubs, by the name of the file: all in one run, since
-    it reads the libraries for seconds."""
+    it reads the libraries for seconds. What it has read of them it keeps in the build folder, by their dates and contents."""
     pytest.importorskip("mypy", reason="mypy, of the extra 'test', is not installed")
     folder = tmp_path_factory.mktemp("typing")
     for name, text in WRONG.items():
@@ -77,7 +77,7 @@ def complaints(tmp_path_factory):
              ROOT / "python" / "echopath" / "_core.pyi",
              *(folder / name for name in WRONG)]
     settings = ROOT / "tests" / "typing" / "mypy.ini"
-    command = [sys.executable, "-m", "mypy", "--config-file", settings, "--cache-dir", os.devnull, *files]
+    command = [sys.executable, "-m", "mypy", "--config-file", settings, "--cache-dir", ROOT / "build" / "mypy", *files]
     told = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=os.environ | {"MYPYPATH": "python"})
     assert told.stdout.rstrip().endswith(f"(checked {len(files)} source files)"), told.stdout + told.stderr
     errors = [line for line in told.stdout.splitlines() if ": error:" in line]

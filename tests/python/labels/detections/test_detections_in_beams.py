@@ -180,7 +180,7 @@ def test_nothing_found_is_a_well_shaped_result(beams, retrace):
 def test_noise_of_a_frame_is_what_its_signal_holds_less_than_half_of(beams):
     """Of what stands above the mean noise in all channels, or in the beam that found the cell: of 48 channels a few have others
     on this side or that."""
-    scene, rate = ep.Scene(), 0.2
+    scene, rate = ep.Scene(), 0.05
     for k, place in enumerate([(9.0, 1.0, -1.0), (6.0, -3.0, -1.0), (4.0, 2.0, -1.0)]):
         scene.add(ep.actors.pedestrian(phase=0.3 * k), name=f"person {k}", position=place)
     for seed, place in ((1, (14.0, 3.0, -1.0)), (2, (18.0, -4.0, -1.0))):

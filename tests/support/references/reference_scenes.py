@@ -10,7 +10,7 @@ from .reference import Reference
 
 SPACING = 1e-3        # m, of the reference's cells: edges of shadows fall between them, a percent of a plate of 0.1 m
 SLANTED_SPACING = 2e-4  # m, of plates that the radar sees at 60 degrees, too
-ROUGH_SPACING = 2e-3  # m, of rough plates: their powers add, but fringes of images are as narrow
+ROUGH_SPACING = 3e-3  # m, of rough plates: their powers add, but fringes of images are as narrow; 1e-3 of 1 mm found
 NUM_RAYS, BATCHES = 2 ** 16, 8
 SAMPLE_STEP = 15      # compared are the samples 0 and 15 of 16: the slow sum takes as long for each of them
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench.live.edits import crowded_street
 from echopath.bench.live.random_edits import KINDS, RandomEdits
 from echopath.live import kept_signal
 from echopath.live.kept_signal import KeptSignal
 from echopath.transmit.signals import synthesize_slots
-from support.live import RAYS, difference, fresh_view, make_live
+from support.live import RAYS, coarse_street, difference, fresh_view, make_live
 
+pytestmark = pytest.mark.filterwarnings("ignore::echopath.TessellationWarning")  # of the coarse street
 ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
 
 
@@ -164,11 +164,11 @@ def test_settings_are_kept_through_changes(keywords):
 
 def test_edges_of_faces_that_come_apart_are_those_of_a_fresh_scene():
     """Two faces of two meshes have one edge where they touch; behind it are the neighbours that did not change."""
-    scene, radar, _ = crowded_street()
+    scene, radar = coarse_street()
     metal = ep.Material.metal()
     for name, yaw, place in (("front", 0.0, (9.0, 1.0, 1.0)), ("side", np.pi / 2, (9.2, 1.2, 1.0))):
         scene.add(ep.actors.plate(0.4, 0.4), name=name, material=metal, position=place, yaw=yaw)
-    live = ep.Live(scene, radar.replace(waveform=radar.waveform.replace(num_chirps=8)), num_rays=RAYS, edges=True)
+    live = ep.Live(scene, radar, num_rays=RAYS, edges=True)
     live.update()
     for step in ((0.05, 0.02, 0.0), (-0.05, -0.02, 0.0)):  # apart, and together again
         live.scene["side"].position += step
@@ -197,7 +197,7 @@ def test_rays_that_meet_no_sheet_stay_as_they_are_where_the_first_one_comes_and_
 
 def test_weather_that_comes_weakens_echoes_by_the_length_of_their_way():
     """A plate at 40 m: 80 m of fog, as dense as may be."""
-    _, radar, _ = crowded_street()
+    _, radar = coarse_street()
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.5, 0.5), name="plate", material=ep.Material.metal(), position=(40.0, 0.0, 0.5), yaw=np.pi)
     live = ep.Live(scene, radar, num_rays=500)
@@ -263,7 +263,7 @@ def test_what_is_left_when_the_strongest_echo_goes_is_that_of_a_fresh_scene(part
 
 
 def test_the_scene_that_was_given_stays_as_it_was():
-    scene, radar, _ = crowded_street()
+    scene, radar = coarse_street()
     live = ep.Live(scene, radar, num_rays=RAYS)
     live.scene["sign_30"].position = (1.0, 2.0, 3.0)
     assert not np.allclose(scene["sign_30"].position, (1.0, 2.0, 3.0))

@@ -12,6 +12,7 @@ from echopath.live.kept_signal import KeptSignal
 from echopath.live.watch import FEWEST_PREVIEW_RAYS, Watch
 from support.live import difference, fresh_view, make_live
 
+pytestmark = pytest.mark.filterwarnings("ignore::echopath.TessellationWarning")  # of the coarse street
 ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
 LONG = 60.0        # s, that a thread may take on a busy machine
 

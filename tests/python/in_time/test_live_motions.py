@@ -6,6 +6,7 @@ import echopath as ep
 from support.arm import make_arm
 from support.live import difference
 
+pytestmark = pytest.mark.filterwarnings("ignore::echopath.TessellationWarning")  # bodies are coarse, which tells as much
 ROUNDING = 1e-12  # of the largest sample: signals are added and taken away
 RAYS = 1000
 ROUGH = ep.Material(permittivity=5.0, scattering=0.5)
@@ -39,7 +40,7 @@ def add_breather(scene, **place) -> None:
 
 GUESTS = {
     "dog": lambda scene, **place: scene.add(ep.actors.dog(), **place),
-    "child": lambda scene, **place: scene.add(ep.actors.child(start_time=-0.3), **place),
+    "child": lambda scene, **place: scene.add(ep.actors.child(start_time=-0.3, edge=0.05), **place),
     "cyclist": lambda scene, **place: scene.add(ep.actors.cyclist(start_time=-0.21, edge=0.05), **place),
     "keyframed": lambda scene, **place: scene.add(ep.actors.car(), motion=keyframes(60.0, shift=0.007), **place),
     "jerking": lambda scene, **place: scene.add(ep.actors.box(0.8), material=ROUGH,
@@ -54,7 +55,7 @@ def street() -> ep.Live:
     scene = ep.Scene()
     for k in range(30):
         scene.add(ep.actors.box(0.6), name=f"box_{k}", material=ROUGH, position=(6.0 + 0.8 * k, 7.0 * (-1) ** k, 0.3))
-    scene.add(ep.actors.pedestrian(), name="pedestrian", position=(9.0, 1.0, 0.0), yaw=np.pi)
+    scene.add(ep.actors.pedestrian(edge=0.05), name="pedestrian", position=(9.0, 1.0, 0.0), yaw=np.pi)
     scene.add(ep.actors.box((3.5, 1.6, 1.4)), name="car", material=ROUGH, position=(14.0, -2.0, 0.7),
               motion=ep.LinearMotion(velocity=(8.0, 0.0, 0.0)))
     scene.add(ep.actors.box((3.5, 1.6, 1.4)), name="turning", material=ROUGH, position=(18.0, 2.5, 0.7),

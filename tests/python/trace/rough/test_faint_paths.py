@@ -1,4 +1,6 @@
 """faint_power: some of the faint diffuse paths count for all of them."""
+import functools
+
 import numpy as np
 import pytest
 from scipy import special
@@ -18,6 +20,7 @@ def radar(num_receivers: int = 1, power: float = 0.01) -> ep.Radar:
                     receivers=[ep.Antenna((0, 0.002 * i, 1)) for i in range(num_receivers)], transmit_power=power)
 
 
+@functools.cache
 def street() -> ep.Scene:
     scene = ep.Scene()
     mirror = ep.materials["concrete"].replace(mirror=True)

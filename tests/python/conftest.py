@@ -12,10 +12,13 @@ from support.labelled import trace_plates_and_wall
 from support.pictures import plain
 
 # Seconds each: whoever comes to one of them last would be waited for by all others.
-LONGEST_FILES = ("documents/test_docs_site.py", "replay/test_reference.py", "bench/test_hard.py", "actors/test_crowds.py",
-                 "trace/cross_sections/test_published.py", "labels/test_resolution.py", "dataset/test_dataset_kills.py",
-                 "trace/test_chain_glints.py", "replay/test_validity.py", "dataset/test_dataset_exports.py",
-                 "edges/test_corners.py", "trace/rough/test_surface_scatterers.py", "bench/test_bench_crowd.py")
+LONGEST_FILES = ("signal/cfar/test_cfar.py", "documents/test_docs_site.py", "readers/test_fuzz_readers.py",
+                 "replay/test_reference.py", "bench/test_hard.py", "actors/test_crowds.py",
+                 "labels/detections/test_paths_of_detections.py", "labels/detections/test_detections_in_beams.py",
+                 "dataset/test_dataset_kills.py", "trace/cross_sections/test_rcs.py", "trace/cross_sections/test_published.py",
+                 "trace/test_chain_glints.py", "bench/test_bench_measured.py", "dataset/test_dataset_exports.py",
+                 "edges/test_corners.py", "trace/rough/test_surface_scatterers.py")
+FOLDER = Path(__file__).parent
 
 
 class _LastFirst(pytest.Dir):
@@ -35,7 +38,7 @@ def pytest_collect_directory(path, parent):
 def pytest_collection_modifyitems(items):
     """Begins with the longest files; all others come by name, in all processes alike."""
     place = {name: index for index, name in enumerate(LONGEST_FILES)}
-    items.sort(key=lambda item: (place.get("/".join(item.path.parts[-2:]), len(place)), item.path))
+    items.sort(key=lambda item: (place.get(os.path.relpath(item.path, FOLDER), len(place)), item.path))
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -120,6 +121,8 @@ std::vector<std::string> names_with_ancestors(const std::vector<std::string>& me
 
 // Returns the vertices [V] of one mesh in world coordinates and poses nothing else.
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);
+// Returns the centroid of the surface of some meshes together, in the world, m; of none it is not a number.
+Vec3 surface_centroid(const Scene& scene, std::span<const uint32_t> mesh_ids, double time);
 
 // Returns world_from_node of each node, by index. The motions of what does not take part are not asked for anything.
 std::vector<Transform> world_from_nodes(const Scene& scene, double time);

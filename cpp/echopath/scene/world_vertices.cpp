@@ -37,4 +37,18 @@ std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double ti
   return transformed(world_from_mesh, std::move(vertices));
 }
 
+Vec3 surface_centroid(const Scene& scene, std::span<const uint32_t> mesh_ids, double time) {
+  Vec3 moment = Vec3::Zero();
+  double twice_area = 0.0;
+  for (const uint32_t mesh_id : mesh_ids) {
+    const std::vector<Vec3> vertices = world_vertices(scene, mesh_id, time);
+    for (const Triangle& triangle : scene.node_of(mesh_id).mesh->triangles()) {
+      const double twice = cross_of_sides(vertices, triangle).norm();
+      moment += twice / 3.0 * (vertices[triangle[0]] + vertices[triangle[1]] + vertices[triangle[2]]);
+      twice_area += twice;
+    }
+  }
+  return moment / twice_area;
+}
+
 }  // namespace echopath

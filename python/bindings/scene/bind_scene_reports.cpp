@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -86,6 +87,11 @@ std::vector<double> widths_of_meshes(const Scene& scene, const std::vector<uint3
   return found;
 }
 
+std::array<double, 3> centroid_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids, double time) {
+  const Vec3 centroid = surface_centroid(scene, mesh_ids, time);
+  return {centroid.x(), centroid.y(), centroid.z()};
+}
+
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
   std::vector<std::string> names;
   for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[scene.meshes().at(id).node].name);
@@ -116,6 +122,8 @@ void bind_scene_reports(py::module_& m) {
         "Middle extents in m along the principal axes of meshes by their IDs, at a time in s: the diameter of a rod. Parts "
         "of a "
         "surface have that of the whole.");
+  m.def("surface_centroid", &centroid_of_meshes, py::arg("scene"), py::arg("mesh_ids"), py::arg("time"),
+        "Centroid [3] in m of the surface of meshes by their IDs together, in the world at a time in s.");
   m.def("mesh_names", &names_of_meshes, py::arg("scene"), py::arg("mesh_ids"), "Full names by mesh IDs.");
 }
 

@@ -9,7 +9,6 @@ import numpy as np
 from .. import _core
 from ..base.numerics.rates import rate_of, step_within
 from ..base.numerics.rotations import angular_velocity
-from ..base.numerics.triangles import areas_of
 
 _SCALE = 1e-12  # of the squares of scales, by which rounding changes these
 
@@ -72,6 +71,7 @@ class _Body:
 
     def __init__(self, named: _NamedScene, globs):
         self._scene, self._nodes, self._meshes = named.scene, named.nodes, named.meshes(globs)
+        self._mesh_ids = [mesh.id for mesh in self._meshes]
         self._node = named.common_node(globs, self._meshes)
         self._shared = self._shared_motion()
 
@@ -119,13 +119,8 @@ class _Body:
 
     def _own_centroid(self, time: float):
         """Centroid of the surface, [3] in m, in the axes of the box."""
-        total, moment = 0.0, np.zeros(3)
-        for mesh in self._meshes:
-            corners = self._scene.world_vertices(mesh.id, time)[mesh.triangles]
-            area = areas_of(corners)
-            total, moment = total + area.sum(), moment + area @ corners.mean(axis=1)
         frame = self._frame(time)
-        return (moment / total - frame[:3, 3]) @ frame[:3, :3]
+        return (_core.surface_centroid(self._scene, self._mesh_ids, time) - frame[:3, 3]) @ frame[:3, :3]
 
     def _reference_time(self) -> float:
         """Time 0, or the nearest at which all that moves and deforms the meshes is defined, s."""

@@ -92,6 +92,21 @@ TEST(PosedScene, AMotionTurnsANodeAboutItsOwnOriginInTheAxesOfItsParent) {
   EXPECT_LT((vertices[2] - Vec3(5, 0, 1)).norm(), kRounding);  // y axis, tilted up by the placement
 }
 
+TEST(PosedScene, TheCentroidOfASurfaceWeighsTrianglesByTheirAreas) {
+  Scene scene;
+  Node small = node("small", -1, shift(5, 0, 0));
+  small.mesh = triangle(), small.material = metal();
+  Matrix4 placement = shift(0, 3, 0);
+  placement.topLeftCorner<3, 3>() *= 2.0;  // of four times the area
+  Node large = node("large", -1, placement, std::make_shared<const LinearMotion>(Vec3(0, 0, 1), Vec3::Zero()));
+  large.mesh = triangle(), large.material = metal();
+  scene.add(small);
+  scene.add(large);
+  const Vec3 third = Vec3(1, 1, 0) / 3.0;  // middle of the triangle in its own axes
+  const Vec3 expected = 0.2 * (Vec3(5, 0, 0) + third) + 0.8 * (Vec3(0, 3, 7) + 2.0 * third);
+  EXPECT_LT((surface_centroid(scene, std::array<uint32_t, 2>{0, 1}, 7.0) - expected).norm(), kRounding);
+}
+
 TEST(PosedScene, TrianglesVerticesAndSingleMeshesAgree) {
   const Scene scene = driving_scene();
   const PosedScene pose(scene, 0.7);

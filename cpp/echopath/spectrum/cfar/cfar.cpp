@@ -18,7 +18,7 @@ namespace echopath {
 namespace {
 
 constexpr int kTrainingVelocity = 4, kTrainingRange = 8;  // of an unpadded map
-constexpr size_t kKeptDesigns = 8;
+constexpr size_t kKeptDesigns = 64;
 
 struct HalfWidths {
   int guard = 0, training = 0;

@@ -24,6 +24,8 @@ MIRROR_COLOUR = (0.55, 0.65, 0.80)
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
 CUT = 1e-6                              # m: what lies as near to the border of the picture was cut there
 MARGIN, SHARE_OF_MARGIN = 0.6, 0.25      # m around the rays, and most of the longest side of what is smaller
+DOTS = 3000                             # along the longest side of a picture: what is smaller than one cannot be told apart
+DOT_COVERS = 2.0                        # of its size: triangles of that leave no gaps between dots
 FLOOR = 0.02                            # of the height of what is drawn: level grounds end no farther above its lowest point
 WIDE_GROUND, LYING = 0.5, 0.7           # of the longest side of the picture, and mean cosine of the slope, of grounds that rise
 ELEVATION, AZIMUTH = 22.0, -118.0       # degrees, of the eye
@@ -205,7 +207,9 @@ def _middle_of(points) -> tuple:
 
 
 def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
-    polygons = clip_triangles(triangles, drawing.low, drawing.high)
+    dot = (drawing.high - drawing.low).max() / DOTS
+    shown = triangles if mesh.material.mirror else _as_dots(triangles, drawing.low, dot)
+    polygons = clip_triangles(shown, drawing.low, drawing.high)
     if mesh.material.mirror:
         drawing.mirrors += polygons
         for edge in outline(polygons):
@@ -218,6 +222,19 @@ def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
             drawing.grounds.append((triangles[..., 2].max(), len(drawing.bodies), len(drawing.bodies) + len(polygons)))
         drawing.bodies += polygons
         drawing.body_colours += _shaded(np.array([polygon[:3] for polygon in polygons]))
+
+
+def _as_dots(triangles, low, dot: float) -> np.ndarray:
+    """Triangles [N, 3, 3], of those smaller than a dot in m one for each dot, which covers it: a person far away has thousands.
+    low: [3] where dots begin"""
+    size = np.ptp(triangles, axis=1).max(axis=1)
+    small = np.flatnonzero(size < dot)
+    middle = triangles[small].mean(axis=1)
+    place = np.floor((middle - low) / dot).astype(np.int64)
+    _, first = np.unique((place[:, 0] * 2**20 + place[:, 1]) * 2**20 + place[:, 2], return_index=True)
+    kept, middle = small[first], middle[first, None]
+    larger = DOT_COVERS * dot / np.maximum(size[kept], np.finfo(float).tiny)
+    return np.concatenate([triangles[size >= dot], middle + (triangles[kept] - middle) * larger[:, None, None]])
 
 
 def _is_ground(drawing: _Drawing, triangles) -> bool:

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d.proj3d import proj_transform
 
@@ -480,6 +481,25 @@ def test_a_radar_that_stands_far_from_the_origin_leaves_room_for_the_pictures(tm
     scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(20.0, 500.0, 1.0))
     radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=2, chirp_interval=1e-4, position=(-3.0, 500.0, 1.0))
     save_png(plot_scene(scene, ep.trace(scene, radar, num_rays=500)), tmp_path / "scene.png")
+
+
+def test_what_is_smaller_than_a_dot_of_the_picture_is_drawn_as_dots():
+    """A ball of 20,480 triangles in a scene of 100 m, which covers some 20 dots across, and is seen whole."""
+    scene = ep.Scene()
+    rough = ep.Material(reflectivity=0.3, scattering=1.0)
+    scene.add(ep.actors.sphere(0.5, subdivisions=32), name="ball", material=rough, position=(50.0, 0.0, 1.0))
+    scene.add(ep.actors.plate(2.0, 2.0), name="plate", material="metal", position=(100.0, 10.0, 1.0))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    figure.set_dpi(300)
+    figure.canvas.draw()
+    from_above = figure.axes[1]
+    assert max(len(some.get_paths()) for some in from_above.collections if isinstance(some, PolyCollection)) < 4000
+    page = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    to_page = from_above.transData.transform
+    (left, low), (right, high) = to_page((49.65, -0.35)), to_page((50.35, 0.35))  # a square within the ball
+    column, row = slice(int(np.ceil(left)), int(right)), slice(-int(high), -int(np.ceil(low)))
+    assert page[row, column].size > 0 and page[row, column].max() < 200
 
 
 def test_the_name_of_a_bent_object_stands_at_the_object():

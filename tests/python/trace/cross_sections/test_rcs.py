@@ -41,6 +41,7 @@ SERIES = 1e-12                 # relative: rounding of a series of some hundred 
 RAYLEIGH = 1e-5                # of 1: further terms are of order ka^2; 7e-7 found
 RECORD = 1e-6                  # relative: the rounding of a record's floats
 CROSS = 1e-15                  # of the co-polar section: rounding of fields, squared
+RODS_TOLERANCE_DB = 0.65       # what the limits tell to a decibel or half of one, and footprints of a thousand rays
 
 
 def frequency_of(ka, radius=RADIUS):
@@ -132,6 +133,32 @@ def test_plate_turned_by_both_angles_of_a_bistatic_pair_mirrors_at_full_strength
     found = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=incidence, observation=observation, num_rays=1 << 12)
     expected = PLATE_TABLE_DBSM[.1] + 20 * math.log10(math.cos(math.radians(35)))
     assert abs(decibel(found) - expected) < PLATE_TOLERANCE_DB
+
+
+# ka: dB that limits.md tells of a rod beside its exact series, with the field along it and across it
+RODS_DB = {0.25: (-9, 5), 0.5: (-4, 0), 1.0: (-1, 0), 1.5: (0, 3), 2.6: (0, 1.5), 3.4: (-0.6, 0), 5.0: (0, 0.8), 8.0: (0, 0)}
+
+
+def rod(radius, length, around=48):
+    angle = 2 * math.pi / around * np.arange(around)
+    ring = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(around, -0.5 * length)], axis=1)
+    here, there = np.arange(around), np.roll(np.arange(around), -1)
+    triangles = np.concatenate([np.stack([here, there, here + around], 1), np.stack([there, there + around, here + around], 1)])
+    return ep.Mesh(np.concatenate([ring, ring + (0, 0, length)]), triangles)
+
+
+@pytest.mark.parametrize("ka", RODS_DB)
+def test_rods_stray_from_their_exact_series_as_the_limits_say(ka):
+    """A long metal cylinder has 4 L^2 / pi times the square of a sum of Bessel functions (Harrington 1961, 5-9)."""
+    length, n = 20 * ep.speed_of_light / FREQUENCY, np.arange(-30, 31)
+    along = special.jv(n, ka) / special.hankel2(n, ka)
+    across = special.jvp(n, ka) / special.h2vp(n, ka)
+    exact = [4 * length**2 / math.pi * abs(np.sum((-1.0) ** n * terms)) ** 2 for terms in (along, across)]
+    scene = ep.Scene()
+    scene.add(rod(ka * ep.speed_of_light / (2 * math.pi * FREQUENCY), length), name="rod", material="metal", smooth=True)
+    found = [ep.rcs(scene, frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 16, polarization=field)
+             for field in ((0, 0, 1), (0, 1, 0))]
+    assert decibel(np.divide(found, exact)) == pytest.approx(RODS_DB[ka], abs=RODS_TOLERANCE_DB)
 
 
 @every_polarization

@@ -41,6 +41,7 @@ SERIES = 1e-12                 # relative: rounding of a series of some hundred 
 RAYLEIGH = 1e-5                # of 1: further terms are of order ka^2; 7e-7 found
 RECORD = 1e-6                  # relative: the rounding of a record's floats
 CROSS = 1e-15                  # of the co-polar section: rounding of fields, squared
+BALLS_TOLERANCE_DB = 0.15      # what the limits tell to a tenth of a decibel, as default rays find it
 RODS_TOLERANCE_DB = 0.65       # what the limits tell to a decibel or half of one, and footprints of a thousand rays
 
 
@@ -159,6 +160,19 @@ def test_rods_stray_from_their_exact_series_as_the_limits_say(ka):
     found = [ep.rcs(scene, frequency=FREQUENCY, incidence=(1, 0, 0), num_rays=1 << 16, polarization=field)
              for field in ((0, 0, 1), (0, 1, 0))]
     assert decibel(np.divide(found, exact)) == pytest.approx(RODS_DB[ka], abs=RODS_TOLERANCE_DB)
+
+
+# ka: dB that limits.md tells of a ball; 4.7 and 10.74 are a golf ball at 10.5 and 24 GHz
+BALLS_DB = {2.9: 3.5, 4.7: -1.3, 5.4: 2.3, 7.2: -1.7, 9.0: 1.3, 10.74: -1.0, 12.6: 0.8}
+
+
+@pytest.mark.parametrize("ka", BALLS_DB)
+def test_balls_stray_from_the_mie_series_as_the_limits_say(ka):
+    radius = ka * ep.speed_of_light / (2 * math.pi * FREQUENCY)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(radius), name="ball", material="metal", smooth=True)
+    found = ep.rcs(scene, frequency=FREQUENCY, incidence=(1, 0, 0))
+    assert decibel(found / ep.mie_rcs(radius, FREQUENCY)) == pytest.approx(BALLS_DB[ka], abs=BALLS_TOLERANCE_DB)
 
 
 @every_polarization

@@ -19,7 +19,7 @@ from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address
 from .cluster import in_dask
 from .folder import SceneRecord, prepare_folder, read_or_nothing, read_record, scene_name, write_manifest
-from .scene_work import is_done, tidy
+from .scene_work import differs_from, is_done, tidy
 from .template import Template
 from .unresolved import NAME as UNRESOLVED, UnresolvedEchoes, unresolved_in
 from .workers import Done, forget, in_processes, in_this_process
@@ -83,7 +83,7 @@ class _LocalFolder:
 
     def __init__(self, folder: Path):
         require_writable(folder, "folder")
-        self.folder = folder
+        self.folder, self.address = folder, str(folder)
 
     def prepare(self, template: Template) -> None:
         prepare_folder(self.folder, template)
@@ -129,10 +129,11 @@ def make(template: str | os.PathLike[str], folder: str | os.PathLike[str], *, wo
     only_failed: whether those scenes alone are made, again, that failed
     scheduler: address of a Dask scheduler, such as tcp://host:8786, whose workers see the template and the folder under the
         same names: each makes a scene at a time with each of its threads (extra `cluster`); None: this machine
-    Raises TypeError or ValueError naming the argument; ValueError naming the file, the scene and the key of a fault of the
-    template, before the first frame; ep.FileError where files cannot be written, or those of an address not be read, and before
-    the first frame where the disk is too small; ModuleNotFoundError without the libraries of a scheduler or an address;
-    ConnectionError naming `scheduler` where that does not answer.
+    Raises TypeError or ValueError naming the argument, before the first frame also of a folder whose scenes were made of other
+    files than those that the template names now (eight are looked at), or by another echopath; ValueError naming the file, the
+    scene and the key of a fault of the template, likewise; ep.FileError where files cannot be written, or those of an address
+    not be read, and before the first frame where the disk is too small; ModuleNotFoundError without the libraries of a
+    scheduler or an address; ConnectionError naming `scheduler` where that does not answer.
     """
     plan = Template(Path(template))
     scenes = _chosen(plan, shard, frames)
@@ -164,14 +165,28 @@ def _chosen(plan: Template, shard: Shard | None, frames: tuple[int, int] | None)
     return [scene for scene in range(first // per_scene, -(-end // per_scene)) if scene % n == k - 1]
 
 
+def _some(scenes: list[int], most: int) -> list[int]:
+    """So many of some scenes at most, evenly among them."""
+    return scenes[::-(-len(scenes) // most) or 1]
+
+
 def _look_at(plan: Template, scenes: list[int]) -> None:
     """Raises ValueError for faults of the template: some scenes are drawn, a few of them made ready. Warns of unused classes."""
-    for scene in scenes[::-(-len(scenes) // _LOOKED_AT) or 1]:
+    for scene in _some(scenes, _LOOKED_AT):
         plan.check(scene)
-    for scene in scenes[::-(-len(scenes) // _BUILT) or 1]:
+    for scene in _some(scenes, _BUILT):
         plan.sequence(scene)
     for scene in scenes[:1]:
         plan.warn_of_unused_classes(scene)
+
+
+def _require_same(plan: Template, place: _LocalFolder | Address, done: list[int]) -> None:
+    """Raises ValueError naming `folder` where a few of the scenes that are done would be others if they were made now."""
+    for scene in _some(done, _BUILT):
+        kept = place.get(f"{scene_name(scene)}/{CONTENTS}")
+        if differing := differs_from(plan, plan.sequence(scene), kept):
+            raise refused(ValueError, "folder", "new, or of the files that the template names as they are now (scene "
+                          f"{scene} was made of others, or by another echopath: {differing})", place.address)
 
 
 def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], front: Callable[[list[int], str], Iterator[Done]],
@@ -181,6 +196,8 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
         scenes = [scene for scene in scenes if records[scene].state == "failed"]
         place.forget(scenes)
     missing = scenes if only_failed else [scene for scene in scenes if records[scene].state == "to do"]
+    if missing:
+        _require_same(plan, place, [scene for scene, record in records.items() if record.state == "done"])
     forecast = _forecast(plan, place, missing, workers) if missing else Forecast(0, 0.0, 0)
     yield forecast
     there = [scene for scene in scenes if scene not in set(missing)]

@@ -73,9 +73,10 @@ class Dataset:
         that need the signals of all antennas, and any frame can be made again alone: `dataset.remade()[137]`.
         folder: of the files that the template names, None: that in which it was when the dataset was made, or where there
             is none (any more) that of the dataset. Raises TypeError naming it; frames ep.FileError where files are not there.
+        Frames warn (RuntimeWarning) of scenes that are others now, since such files, or echopath, have changed.
         """
         template = self.template if folder is None else Template(self.template.path, Path(folder))
-        return self._with(self.numbers, Remade(template))
+        return self._with(self.numbers, Remade(template, self.folder))
 
     def _with(self, numbers: list[int], source: Source | None = None) -> "Dataset":
         return Dataset(self.folder, self.template, numbers, source or self._source)

@@ -14,7 +14,7 @@ from ..base.process.callers import warn_user
 from ..base.storage.files import write_texts
 from ..frame.frame import Frame
 from ..sequence import Sequence
-from ..sequence.folder import NAME as CONTENTS, frame_path
+from ..sequence.folder import NAME as CONTENTS, differs_from as sequence_differs, frame_path
 from ..sequence.keep import Keep
 from .folder import (
     DRAWN,
@@ -86,6 +86,15 @@ def make_scene(template: Template, folder: Path, scene: int, run: str) -> SceneR
     tidy(folder, scene)
     write_record(folder, scene, record)  # the last: whoever waits for it may end this process
     return record
+
+
+def differs_from(template: Template, sequence: Sequence, kept: bytes) -> str:
+    """What the frames of a scene, as the template has them now, do not share with those that were made, in words; "" where they
+    are the same. Files that the template names may have changed since, and echopath; the template itself has not.
+
+    kept: content of the file sequence.h5 of the scene
+    """
+    return sequence_differs(sequence._contents(template.settings.keep), kept)
 
 
 def tidy(folder: Path, scene: int) -> None:

@@ -6,12 +6,14 @@ import warnings
 from pathlib import Path
 from typing import Protocol
 
+from ..base.process.callers import warn_user
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import Sequence
-from ..sequence.folder import frame_path
+from ..sequence.folder import NAME as CONTENTS, frame_path
 from ..sequence.keep import Keep, read_frame, write_frame
-from .folder import scene_folder
+from .folder import read_or_nothing, scene_folder
+from .scene_work import differs_from
 from .template import Template
 
 
@@ -40,15 +42,24 @@ class Remade:
 
     keep: Keep = "all"
 
-    def __init__(self, template: Template):
-        self._template = template
+    def __init__(self, template: Template, folder: Path):
+        self._template, self._folder = template, folder
         self._latest: tuple[int, Sequence] | None = None  # number of a scene, and its frames
 
     def _sequence_of(self, scene: int) -> Sequence:
         """The latest is kept, since frames are asked for scene by scene."""
         if self._latest is None or self._latest[0] != scene:
-            self._latest = scene, self._template.sequence(scene)
+            sequence = self._template.sequence(scene)
+            self._warn_of_another(sequence, scene)
+            self._latest = scene, sequence
         return self._latest[1]
+
+    def _warn_of_another(self, sequence: Sequence, scene: int) -> None:
+        """Where files that the template names are not those of which the dataset was made, or echopath is not."""
+        kept = read_or_nothing(scene_folder(self._folder, scene) / CONTENTS)
+        if kept and (differing := differs_from(self._template, sequence, kept)):
+            warn_user(f"scene {scene}: made again, it is another one than that of the dataset ({differing}): files that the "
+                      "template names, or echopath, have changed since")
 
     def frame(self, scene: int, place: int) -> Frame | FrameMaps:
         """Simulated, then written and read: files leave out paths that carry next to nothing."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from .. import _core
 from ..arguments.checks import refused
@@ -22,6 +23,16 @@ NAME = "sequence.h5"
 def frame_path(folder: Path, place: int) -> Path:
     """The file of the frame at a place."""
     return folder / f"frame_{place:04d}.h5"
+
+
+def differs_from(contents: Contents, kept: bytes) -> str:
+    """What a sequence and the one of a file sequence.h5 of this content do not share, in words; "" where they are the same."""
+    with TemporaryDirectory(prefix="echopath-") as folder:
+        mine, theirs = Path(folder) / NAME, Path(folder) / f"kept_{NAME}"
+        theirs.write_bytes(kept)
+        with writing(mine) as file:
+            write_contents(file, contents)
+        return what_differs(mine, theirs)
 
 
 class FolderStore:

@@ -218,10 +218,13 @@ class Sequence(Row[Frame]):
             raise refused(ValueError, "frames", "at least 1 to be saved", 0)
         if Path(path).name == NAME:
             raise refused(ValueError, "path", f"a folder or a file of another name than {NAME}, which a folder has", str(path))
-        contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
         bars = automatic_bars() if progress is True else progress
-        return saved_frames(self.times, store_of(path), keep, lambda places: _seen(self._items(places, bars), look), contents,
-                            shard)
+        return saved_frames(self.times, store_of(path), keep, lambda places: _seen(self._items(places, bars), look),
+                            self._contents(keep), shard)
+
+    def _contents(self, keep: Keep) -> Contents:
+        """What tells this sequence from another, beside its frames."""
+        return Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""

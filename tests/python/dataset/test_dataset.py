@@ -290,6 +290,25 @@ def test_a_dataset_grows_and_is_not_mixed_with_another(small_dataset, tmp_path):
     assert bytes_of(tmp_path / "out") == grown
 
 
+def test_scenes_of_files_that_were_edited_are_not_mixed(tmp_path):
+    """A plate is edited between two scenes: nothing is made, a scene that is made again says so, and the old plate goes on."""
+    plate = tmp_path / "plate.obj"
+    plate.write_text("v 3 -1 0\nv 3 1 0\nv 3 0 2\nf 1 3 2\n")
+    objects = SCENE[SCENE.index("[[objects]]"):SCENE.index("[trace]")]
+    named = '[[objects]]\nname = "plate"\nmesh = "plate.obj"\nmaterial = "metal"\n'
+    path = written(tmp_path, HEAD.replace("scenes = 6", "scenes = 2") + SCENE.replace(objects, named))
+    make(path, tmp_path / "out", frames=(0, 1))
+    made, before = plate.read_text(), bytes_of(tmp_path / "out")
+    plate.write_text(made.replace("v 3 0 2", "v 3 0 1"))
+    with pytest.raises(ValueError, match=r"folder: must be new, or .*scene 0 was made of others, .*meshes/0/vertices differs"):
+        make(path, tmp_path / "out")
+    with pytest.warns(RuntimeWarning, match=r"scene 0: made again, it is another .*scene/meshes/0/vertices differs"):
+        dataset.open(tmp_path / "out").remade()[0]
+    assert bytes_of(tmp_path / "out") == before
+    plate.write_text(made)
+    assert [one.scene for one in make(path, tmp_path / "out") if not one.was_there] == [1]
+
+
 def test_the_forecast_is_near_what_is_made(small_dataset, tmp_path):
     path, folder = small_dataset
     forecast = next(dataset.make(path, tmp_path))

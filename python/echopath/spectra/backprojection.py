@@ -133,10 +133,10 @@ def _checked_cube(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]
 
 def _legs_at(points, radar, world_from_points, time: float):
     """Function of an antenna that gives its _Legs to the points at a time in s, the middle of a chirp."""
-    half = 0.5 * radar.waveform.chirp_duration
+    step = 0.5 * radar.waveform.window_centre  # motions may begin at the first sample of a frame and end at its last one
     before, middle, after = (np.linalg.inv(world_from_points(moment)) @ radar.world_from_radar(moment)
-                             for moment in (time - half, time, time + half))
-    rate = (after - before) / (2.0 * half)
+                             for moment in (time - step, time, time + step))
+    rate = (after - before) / max(2.0 * step, np.finfo(float).tiny)  # of a single sample it is 0, which knows of none
 
     def legs(antenna) -> _Legs:
         place = np.append(antenna.position, 1.0)

@@ -47,6 +47,21 @@ def test_a_point_keeps_its_amplitude_whatever_way_the_radar_goes(motion, interva
     assert image == pytest.approx(1.0, abs=BETWEEN_BINS)
 
 
+@pytest.mark.parametrize("chirps", [{}, {"num_samples": 1, "bandwidth": 2e7}], ids=["chirps", "single samples"])
+@pytest.mark.parametrize("start_time", [0.0, 0.3])
+def test_keys_need_to_last_no_longer_than_the_frame(chirps, start_time):
+    """From its first sample to its last one, as for the signal itself, of the radar and of what moves before it."""
+    end = start_time + make_radar(**chirps).frame_duration
+    keys = ep.KeyframeMotion([start_time, end], [[0.0, start_time, 0.0], [0.0, end, 0.0]], interpolation="linear")
+    moved, at_rest, origin = make_radar(keys, **chirps), make_radar(**chirps), np.zeros(3)
+    point = np.array([4.0, 0.4, 0.3])
+    image = ep.backproject(cube_of(moved, lambda time: point, start_time), moved, point, start_time=start_time)
+    assert abs(image) == pytest.approx(1.0, abs=BETWEEN_BINS)
+    towards = cube_of(at_rest, lambda time: point + [0, time, 0], start_time)
+    image = ep.backproject(towards, at_rest, origin, position=point, motion=keys, start_time=start_time)
+    assert abs(image) == pytest.approx(1.0, abs=BETWEEN_BINS)
+
+
 @pytest.mark.parametrize("real", [False, True])
 def test_what_is_farther_than_the_ranges_is_dark(real):
     """Of real samples these end at half the sampling rate."""

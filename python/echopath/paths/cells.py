@@ -92,24 +92,30 @@ def cells_of(paths: _core.Paths, spectrum: _core.RangeDoppler, tx: int = 0, rx: 
     """The PathCells of `path_cells` where all chirps are alike; chirp: that waveform without steps, None: the radar's without
     its steps."""
     waveform, middle = paths.radar.waveform, chirp_times(paths, tx)[1]
-    half, of_chirp = 0.5 * waveform.chirp_duration, waveform if chirp is None else chirp
+    step, of_chirp = _step_of_lengths(waveform), waveform if chirp is None else chirp
     cells = PathCells(*(np.empty(paths.num_paths, kind) for kind in (float, float, float, np.int32, np.int32)))
-    for some, lengths, amplitudes in echoes_at(paths, [middle - half, middle, middle + half, *around(middle, waveform)], tx, rx):
+    for some, lengths, amplitudes in echoes_at(paths, [middle - step, middle, middle + step, *around(middle, waveform)], tx, rx):
         cells.length[some] = lengths[1]
         turning = turning_of(*amplitudes[3:], waveform)
-        places = _places(lengths[1], lengths[2] - lengths[0], turning, of_chirp, paths.radar, spectrum)
+        places = _places(lengths[1], (lengths[2] - lengths[0]) / (2.0 * step), turning, of_chirp, paths.radar, spectrum)
         for name, values in zip(_PLACES, places, strict=True):
             getattr(cells, name)[some] = values
     return cells
 
 
-def _places(length, longer, turning, chirp, radar, spectrum) -> tuple:
-    """_PLACES, [P] each, of paths of some length in m that becomes `longer` by so many m during a chirp, and whose amplitudes
-    turn back by so many Hz; chirp: waveform of the chirps. The axes of maps are those of the radar's without steps."""
+def _step_of_lengths(waveform: _core.ChirpSequence) -> float:
+    """s, from the middle of a chirp to the times between which lengths grow: within its samples, since motions may begin at the
+    first sample of a frame, which may be a chirp alone, and end at its last one."""
+    return 0.5 * (waveform.window_centre or waveform.chirp_duration)
+
+
+def _places(length, growth, turning, chirp, radar, spectrum) -> tuple:
+    """_PLACES, [P] each, of paths of some length in m that grows by so many m/s, and whose amplitudes turn back by so many Hz;
+    chirp: waveform of the chirps. The axes of maps are those of the radar's without steps."""
     waveform = radar.waveform
     delay = length / _core.speed_of_light
     carrier = chirp.start_frequency + chirp.slope * (chirp.window_centre - delay)
-    rate = longer / waveform.chirp_duration + _core.speed_of_light / carrier * turning
+    rate = growth + _core.speed_of_light / carrier * turning
     doppler = carrier * rate / _core.speed_of_light  # Hz, slow time
     beat = chirp.slope * delay + doppler             # Hz, fast time
     range_index = _range_index(beat, waveform, spectrum.range)

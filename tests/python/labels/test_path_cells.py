@@ -114,6 +114,20 @@ def test_ranges_and_velocities_are_those_of_the_plates():
     assert cells.range - 0.5 * cells.length == pytest.approx(coupling, rel=CARRIER_SPAN, abs=1e-12)
 
 
+@pytest.mark.parametrize("num_chirps", [1, 8])
+@pytest.mark.parametrize("start_time", [0.0, 0.3])
+def test_keys_need_to_last_no_longer_than_the_frame(num_chirps, start_time):
+    """From its first sample to its last one, as for the signal itself, of a chirp that is alone, too."""
+    radar = build_radar(num_samples=64, num_chirps=num_chirps)
+    end = start_time + radar.frame_duration
+    keys = ep.KeyframeMotion([start_time, end], [[0.0, 0.0, 0.0], [4.0 * (end - start_time), 0.0, 0.0]], interpolation="linear")
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material=lambert(0.27), position=(9.0, 0.0, 0.0), motion=keys)
+    frame = ep.simulate(scene, radar, num_rays=300, start_time=start_time, labels=True, detections=True, guard=False)
+    velocity = ep.path_cells(frame.paths, frame.spectrum).velocity
+    assert len(velocity) > 0 and velocity == pytest.approx(4.0, abs=0.01)  # straight ahead, to the cosine of its edge
+
+
 def test_a_rectangle_holds_what_a_loop_finds():
     paths = traced(radar_of(False, 1))
     cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))

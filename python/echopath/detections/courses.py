@@ -39,7 +39,8 @@ def courses_of(paths) -> Courses:
     first, _, last = chirp_times(paths)
     waveform = paths.radar.waveform
     fractions = np.array([0.0, 0.5, 1.0, *CHECKED])
-    times = [*(first + fractions * (last - first)), *around(first, waveform), *around(last, waveform)]
+    inside = 0.0 if waveform.num_samples > 1 else waveform.chirp_duration  # of single samples the frame begins and ends at these
+    times = [*(first + fractions * (last - first)), *around(first + inside, waveform), *around(last - inside, waveform)]
     kinds = (complex, float, float, float, bool, float)
     courses = Courses(*(np.zeros(paths.num_paths, kind) for kind in kinds))
     for some, lengths, amplitudes in echoes_at(paths, times):

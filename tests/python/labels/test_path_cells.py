@@ -128,6 +128,19 @@ def test_keys_need_to_last_no_longer_than_the_frame(num_chirps, start_time):
     assert len(velocity) > 0 and velocity == pytest.approx(4.0, abs=0.01)  # straight ahead, to the cosine of its edge
 
 
+def test_detections_of_single_samples_need_keys_no_longer_than_the_frame():
+    """Of a radar that tells no ranges apart, whose frame begins and ends at a sample; a plate of 4 m/s is found as what it is."""
+    radar = build_radar(num_samples=1, num_chirps=64, bandwidth=1e7, sampling_rate=2e4, transmit_power=10.0)
+    keys = ep.KeyframeMotion([0.0, radar.frame_duration], [[0.0, 0.0, 0.0], [4.0 * radar.frame_duration, 0.0, 0.0]],
+                             interpolation="linear")
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material=lambert(0.27), position=(9.0, 0.0, 0.0), motion=keys)
+    paths = ep.trace(scene, radar, num_rays=300)
+    noisy = ep.add_noise(ep.synthesize(paths), radar, seed=1)
+    found = ep.detect(ep.range_doppler(noisy, radar), radar, paths=paths)
+    assert list(found.object) == ["plate"] and found.velocity == pytest.approx(4.0, abs=0.1)
+
+
 def test_a_rectangle_holds_what_a_loop_finds():
     paths = traced(radar_of(False, 1))
     cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))

@@ -197,6 +197,22 @@ void Paths::validate_path(size_t path) const {
   }
 }
 
+void TraceStatistics::add(const TraceStatistics& of_part) {
+  num_rays += of_part.num_rays;
+  num_queries += of_part.num_queries;
+  num_hits += of_part.num_hits;
+  num_paths += of_part.num_paths;
+  num_near_antenna += of_part.num_near_antenna;
+  num_grazing += of_part.num_grazing;
+  num_small_mirrors += of_part.num_small_mirrors;
+  num_false_hits += of_part.num_false_hits;
+  num_unaimed += of_part.num_unaimed;
+  num_unfollowed_frusta += of_part.num_unfollowed_frusta;
+  num_unsplit_rays += of_part.num_unsplit_rays;
+  num_stopped_passes += of_part.num_stopped_passes;
+  num_faint_paths += of_part.num_faint_paths;
+}
+
 Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
   require(std::ssize(keep) == num_paths(), "selection", "must have one entry per path", keep.size());
   const auto count = static_cast<size_t>(std::ranges::count_if(keep, [](uint8_t value) { return value != 0; }));

@@ -115,6 +115,8 @@ struct TraceStatistics {
   int64_t num_unsplit_rays = 0;       // rays that only went on at a sheet, because they had split at too many before
   int64_t num_stopped_passes = 0;     // legs of paths that are taken to end at a sheet, behind kMostPasses others
   int64_t num_faint_paths = 0;        // left out by lot: others count for them (RecordSettings::faint_power)
+
+  void add(const TraceStatistics& of_part);
 };
 
 // Holds the settings of a trace on which the record depends, besides the number of rays. CONTRIBUTING.md has the way of a

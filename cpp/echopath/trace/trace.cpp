@@ -22,8 +22,8 @@ bool has_steady_rays(const Scene& scene, const Radar& radar, Scatterers scattere
 }
 
 Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept,
-            FittedStrata* fitted, PlaneDoubles* doubles) {
-  return Tracer(scene, radar, settings, job, kept, fitted).run(job, doubles);
+            FittedStrata* fitted, PlaneDoubles* doubles, const RecordFilter& filter) {
+  return Tracer(scene, radar, settings, job, kept, fitted).run(job, doubles, filter);
 }
 
 }  // namespace echopath

@@ -1,5 +1,7 @@
 #pragma once
 // Traces a scene: rays that see scene and radar at mid-frame make the paths of the record.
+#include <functional>
+
 #include "echopath/base/threads/job.h"
 #include "echopath/record/paths.h"
 #include "echopath/scene/scene_snapshot.h"
@@ -27,6 +29,9 @@ struct TraceSettings : RecordSettings {
   bool operator==(const TraceSettings&) const = delete;  // that of the record's alone would stand for it
 };
 
+// Takes a part of the record and returns what of it is kept, in the same order.
+using RecordFilter = std::function<Paths(Paths part, Job* job)>;
+
 // Returns whether what stands still gets the same rays in all frames (LaunchSettings::is_steady): where scatterers persist,
 // before a radar at rest, in a scene that ever changes.
 bool has_steady_rays(const Scene& scene, const Radar& radar, Scatterers scatterers);
@@ -37,8 +42,10 @@ bool has_steady_rays(const Scene& scene, const Radar& radar, Scatterers scattere
 // DeviceError; raises Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves
 // its own for the next: the record is the same and comes sooner, but the memory stays in use. `fitted` does the same for
 // the strata of surfaces that the trace before saw from the same place. `doubles` becomes what was left out of the rays'
-// paths, because images over unflagged planes stand for it.
+// paths, because images over unflagged planes stand for it. A `filter` goes over the record part by part while that is made,
+// so that what it leaves out takes no memory.
 Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
-            KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr, PlaneDoubles* doubles = nullptr);
+            KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr, PlaneDoubles* doubles = nullptr,
+            const RecordFilter& filter = {});
 
 }  // namespace echopath

@@ -7,6 +7,7 @@
 #include "echopath/base/memory/machine_memory.h"
 #include "echopath/base/text/streamed.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/record/blocks/record_in_parts.h"
 #include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/sheets/passes.h"
@@ -19,7 +20,8 @@ constexpr int64_t kRaysPerBlock = 256;
 static_assert(kRaysPerBlock % kPacketSize == 0, "a packet has rays of one kind (LaunchPlan::first_point)");
 // These blocks are shot before they become part of the record: few enough for the caches, and many for each thread.
 constexpr int64_t kBlocksPerWave = 24, kBlocksPerThread = 12;
-constexpr int64_t kBlocksAhead = 64;  // they tell how large a record of several waves will be
+constexpr int64_t kPathsPerPart = 1 << 18;  // of a record that is filtered
+constexpr int64_t kBlocksAhead = 64;        // they tell how large a record of several waves will be
 
 // Sets the whole sphere, or the half space in front where all antennas look the same way and have no gain behind. Receivers
 // count as transmitters do where there may be several bounces, for a way that reaches one from behind is traced from its
@@ -202,11 +204,25 @@ std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vecto
   return blocks;
 }
 
+// Returns how much of the paths of these blocks a filter leaves.
+double Tracer::kept_share(const std::vector<PathBlock>& blocks, const RecordFilter& filter, Job* job) const {
+  Paths paths = empty_;
+  RecordWriter record(paths);
+  std::vector<const PathBlock*> all;
+  for (const PathBlock& block : blocks) all.push_back(&block);
+  record.append(all, job);
+  record.finish();
+  const auto num_all = static_cast<double>(paths.num_paths());
+  Job own(job);
+  return static_cast<double>(filter(std::move(paths), &own).num_paths()) / num_all;
+}
+
 // Raises invalid_argument where the machine has no memory for the record, or for that of the trace which this one prepares.
-void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
+void Tracer::require_memory(const std::vector<PathBlock>& ahead, const RecordFilter& filter, Job* job) const {
   const int64_t most_rays = std::max(num_rays(), num_rays_to_come_);
-  const double needed = RecordWriter::num_bytes(ahead, num_chunks(most_rays, kRaysPerBlock));
+  double needed = RecordWriter::num_bytes(ahead, num_chunks(most_rays, kRaysPerBlock));
   const auto there = static_cast<double>(machine_memory());
+  if (needed > there && filter) needed *= kept_share(ahead, filter, job);
   if (needed <= there) return;
   require(false, "num_rays",
           streamed("must be so few that their paths, about ", std::llround(needed / 1e9),
@@ -216,9 +232,14 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
 
 // Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their
 // memory.
-Paths Tracer::run(Job* job, PlaneDoubles* doubles) const {
-  Paths paths = empty_;
-  RecordWriter record(paths);
+Paths Tracer::run(Job* job, PlaneDoubles* doubles, const RecordFilter& filter) const {
+  Job of_filter(job);  // its progress is not that of the rays
+  const auto finished = [&](Paths part) {
+    add_passes(part, geometry_.rounding(), job);
+    if (filter) part = filter(std::move(part), &of_filter);
+    return part;
+  };
+  RecordInParts record(empty_, filter ? std::optional(kPathsPerPart) : std::nullopt, finished);
   const std::vector<PathBlock> without_rays = find_paths_without_rays(job);
   std::vector<const PathBlock*> first_blocks;
   for (const PathBlock& block : without_rays) first_blocks.push_back(&block);
@@ -227,7 +248,7 @@ Paths Tracer::run(Job* job, PlaneDoubles* doubles) const {
   std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
   const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;
   if (num_blocks() > std::ssize(wave)) ahead = shoot_ahead(step, job);
-  require_memory(ahead);
+  require_memory(ahead, filter, job);
   record.expect(ahead, num_blocks());
   PlaneImages images = plane_images();
   LitPlanes lit = lit_planes();
@@ -244,11 +265,10 @@ Paths Tracer::run(Job* job, PlaneDoubles* doubles) const {
   std::vector<const PathBlock*> last_blocks = {&over_planes};
   for (const PathBlock& block : of_edges) last_blocks.push_back(&block);
   record.append(last_blocks, job);
-  record.finish();
+  Paths paths = record.take();
   images.doubles().leave_out(paths, job);
   if (doubles) *doubles = images.doubles();
-  add_passes(paths, geometry_.rounding(), job);
-  return paths;
+  return filter && images.doubles().any() ? paths.with_own_hits(job) : paths;
 }
 
 }  // namespace echopath

@@ -14,8 +14,8 @@ class Tracer {
   // Raises what `trace` raises. What is kept, and the strata that were fitted before, may be null.
   Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
          KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
-  // Shoots all rays; it returns the same record each time. `doubles`, which may be null, is that of `trace`.
-  Paths run(Job* job, PlaneDoubles* doubles = nullptr) const;
+  // Shoots all rays; it returns the same record each time. `doubles`, which may be null, and the filter are those of `trace`.
+  Paths run(Job* job, PlaneDoubles* doubles = nullptr, const RecordFilter& filter = {}) const;
   int64_t num_rays() const { return plan_.first_ray.back(); }
   int64_t num_blocks() const;
   void shoot_block(int64_t index, PathBlock& block) const;
@@ -45,7 +45,8 @@ class Tracer {
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
-  void require_memory(const std::vector<PathBlock>& ahead) const;
+  void require_memory(const std::vector<PathBlock>& ahead, const RecordFilter& filter, Job* job) const;
+  double kept_share(const std::vector<PathBlock>& blocks, const RecordFilter& filter, Job* job) const;
   LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted, const Job* job);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
   void aim_at_points(const TraceSettings& settings, Job* job);

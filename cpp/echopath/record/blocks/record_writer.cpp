@@ -12,16 +12,6 @@ namespace {
 // nothing.
 constexpr double kRoomToSpare = 1.1;
 
-void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
-  total.num_queries += part.num_queries;
-  total.num_hits += part.num_hits;
-  total.num_near_antenna += part.num_near_antenna;
-  total.num_grazing += part.num_grazing;
-  total.num_small_mirrors += part.num_small_mirrors;
-  total.num_unsplit_rays += part.num_unsplit_rays;
-  total.num_false_hits += part.num_false_hits;
-}
-
 // Holds where each block begins in the record, and where the last one ends.
 struct Places {
   std::vector<size_t> paths, hits;
@@ -102,7 +92,7 @@ void RecordWriter::append(const std::vector<const PathBlock*>& blocks, Job* job)
                         paths_.flags.data() + row};
     blocks[index]->write(rows, paths_);
   }, &own);
-  for (const PathBlock* block : blocks) add_statistics(paths_.frame.statistics, block->statistics);
+  for (const PathBlock* block : blocks) paths_.frame.statistics.add(block->statistics);
 }
 
 void RecordWriter::finish() {

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include "echopath/power/faint_paths.h"
 #include "echopath/power/received_power.h"
 #include "echopath/radar/noise_power.h"
 #include "echopath/sim/rays/beam_foci.h"
 #include "echopath/sim/rays/hits_per_cell.h"
+#include "echopath/sim/rays/thinned_trace.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/strata/fitted_strata.h"
 #include "echopath/trace/strata/ray_targets.h"
@@ -256,7 +256,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
                     KeptGeometry* kept, KeptStillRays* kept_still) {
   settings.validate();
   if (!settings.guide.shares.empty() || settings.num_rays / kPilotDivisor < kFewestPilotRays)
-    return thinned(trace(scene, radar, settings, job, kept), job);
+    return thinned_trace(scene, radar, settings, job, kept);
   KeptGeometry own;
   if (!kept) kept = &own;
   FittedStrata fitted;
@@ -265,8 +265,8 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   const auto pilot_of = [&](const SceneSnapshot& seen, KeptGeometry* geometry, FittedStrata* strata) {
     TraceSettings launch = settings;
     launch.num_rays = settings.num_rays / kPilotDivisor;
-    launch.num_rays_to_come = settings.num_rays;
-    launch.edges = false;  // their echoes need no rays
+    if (settings.faint_power == 0.0) launch.num_rays_to_come = settings.num_rays;  // else only few paths are kept
+    launch.edges = false;                                                          // their echoes need no rays
     return trace(seen, radar, launch, &unseen, geometry, strata);
   };
   const auto guide_by = [&](const Paths& pilot, int64_t num_rays, const StillRays& still) {
@@ -279,7 +279,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   });
   TraceSettings launch = settings;
   launch.guide = guide_by(pilot_of(scene, kept, &fitted), settings.num_rays, *still);
-  return thinned(trace(scene, radar, launch, job, kept, &fitted), job);
+  return thinned_trace(scene, radar, launch, job, kept, &fitted);
 }
 
 }  // namespace echopath

@@ -5,7 +5,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/power/faint_paths.h"
-#include "echopath/trace/trace.h"
+#include "echopath/sim/rays/thinned_trace.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/surface/new_surface.h"
 #include "echopath/validity/validity.h"
@@ -128,7 +128,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     TraceSettings settings = settings_like(paths_.frame);
     settings.start_time = stretch.start_time;
     settings.guide = guide_like(paths_.frame.strata);
-    return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
+    return {thinned_trace(paths_.scene, stretch.radar, settings, job_, &kept_)};
   }
   // Images come first, because paths of rays for which they stand need no renewal.
   std::vector<Paths> records = {renewed(paths_, stretch)};

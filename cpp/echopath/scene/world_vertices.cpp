@@ -1,3 +1,4 @@
+#include <optional>
 #include <utility>
 
 #include "echopath/scene/chained_transforms.h"
@@ -37,18 +38,21 @@ std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double ti
   return transformed(world_from_mesh, std::move(vertices));
 }
 
+// Moments are about a vertex of the surface: about the origin of the world those of a body far away would round more.
 Vec3 surface_centroid(const Scene& scene, std::span<const uint32_t> mesh_ids, double time) {
+  std::optional<Vec3> origin;
   Vec3 moment = Vec3::Zero();
   double twice_area = 0.0;
   for (const uint32_t mesh_id : mesh_ids) {
     const std::vector<Vec3> vertices = world_vertices(scene, mesh_id, time);
+    if (!origin) origin = vertices.front();
     for (const Triangle& triangle : scene.node_of(mesh_id).mesh->triangles()) {
       const double twice = cross_of_sides(vertices, triangle).norm();
-      moment += twice / 3.0 * (vertices[triangle[0]] + vertices[triangle[1]] + vertices[triangle[2]]);
+      for (const uint32_t corner : triangle) moment += twice / 3.0 * (vertices[corner] - *origin);
       twice_area += twice;
     }
   }
-  return moment / twice_area;
+  return origin.value_or(Vec3::Zero()) + moment / twice_area;
 }
 
 }  // namespace echopath

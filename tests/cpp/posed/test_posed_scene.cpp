@@ -107,6 +107,27 @@ TEST(PosedScene, TheCentroidOfASurfaceWeighsTrianglesByTheirAreas) {
   EXPECT_LT((surface_centroid(scene, std::array<uint32_t, 2>{0, 1}, 7.0) - expected).norm(), kRounding);
 }
 
+// As exact as the vertices, whose last bits are 1e-10 m there; moments about the origin of the world would scatter by far more.
+TEST(PosedScene, TheCentroidOfASurfaceFarFromTheOriginIsAsExactAsItsVertices) {
+  const Vec3 far(691607, 5334760, 520);
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  constexpr uint32_t kSides = 10000;  // of a cylinder about the z axis
+  for (uint32_t k = 0; k < kSides; ++k) {
+    const double turn = kTwoPi * k / kSides;
+    for (const double height : {0.0, 1.0}) vertices.emplace_back(std::cos(turn), std::sin(turn), height);
+    const uint32_t next = (k + 1) % kSides;
+    triangles.push_back({2 * k, 2 * next, 2 * k + 1});
+    triangles.push_back({2 * next, 2 * next + 1, 2 * k + 1});
+  }
+  Scene scene;
+  Node tube = node("tube", -1, shift(far.x(), far.y(), far.z()));
+  tube.mesh = std::make_shared<const Mesh>(vertices, triangles), tube.material = metal();
+  scene.add(tube);
+  const Vec3 centroid = surface_centroid(scene, std::array<uint32_t, 1>{0}, 0.0);
+  EXPECT_LT((centroid - far - Vec3(0, 0, 0.5)).norm(), 3e-9);
+}
+
 TEST(PosedScene, TrianglesVerticesAndSingleMeshesAgree) {
   const Scene scene = driving_scene();
   const PosedScene pose(scene, 0.7);

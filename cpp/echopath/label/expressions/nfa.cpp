@@ -10,9 +10,10 @@ namespace echopath {
 
 void throw_too_large(const std::string& text) {
   constexpr size_t kShown = 80;  // bytes of a text that may name thousands of meshes
+  const std::string shown = found_in_expression(text, 0, kShown);
   throw std::invalid_argument("path expression: must compile to at most " + std::to_string(kMaxAutomatonStates) +
-                              " states; use smaller counts or split it, got " +
-                              found_in_expression(text, 0, kShown) + (text.size() > kShown ? "..." : ""));
+                              " states; use smaller counts or split it, got " + shown +
+                              (shown.size() < text.size() ? "..." : ""));
 }
 
 namespace {

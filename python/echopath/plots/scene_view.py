@@ -39,6 +39,7 @@ FEW_NAMES = 12                          # as many all find room
 MOST_RAISED = 3                         # lines that one of more stands above its object at most: farther up it is of none
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
 MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
+RADAR_ASIDE, ON_MIRROR = (-10.0, 0.0), (0.0, 2.0)  # points, in perspective, from the radar and from mirrors to their names
 TITLE_PAD = 6.0                         # points between axes and title
 LETTER, LINE, POINTS_PER_INCH = 0.6, 1.2, 72.0  # width of a letter and height of a line over the size of the font
 DASHES = (0, (4, 3))
@@ -86,7 +87,7 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
     objects: as in `families`, such as those of labels; None: the children of the scene's root
     Mirrors are drawn translucent, dashed where they go on beyond the picture. The objects with the strongest echoes bear their
-    names, up to 20 that find room, and the 20 largest mirrors.
+    names, and so do the largest mirrors, up to 20 of each that find room.
     title: above them. Returns a matplotlib figure with three views in metres. Raises TypeError or ValueError naming the
     argument.
     """
@@ -329,13 +330,8 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     # Matplotlib lays figures out before it projects: it would take the coordinates in m for a place on the page.
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False, in_layout=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
-    for name, (low, high) in _named_mirrors(drawing).items():
-        is_floor = high[2] - low[2] < CUT
-        place = low[0] + NAME_PLACE * (high[0] - low[0]), low[1] if is_floor else 0.5 * (low + high)[1], high[2]
-        axes.text(*place, short_name(name) + ("" if is_floor else "\n"), zorder=5, horizontalalignment="center",
-                  verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
     _frame_box(axes, drawing)
-    _draw_names_in_perspective(axes, drawing.names)
+    _draw_names_in_perspective(axes, drawing)
 
 
 def _grounds(drawing: _Drawing) -> list:
@@ -354,36 +350,67 @@ def _above_ground(drawing: _Drawing) -> list:
     return [k for k in range(len(drawing.bodies)) if k not in on_ground]
 
 
-def _draw_names_in_perspective(axes, names: dict) -> None:
-    """Names right above their objects, a line higher where another stands there. axes: whose box is final"""
+def _draw_names_in_perspective(axes, drawing: _Drawing) -> None:
+    """Names right above objects, lines higher where others stand, and on mirrors that have room. axes: whose box is final"""
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
     axes.apply_aspect()
-    tops = {name: (*0.5 * (low + high)[:2], high[2]) for name, (low, high) in names.items()}
-    seen = {name: proj_transform(*top, axes.get_proj())[:2] for name, top in tops.items()}
-    for name, line in _free_lines(axes, seen).items():
+    room, line_height = _Room(axes), LINE * NAME_LOOK["fontsize"]
+
+    def seen(place):
+        return proj_transform(*place, axes.get_proj())[:2]
+
+    room.line_of(RADAR_LABEL, seen(drawing.radar), RADAR_ASIDE, 1.0)
+    tops = {name: (*0.5 * (low + high)[:2], high[2]) for name, (low, high) in drawing.names.items()}
+    for name, line in _lines_of(room, {name: seen(top) for name, top in tops.items()}, (0.0, line_height)).items():
         axes.text(*tops[name], short_name(name) + "\n" * (1 + line), zorder=5, horizontalalignment="center",
                   verticalalignment="baseline", path_effects=_halo(), **NAME_LOOK)
+    for name, (low, high) in _named_mirrors(drawing).items():
+        is_floor = high[2] - low[2] < CUT
+        place = low[0] + NAME_PLACE * (high[0] - low[0]), low[1] if is_floor else 0.5 * (low + high)[1], high[2]
+        if room.line_of(name, seen(place), ON_MIRROR) is not None:
+            axes.text(*place, short_name(name) + ("" if is_floor else "\n"), zorder=5, horizontalalignment="center",
+                      verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
 
 
-def _free_lines(axes, places: dict) -> dict:
-    """{name: by how many lines it is raised, so that it stands on no other}: all of few, the first ones that find room of many.
+class _Room:
+    """Where the names of a view stand, of which none is written over another."""
 
-    places: {name: place [2] of its middle in the coordinates of the axes}
+    def __init__(self, axes):
+        self._axes, self._taken = axes, []  # taken: (leftmost, rightmost, height) of the names so far in points of the page
+
+    def points(self, place) -> np.ndarray:
+        """A place [2] in the coordinates of the axes, in points of the page."""
+        return self._axes.transData.transform(place) * POINTS_PER_INCH / self._axes.figure.dpi
+
+    def line_of(self, name: str, place, offset, share: float = 0.5, lines=(0,)) -> int | None:
+        """The first of `lines` by which a name may be raised, which then is taken; None where none is free.
+
+        offset: [2] points from the place to the name; share: of its length that stands to the left of there
+        """
+        letter, line = LETTER * NAME_LOOK["fontsize"], LINE * NAME_LOOK["fontsize"]
+        (across, height), length = self.points(place) + offset, letter * (len(short_name(name)) + 1)
+        left, right = across - share * length, across + (1.0 - share) * length
+        for k in lines:
+            level = height + k * line
+            if all(right <= first or last <= left or abs(level - other) >= line for first, last, other in self._taken):
+                self._taken.append((left, right, level))
+                return k
+        return None
+
+
+def _lines_of(room: _Room, places: dict, offset) -> dict:
+    """{name: by how many lines it is raised}: all of few, from the lowest on; of many the first ones that find room.
+
+    places: {name: place [2] of its object in the coordinates of the axes}; offset: as of `_Room.line_of`
     """
-    letter, line = LETTER * NAME_LOOK["fontsize"], LINE * NAME_LOOK["fontsize"]
-    taken, raised = [], {}  # taken: (middle, half of the width, height) of the names so far in points of the page
-    for name, place in places.items():
-        middle, height = axes.transData.transform(place) * POINTS_PER_INCH / axes.figure.dpi
-        half = 0.5 * letter * (len(short_name(name)) + 1)
-        tried = range(MOST_RAISED + 1) if len(places) > FEW_NAMES else itertools.count()
-        free = (k for k in tried if all(
-            abs(middle - other) >= half + its_half or abs(height + k * line - its_height) >= line
-            for other, its_half, its_height in taken))
-        lines = next(free, None)
-        if lines is not None and len(raised) < MOST_NAMES:
-            raised[name] = lines
-            taken.append((middle, half, height + lines * line))
+    is_few, raised = len(places) <= FEW_NAMES, {}
+    for name in sorted(places, key=lambda name: room.points(places[name])[1]) if is_few else places:
+        line = room.line_of(name, places[name], offset, lines=itertools.count() if is_few else range(MOST_RAISED + 1))
+        if line is not None:
+            raised[name] = line
+        if len(raised) == MOST_NAMES:
+            break
     return raised
 
 
@@ -484,20 +511,23 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
     def write(name: str, place, offset: tuple, ha: str, **look) -> None:
         axes.annotate(short_name(name), place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
 
-    line_height = LINE * NAME_LOOK["fontsize"]
+    room, line_height = _Room(axes), LINE * NAME_LOOK["fontsize"]
     top = drawing.high[plane[1]] - 2.0 * drawing.margin  # the title is right above
     above = 0.0
-    is_high = drawing.radar[plane[1]] > top
-    write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)
+    radar, is_high = drawing.radar[list(plane)], drawing.radar[plane[1]] > top
+    aside = (6, -9) if is_high else (0, 5)
+    write(RADAR_LABEL, radar, aside, "left" if is_high else "center", **NAME_LOOK)
+    room.line_of(RADAR_LABEL, radar, aside, 0.0 if is_high else 0.5)
     tops = {name: (0.5 * (low[0] + high[0]), high[1]) for name, (low, high) in drawing.names.items()} if plane == (0, 1) else {}
-    for name, line in _free_lines(axes, tops).items():
+    for name, line in _lines_of(room, tops, (0, 3)).items():
         raised = 3 + line * line_height
         write(name, tops[name], (0, raised), "center", **NAME_LOOK)
         below_top = (axes.transAxes.transform((0.0, 1.0)) - axes.transData.transform(tops[name]))[1]
         above = max(above, raised + line_height - below_top * POINTS_PER_INCH / axes.figure.dpi)
     for name, (low, high) in _named_mirrors(drawing).items():
-        if high[plane[1]] - low[plane[1]] < CUT:
-            write(name, (low[0], high[plane[1]]), (4, 2), "left", **MIRROR_NAME_LOOK)
+        place = low[plane[0]], high[plane[1]]
+        if high[plane[1]] - low[plane[1]] < CUT and room.line_of(name, place, (4, 2), 0.0) is not None:
+            write(name, place, (4, 2), "left", **MIRROR_NAME_LOOK)
             above = max(above, line_height if high[plane[1]] > top else 0.0)
     return above
 

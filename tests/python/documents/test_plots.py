@@ -439,7 +439,43 @@ def test_of_a_street_full_of_objects_the_strongest_bear_names_that_stand_near_th
     assert max(box.y1 for box in boxes) <= from_above.title.get_window_extent().y0
 
 
+def test_names_of_a_dozen_objects_at_one_place_stay_below_the_title():
+    """As many as all find room: three of them left the page, and one stood on its title."""
+    scene = ep.Scene()
+    for k in range(12):
+        scene.add(ep.actors.box(1.0), name=f"box_{k}", position=(10.0, 0.01 * k, 0.8), yaw=0.1 * k,
+                  material=ep.Material(reflectivity=0.3, scattering=1.0))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=2000))
+    figure.draw_without_rendering()
+    boxes = [_box_of_first_line(text) for text in figure.axes[0].texts if text.get_text().startswith("box")]
+    assert len(boxes) == 12 and max(box.y1 for box in boxes) < figure._suptitle.get_window_extent().y0
+
+
+def test_names_of_mirrors_of_objects_and_of_the_radar_stand_apart():
+    """As measured on the page once it is drawn: two rows of facades, with cars before them, one of them near the radar."""
+    scene = ep.Scene()
+    for k in range(16):
+        scene.add(ep.actors.plate(4.0, 3.0), name=f"facade_{k}", position=(8.0 + 6.0 * k, 12.0 * (-1) ** k, 1.5), yaw=0.5 * np.pi,
+                  material=ep.materials["concrete"].replace(mirror=True))
+    for k in range(6):
+        scene.add(ep.actors.box(1.0), name=f"car_{k}", position=(3.0 + 15.0 * k, 11.0 * ((k + 1) % 3 - 1), 0.5),
+                  material=ep.Material(reflectivity=0.3, scattering=1.0))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=1000))
+    figure.draw_without_rendering()
+    for axes in figure.axes[:2]:  # in perspective, from above
+        texts = [text for text in axes.texts if text.get_text()]
+        boxes = [_box_of_first_line(text) for text in texts]
+        names = [text.get_text().split("_")[0] for text in texts]
+        assert names.count("car") == 6 and names.count("facade") >= 2
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
 def _box_of_first_line(text) -> Bbox:
+    """On the page; texts in perspective are put where they are drawn."""
+    if hasattr(text, "get_position_3d"):
+        text.set_position(proj_transform(*text.get_position_3d(), text.axes.get_proj())[:2])
     box = text.get_window_extent()
     return Bbox.from_extents(box.x0, box.y1 - box.height / len(text.get_text().split("\n")), box.x1, box.y1)
 

@@ -1,7 +1,6 @@
 """Range-azimuth maps as seen from above: the radar below, ahead is up, left is left."""
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -57,7 +56,8 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
 
     maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
-    places: {object: (range in m, azimuth in rad)} that get a ring, the 12 nearest in the first map with names; None: none
+    places: {object: (range in m, azimuth in rad)} that get a ring, in the first map the 12 nearest with names that find room;
+        None: none
     leaked: map of the leakage in the first map, which sets no scale, or None
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
     TypeError or ValueError naming maps, vmin or vmax.
@@ -133,19 +133,24 @@ def _covers(one, azimuth: float) -> bool:
 
 
 def _name_places(axes, shown: dict, reach: float) -> None:
-    """Names right below their places, left or lower where a ring or another name is, with lines between both."""
+    """Names right below their places, left or lower where a ring or another name is, with lines between both. One that finds no
+    room within the axes is left out."""
     from matplotlib.patheffects import withStroke
 
+    lowest = axes.get_ylim()[0]
     taken = [(left, left, ahead) for left, ahead in shown.values()]  # (leftmost, rightmost, height) in m of rings and names
     nearest = sorted(shown.items(), key=lambda one: math.hypot(*one[1]))[:MOST_NAMES]
     for name, (left, ahead) in sorted(nearest, key=lambda one: -one[1][1]):
         name = short_name(name)
         length, aside, line = NAME_LETTER * reach * len(name), NAME_ASIDE * reach, NAME_LINE * reach
-        tried = ((left + side * aside, side, ahead - row * line) for row in itertools.count(1) for side in (-1.0, 1.0))
+        num_rows = int((ahead - lowest) / line - 0.5)
+        tried = ((left + side * aside, side, ahead - row * line) for row in range(1, num_rows + 1) for side in (-1.0, 1.0))
         for begin, side, height in tried:
             span = sorted((begin, begin + side * length))
             if all(span[1] < low or high < span[0] or abs(height - other) >= 0.99 * line for low, high, other in taken):
                 break
+        else:
+            continue
         taken.append((*span, height))
         axes.annotate(name, (left, ahead), xytext=(begin, height), textcoords="data", color="white", fontsize=7,
                       verticalalignment="center", horizontalalignment="left" if side < 0.0 else "right",

@@ -124,6 +124,20 @@ def test_of_many_true_places_the_nearest_bear_names():
     assert {text.get_text() for text in axes.texts} & set(places) == {f"car_{k}" for k in range(8, 20)}
 
 
+def test_names_of_many_true_places_stay_within_the_map():
+    """As measured on the page: those of what stands at the foot of the map were written over its axis and below."""
+    azimuth, distance = np.radians(np.arange(-60.0, 61.0, 2.0)), np.arange(128) * 0.5
+    power = np.full((len(azimuth), len(distance)), 1e-16)
+    power[25, 120] = 1e-10
+    map = SimpleNamespace(azimuth=azimuth, range=distance, power=power)
+    places = {f"car_{k}": (8.0 + 0.2 * k, np.radians(2.0 * k - 20.0)) for k in range(20)}
+    figure = plots.plot_range_azimuth(map, places=places).figure
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    boxes = [Text.get_window_extent(text) for text in axes.texts if text.get_text() in places]  # without their lines
+    assert len(boxes) > 3 and all(axes.bbox.y0 <= box.y0 and box.y1 <= axes.bbox.y1 for box in boxes)
+
+
 def test_names_of_true_places_stand_nearer_to_their_rings_than_to_others():
     """On the page: that of the car stood right below the ring of the person beside it, and that of the person farther below."""
     azimuth, distance = np.radians(np.arange(-60.0, 61.0, 2.0)), np.arange(64) * 0.5

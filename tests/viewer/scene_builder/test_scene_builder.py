@@ -391,6 +391,8 @@ def test_what_stands_far_from_the_origin_is_drawn_as_what_stands_there(tmp_path)
         pictures.append(plotter.screenshot(return_img=True).astype(float))
         segments = session.segments(session.listed_rays())
         assert len({tuple(point) for point in segments.points[segments.hits]}) == len(session.listed_rays())
+        away = (segments.points - plotter.camera.position) @ plotter.camera.direction
+        assert builder.nearest_ray() == pytest.approx(away.min(), rel=0.0, abs=1e-3)
         plotter.close()
         export_meshes(session, tmp_path / "ball.vtp")
         assert np.allclose(pv.read(tmp_path / "ball.vtp").points, session.scene.world_vertices(0), rtol=0.0, atol=1e-6)

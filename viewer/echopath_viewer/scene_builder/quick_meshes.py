@@ -7,7 +7,7 @@ import numpy as np
 
 from .polydata import coloured_actor, loose_lines_of, set_point_colours, set_segment_colours, triangles_of
 
-ROUNDING = 1e-4  # of a cell's diagonal: vertices are float32, and a body that turns may seem to become longer by that
+ROUNDING = 1e-4  # of a cell's diagonal: in single precision a body that turns may seem to become longer by that
 
 MOST_FINER = 10  # times a grid is halved for a thin body
 

@@ -60,7 +60,8 @@ class RayLayer:
         where some lie behind it, inf without rays."""
         if self.segments is None or not self._rays.GetVisibility():
             return np.inf
-        return float(np.fmin.reduce(self.segments.points @ np.float32(ahead), initial=np.inf)) - float(np.dot(origin, ahead))
+        points = self.segments.points
+        return float(np.fmin.reduce(points @ np.asarray(ahead, points.dtype), initial=np.inf)) - float(np.dot(origin, ahead))
 
     def _drawn(self, count: int, cell: float):
         """Which of the first segments."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 SIZE = 6.0, 5.2  # inches
 LINES = ("-", "--", ":", "-.")  # for more tracks than there are colours
-ROWS, COLUMNS = 22, 2           # of the legend at most, which names tracks of objects; all tracks have their numbers
+ROWS, COLUMNS = 22, 2           # of the legend at most, which names tracks of objects
 COLUMN_WIDTH = 1.5              # inches, of names
 TITLE = "Tracks from above"
 WITHOUT_LABEL, WITHOUT_COLOUR = "without a detection", "0.3"
@@ -24,7 +24,7 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
     """Tracks as lines from above, crosses where they went on without a detection, in given axes or new ones (None).
 
     The legend has the tracks that follow objects, or where none does all of them: the first ROWS times COLUMNS, and how many
-    more.
+    more. Tracks have their numbers at their ends, those that the legend is of first; of many, some may find no room.
     tracks: Tracks; title: above the axes, "": that of axes with a title, else TITLE
     Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `tracks` or `ax`.
     """
@@ -42,7 +42,8 @@ def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> A
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title or ax.get_title() or TITLE)
         to_one_scale(ax)
-        write_names(ax, [(str(number), tracks.of_track(number).state[-1, 1::-1]) for number in numbers])
+        in_turn = [*named, *np.setdiff1d(numbers, named)]
+        write_names(ax, [(str(number), tracks.of_track(number).state[-1, 1::-1]) for number in in_turn])
         if listed and not np.all(tracks.is_detected):
             ax.plot([], [], "x", color=WITHOUT_COLOUR, markersize=5, label=WITHOUT_LABEL)
         if more:

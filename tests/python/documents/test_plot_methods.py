@@ -391,6 +391,17 @@ def test_a_spectrogram_leaves_gaps_between_long_frames_blank():
     assert all(np.isnan(level_at(mesh, start + 0.3)) for start in starts[:-1])
 
 
+def test_of_many_tracks_at_one_place_those_of_the_legend_have_their_numbers(ax):
+    """Four find room there, of which one is the last track, as it alone follows an object."""
+    count = 30
+    tracks = ep.Tracks(track=np.arange(count, dtype=np.int32), frame=np.zeros(count, int), time=np.zeros(count),
+                       state=np.tile([10.0, 1.0, 0.0, 0.0], (count, 1)), covariance=np.tile(np.eye(4), (count, 1, 1)),
+                       is_detected=np.ones(count, bool), object=np.array([""] * (count - 1) + ["car"]))
+    tracks.plot(ax=ax)
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["29: car"]
+    assert {text.get_text() for text in ax.texts} > {"29"} and len(ax.texts) < count
+
+
 def test_tracks_that_share_a_colour_differ_in_their_lines(ax):
     count = 15
     tracks = ep.Tracks(track=np.repeat(np.arange(count, dtype=np.int32), 2), frame=np.tile([0, 1], count),

@@ -126,9 +126,9 @@ def glance_of(time: float, radar, distance: float, detections=None, velocity: fl
 
 
 def test_tracks_below_a_mast_have_the_ranges_and_velocities_of_the_map(stored_run):
-    """A radar 6 m above what goes away from its foot at 4 m/s, 8 m away at first: ranges by Pythagoras, and their rates. In the
-    fourth frame nothing was found."""
-    radar, times = stored_run.radar.replace(position=(0.0, 0.0, 6.0)), 0.2 * np.arange(6)
+    """A radar 7.5 m above the ground, of what goes away 1.5 m above it at 4 m/s, 8 m away at first: ranges by Pythagoras, and
+    their rates. In the fourth frame nothing was found."""
+    radar, times = stored_run.radar.replace(position=(0.0, 0.0, 7.5)), 0.2 * np.arange(6)
     ways = 8.0 + 4.0 * times
     distances = np.hypot(ways, 6.0)
     glances = []

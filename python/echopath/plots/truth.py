@@ -39,7 +39,8 @@ LABELS = {"radar": (LEFT_LABEL, AHEAD_LABEL), "world": (Y_LABEL, X_LABEL)}
 def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, title: str = "") -> Axes:
     """The box of each object from above, dashed where the radar sees nothing of it, and an arrow along its way of a second.
 
-    Rows of several frames stand beside one another with a line through their centres, the last with the name of the object.
+    Rows of several frames stand beside one another with a line through their centres, the last with the name of the object: of
+    many objects those names that find room, the first ones of what the radar sees most of.
     truth: Truth; title: above the axes, "": that of axes with a title, else how many objects
     view: in the axes of the "radar", as `plot("above")` of detections is, or of the "world"; ax: axes to draw in, None: new ones
     Returns the axes: metres to the left across, left positive, and ahead up, of the radar or of the world. Raises TypeError

@@ -37,9 +37,10 @@ MIDDLE = 0.1                            # of the longer side of an object, to ei
 MOST_NAMES = 20                         # objects, and mirrors, that bear their names in a picture; more would hide each other
 FEW_NAMES = 12                          # as many all find room
 MOST_RAISED = 3                         # lines that one of more stands above its object at most: farther up it is of none
+MIRROR_LINES = 3                        # where the name of a mirror may stand, one above the other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
 MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
-RADAR_ASIDE, ON_MIRROR = (-10.0, 0.0), (0.0, 2.0)  # points, in perspective, from the radar and from mirrors to their names
+RADAR_ASIDE = -10.0, 0.0                # points, in perspective, from the radar to its name
 TITLE_PAD = 6.0                         # points between axes and title
 LETTER, LINE, POINTS_PER_INCH = 0.6, 1.2, 72.0  # width of a letter and height of a line over the size of the font
 DASHES = (0, (4, 3))
@@ -368,9 +369,10 @@ def _draw_names_in_perspective(axes, drawing: _Drawing) -> None:
     for name, (low, high) in _named_mirrors(drawing).items():
         is_floor = high[2] - low[2] < CUT
         place = low[0] + NAME_PLACE * (high[0] - low[0]), low[1] if is_floor else 0.5 * (low + high)[1], high[2]
-        if room.line_of(name, seen(place), ON_MIRROR) is not None:
-            axes.text(*place, short_name(name) + ("" if is_floor else "\n"), zorder=5, horizontalalignment="center",
-                      verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
+        line = room.line_of(name, seen(place), (0.0, 0.0), lines=range(MIRROR_LINES))
+        if line is not None:
+            axes.text(*place, short_name(name) + "\n" * line, zorder=5, horizontalalignment="center",
+                      verticalalignment="baseline", path_effects=_halo(), **MIRROR_NAME_LOOK)
 
 
 class _Room:
@@ -511,6 +513,9 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
     def write(name: str, place, offset: tuple, ha: str, **look) -> None:
         axes.annotate(short_name(name), place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
 
+    def below_top(place) -> float:
+        return (axes.transAxes.transform((0.0, 1.0)) - axes.transData.transform(place))[1] * POINTS_PER_INCH / axes.figure.dpi
+
     room, line_height = _Room(axes), LINE * NAME_LOOK["fontsize"]
     top = drawing.high[plane[1]] - 2.0 * drawing.margin  # the title is right above
     above = 0.0
@@ -520,15 +525,14 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
     room.line_of(RADAR_LABEL, radar, aside, 0.0 if is_high else 0.5)
     tops = {name: (0.5 * (low[0] + high[0]), high[1]) for name, (low, high) in drawing.names.items()} if plane == (0, 1) else {}
     for name, line in _lines_of(room, tops, (0, 3)).items():
-        raised = 3 + line * line_height
-        write(name, tops[name], (0, raised), "center", **NAME_LOOK)
-        below_top = (axes.transAxes.transform((0.0, 1.0)) - axes.transData.transform(tops[name]))[1]
-        above = max(above, raised + line_height - below_top * POINTS_PER_INCH / axes.figure.dpi)
+        write(name, tops[name], (0, 3 + line * line_height), "center", **NAME_LOOK)
+        above = max(above, 3 + (1 + line) * line_height - below_top(tops[name]))
     for name, (low, high) in _named_mirrors(drawing).items():
-        place = low[plane[0]], high[plane[1]]
-        if high[plane[1]] - low[plane[1]] < CUT and room.line_of(name, place, (4, 2), 0.0) is not None:
-            write(name, place, (4, 2), "left", **MIRROR_NAME_LOOK)
-            above = max(above, line_height if high[plane[1]] > top else 0.0)
+        place, is_line = (low[plane[0]], high[plane[1]]), high[plane[1]] - low[plane[1]] < CUT
+        line = room.line_of(name, place, (4, 2), 0.0, range(MIRROR_LINES)) if is_line else None
+        if line is not None:
+            write(name, place, (4, 2 + line * line_height), "left", **MIRROR_NAME_LOOK)
+            above = max(above, 2 + (1 + line) * line_height - below_top(place))
     return above
 
 

@@ -14,7 +14,8 @@ class Tracer {
   // Raises what `trace` raises. What is kept, and the strata that were fitted before, may be null.
   Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
          KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
-  // Shoots all rays; it returns the same record each time. `doubles`, which may be null, and the filter are those of `trace`.
+  // Shoots all rays; it returns the same record each time. `doubles`, which may be null, and the filter are those of
+  // `trace`.
   Paths run(Job* job, PlaneDoubles* doubles = nullptr, const RecordFilter& filter = {}) const;
   int64_t num_rays() const { return plan_.first_ray.back(); }
   int64_t num_blocks() const;

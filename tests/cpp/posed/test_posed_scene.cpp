@@ -107,7 +107,7 @@ TEST(PosedScene, TheCentroidOfASurfaceWeighsTrianglesByTheirAreas) {
   EXPECT_LT((surface_centroid(scene, std::array<uint32_t, 2>{0, 1}, 7.0) - expected).norm(), kRounding);
 }
 
-// As exact as the vertices, whose last bits are 1e-10 m there; moments about the origin of the world would scatter by far more.
+// The last bits of vertices are 1e-9 m there; moments about the origin of the world would round by more.
 TEST(PosedScene, TheCentroidOfASurfaceFarFromTheOriginIsAsExactAsItsVertices) {
   const Vec3 far(691607, 5334760, 520);
   std::vector<Vec3> vertices;

@@ -12,7 +12,8 @@ namespace echopath {
 class RecordInParts {
  public:
   // `empty` has the scene, the radar and the frame of the record, and outlives this. A part is complete once it has
-  // `paths_per_part` or more, by default never; `finished` takes it and returns what of it the record has, in the same order.
+  // `paths_per_part` or more, without which there is one; `finished` takes it and returns what of it the record has, in the
+  // same order.
   RecordInParts(const Paths& empty, std::optional<int64_t> paths_per_part, std::function<Paths(Paths)> finished);
   // Makes room for `num_blocks` blocks like these in a record of one part.
   void expect(const std::vector<PathBlock>& like, int64_t num_blocks);

@@ -107,10 +107,15 @@ def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, t
         grid = figure.add_gridspec(2, 2, height_ratios=(1.75, 1.0))
         perspective = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
         _draw_perspective(perspective, drawing)
-        _draw_flat(figure.add_subplot(grid[1, 0]), drawing, (0, 1), "From above")
-        _draw_flat(figure.add_subplot(grid[1, 1]), drawing, (0, 2), "From the side")
+        flat = [(figure.add_subplot(grid[1, 0]), (0, 1), "From above"), (figure.add_subplot(grid[1, 1]), (0, 2), "From the side")]
+        for axes, plane, its_title in flat:
+            _draw_flat(axes, drawing, plane, its_title)
         figure.suptitle(title, fontsize=11)
         _add_legend(figure, drawing)
+        figure.get_layout_engine().execute(figure)  # where names find room follows from how large the views are
+        _draw_names_in_perspective(perspective, drawing)
+        for axes, plane, its_title in flat:
+            axes.set_title(its_title, pad=TITLE_PAD + _draw_flat_names(axes, drawing, plane))
     return figure
 
 
@@ -332,7 +337,6 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False, in_layout=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
     _frame_box(axes, drawing)
-    _draw_names_in_perspective(axes, drawing)
 
 
 def _grounds(drawing: _Drawing) -> list:
@@ -352,7 +356,7 @@ def _above_ground(drawing: _Drawing) -> list:
 
 
 def _draw_names_in_perspective(axes, drawing: _Drawing) -> None:
-    """Names right above objects, lines higher where others stand, and on mirrors that have room. axes: whose box is final"""
+    """Names right above objects, lines higher where others stand, and on mirrors that have room. axes: as large as drawn"""
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
     axes.apply_aspect()
@@ -502,7 +506,7 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     sides = (drawing.high - drawing.low)[columns]
     for axis, side, room in zip((axes.xaxis, axes.yaxis), sides * min(FLAT_SIZE / sides), FLAT_TICKS):
         _set_ticks(axis, int(side / room))
-    axes.set_title(title, pad=TITLE_PAD + _draw_flat_names(axes, drawing, plane))
+    axes.set_title(title, pad=TITLE_PAD)
     axes.set_xlabel("xyz"[plane[0]] + " in m")
     axes.set_ylabel("xyz"[plane[1]] + " in m")
 
@@ -516,6 +520,7 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> float:
     def below_top(place) -> float:
         return (axes.transAxes.transform((0.0, 1.0)) - axes.transData.transform(place))[1] * POINTS_PER_INCH / axes.figure.dpi
 
+    axes.apply_aspect()
     room, line_height = _Room(axes), LINE * NAME_LOOK["fontsize"]
     top = drawing.high[plane[1]] - 2.0 * drawing.margin  # the title is right above
     above = 0.0

@@ -59,6 +59,12 @@ Paths empty_record(const SceneSnapshot& scene, const Radar& radar, const TraceSe
   return paths;
 }
 
+std::vector<const PathBlock*> pointers_to(const std::vector<PathBlock>& blocks) {
+  std::vector<const PathBlock*> pointers;
+  for (const PathBlock& block : blocks) pointers.push_back(&block);
+  return pointers;
+}
+
 EmbreeScene::Upkeep upkeep_of(const Radar& radar, const TraceSettings& settings) {
   if (settings.for_edits) return EmbreeScene::Upkeep::kEdits;
   return EmbreeScene::upkeep_near(radar.is_moving());
@@ -208,9 +214,7 @@ std::vector<const PathBlock*> Tracer::shoot_wave(int64_t begin, const std::vecto
 double Tracer::kept_share(const std::vector<PathBlock>& blocks, const RecordFilter& filter, Job* job) const {
   Paths paths = empty_;
   RecordWriter record(paths);
-  std::vector<const PathBlock*> all;
-  for (const PathBlock& block : blocks) all.push_back(&block);
-  record.append(all, job);
+  record.append(pointers_to(blocks), job);
   record.finish();
   const auto num_all = static_cast<double>(paths.num_paths());
   Job own(job);
@@ -241,9 +245,7 @@ Paths Tracer::run(Job* job, PlaneDoubles* doubles, const RecordFilter& filter) c
   };
   RecordInParts record(empty_, filter ? std::optional(kPathsPerPart) : std::nullopt, finished);
   const std::vector<PathBlock> without_rays = find_paths_without_rays(job);
-  std::vector<const PathBlock*> first_blocks;
-  for (const PathBlock& block : without_rays) first_blocks.push_back(&block);
-  record.append(first_blocks, job);
+  record.append(pointers_to(without_rays), job);
   if (job) job->start(num_blocks());
   std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
   const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;
@@ -262,13 +264,13 @@ Paths Tracer::run(Job* job, PlaneDoubles* doubles, const RecordFilter& filter) c
   }
   const PathBlock over_planes = images.find(job);
   const std::vector<PathBlock> of_edges = find_edges(lit, job);
-  std::vector<const PathBlock*> last_blocks = {&over_planes};
-  for (const PathBlock& block : of_edges) last_blocks.push_back(&block);
-  record.append(last_blocks, job);
+  record.append({&over_planes}, job);
+  record.append(pointers_to(of_edges), job);
   Paths paths = record.take();
   images.doubles().leave_out(paths, job);
   if (doubles) *doubles = images.doubles();
-  return filter && images.doubles().any() ? paths.with_own_hits(job) : paths;
+  if (filter && images.doubles().any()) return paths.with_own_hits(job);
+  return paths;
 }
 
 }  // namespace echopath

@@ -265,8 +265,9 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   const auto pilot_of = [&](const SceneSnapshot& seen, KeptGeometry* geometry, FittedStrata* strata) {
     TraceSettings launch = settings;
     launch.num_rays = settings.num_rays / kPilotDivisor;
-    if (settings.faint_power == 0.0) launch.num_rays_to_come = settings.num_rays;  // else only few paths are kept
-    launch.edges = false;                                                          // their echoes need no rays
+    // Of faint paths only few are kept: how many is known when the record is made.
+    if (settings.faint_power == 0.0) launch.num_rays_to_come = settings.num_rays;
+    launch.edges = false;  // their echoes need no rays
     return trace(seen, radar, launch, &unseen, geometry, strata);
   };
   const auto guide_by = [&](const Paths& pilot, int64_t num_rays, const StillRays& still) {

@@ -12,6 +12,21 @@ LINES_AWAY, UP, RIGHT = (1.0, 2.0, 3.0), (1.0, -1.0), (1.0, -1.0)  # where a nam
 NAME_RIM = 2.5       # points, white around names
 
 
+class Room:
+    """Which spans of a picture names have taken, so that none is written over another."""
+
+    def __init__(self, line: float):
+        """line: height of names, in the unit of all places"""
+        self._line, self._taken = line, []  # taken: (leftmost, rightmost, height)
+
+    def take(self, left: float, right: float, height: float) -> bool:
+        """Whether nothing stands there yet; it is taken from then on."""
+        is_free = all(right <= first or last <= left or abs(height - other) >= self._line for first, last, other in self._taken)
+        if is_free:
+            self._taken.append((left, right, height))
+        return is_free
+
+
 def write_names(ax, places) -> None:
     """Names beside their places, on the other side or below where they would be over another name; few also some lines away. One
     that finds no room is left out.
@@ -23,17 +38,15 @@ def write_names(ax, places) -> None:
 
     places = list(places)
     tried = list(itertools.product(LINES_AWAY if len(places) <= FEW else LINES_AWAY[:1], UP, RIGHT))
-    scale, taken = _points_per_metre(ax), []  # (leftmost, rightmost, height) of the names so far, points
+    scale, room = _points_per_metre(ax), Room(NAME_LINE)
     for name, (left, ahead) in places:
         for line, up, side in tried:
             begin, end = sorted(-left * scale + side * np.array([NAME_ASIDE, NAME_ASIDE + NAME_LETTER * len(name)]))
             away = up * (NAME_ASIDE + (line - 1.0) * NAME_LINE)
-            level = ahead * scale + away + 0.5 * up * NAME_SIZE
-            if all(right <= begin or end <= first or abs(other - level) >= NAME_LINE for first, right, other in taken):
+            if room.take(begin, end, ahead * scale + away + 0.5 * up * NAME_SIZE):
                 break
         else:
             continue
-        taken.append((begin, end, level))
         ax.annotate(name, (left, ahead), xytext=(side * NAME_ASIDE, away), textcoords="offset points",
                     color="0.1", fontsize=NAME_SIZE, horizontalalignment="left" if side > 0.0 else "right",
                     verticalalignment="bottom" if up > 0.0 else "top",

@@ -14,6 +14,7 @@ from ..base.text.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from ..scene.lifetimes import scene_in_frame
 from .clip import clip_triangles, outline
+from .names import Room
 from .style import BOUNCE_COLOURS, new_figure, short_name
 
 if TYPE_CHECKING:
@@ -383,7 +384,7 @@ class _Room:
     """Where the names of a view stand, of which none is written over another."""
 
     def __init__(self, axes):
-        self._axes, self._taken = axes, []  # taken: (leftmost, rightmost, height) of the names so far in points of the page
+        self._axes, self._room = axes, Room(LINE * NAME_LOOK["fontsize"])  # in points of the page
 
     def points(self, place) -> np.ndarray:
         """A place [2] in the coordinates of the axes, in points of the page."""
@@ -394,15 +395,9 @@ class _Room:
 
         offset: [2] points from the place to the name; share: of its length that stands to the left of there
         """
-        letter, line = LETTER * NAME_LOOK["fontsize"], LINE * NAME_LOOK["fontsize"]
-        (across, height), length = self.points(place) + offset, letter * (len(short_name(name)) + 1)
-        left, right = across - share * length, across + (1.0 - share) * length
-        for k in lines:
-            level = height + k * line
-            if all(right <= first or last <= left or abs(level - other) >= line for first, last, other in self._taken):
-                self._taken.append((left, right, level))
-                return k
-        return None
+        (across, height), length = self.points(place) + offset, LETTER * NAME_LOOK["fontsize"] * (len(short_name(name)) + 1)
+        left, right, line = across - share * length, across + (1.0 - share) * length, LINE * NAME_LOOK["fontsize"]
+        return next((k for k in lines if self._room.take(left, right, height + k * line)), None)
 
 
 def _lines_of(room: _Room, places: dict, offset) -> dict:

@@ -11,6 +11,7 @@ from ..arguments.checks import refused
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
+from .names import Room
 from .style import (
     AHEAD_LABEL,
     LEFT_LABEL,
@@ -138,20 +139,21 @@ def _name_places(axes, shown: dict, reach: float) -> None:
     from matplotlib.patheffects import withStroke
 
     lowest = axes.get_ylim()[0]
-    taken = [(left, left, ahead) for left, ahead in shown.values()]  # (leftmost, rightmost, height) in m of rings and names
+    length_of_letter, aside, line = NAME_LETTER * reach, NAME_ASIDE * reach, NAME_LINE * reach  # m
+    room = Room(0.99 * line)
+    for left, ahead in shown.values():
+        room.take(left, left, ahead)  # rings
     nearest = sorted(shown.items(), key=lambda one: math.hypot(*one[1]))[:MOST_NAMES]
     for name, (left, ahead) in sorted(nearest, key=lambda one: -one[1][1]):
         name = short_name(name)
-        length, aside, line = NAME_LETTER * reach * len(name), NAME_ASIDE * reach, NAME_LINE * reach
+        length = length_of_letter * len(name)
         num_rows = int((ahead - lowest) / line - 0.5)
         tried = ((left + side * aside, side, ahead - row * line) for row in range(1, num_rows + 1) for side in (-1.0, 1.0))
         for begin, side, height in tried:
-            span = sorted((begin, begin + side * length))
-            if all(span[1] < low or high < span[0] or abs(height - other) >= 0.99 * line for low, high, other in taken):
+            if room.take(*sorted((begin, begin + side * length)), height):
                 break
         else:
             continue
-        taken.append((*span, height))
         axes.annotate(name, (left, ahead), xytext=(begin, height), textcoords="data", color="white", fontsize=7,
                       verticalalignment="center", horizontalalignment="left" if side < 0.0 else "right",
                       path_effects=[withStroke(linewidth=2.0, foreground="black")],

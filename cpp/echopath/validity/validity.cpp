@@ -192,6 +192,8 @@ class ValidityCheck {
     const CheckTimes& times = check_.times();
     for (size_t id = 0; id < times.turn.size(); ++id) raise(turn[object_of(id)], times.turn[id]);
     for (const uint32_t id : times.too_fast) is_too_fast[object_of(id)] = 1;
+    report_.turn_of_radar = times.turn_of_radar;
+    report_.is_radar_too_fast = times.is_radar_too_fast;
     double strongest = 0.0;
     for (size_t i = 0; i < of_object_.size(); ++i) {
       ObjectValidity object = make_object(i);

@@ -72,9 +72,11 @@ struct ObjectValidity : ValidityShares {
 
 struct Validity {
   int64_t num_paths = 0;
-  std::vector<double> times;  // s, of the check
-  bool has_array = false;     // some antenna stands elsewhere than those of the trace, or has another beam
-  bool is_still = false;      // neither the scene nor the radar moves
+  std::vector<double> times;       // s, of the check
+  double turn_of_radar = 0.0;      // rad, how far the radar turns within the frame at most
+  bool is_radar_too_fast = false;  // so often that the times of the check may miss something of any object
+  bool has_array = false;          // some antenna stands elsewhere than those of the trace, or has another beam
+  bool is_still = false;           // neither the scene nor the radar moves
   SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;
   // These are errors of phase in rad: the rms weighted by power; the largest over the paths that carry any power; the

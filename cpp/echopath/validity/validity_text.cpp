@@ -86,14 +86,14 @@ std::string missing_warning(const ObjectValidity& object, const Validity& report
          margin + " dB above the noise of a range-Doppler cell: its echoes are missing. " + advice(report);
 }
 
-std::string fast_warning(const ObjectValidity& object, const Validity& report) {
-  if (kChecksPerTurn * object.turn / kTwoPi < 0.5 * kMaxCheckTimes) {
-    return "'" + object.name + "' goes from key to key so often within the frame that " +
-           std::to_string(report.times.size()) +
+// Of an object or the radar, whose turn within the frame is given in rad.
+std::string fast_warning(const std::string& subject, double turn, const Validity& report) {
+  if (kChecksPerTurn * turn / kTwoPi < 0.5 * kMaxCheckTimes) {
+    return subject + " goes from key to key so often within the frame that " + std::to_string(report.times.size()) +
            " times of the check may miss what becomes of it. Trace shorter frames, or let it move smoothly through its "
            "keys.";
   }
-  return "'" + object.name + "' turns up to " + with_digits(3, object.turn / kTwoPi) +
+  return subject + " turns up to " + with_digits(3, turn / kTwoPi) +
          " times within the frame, or goes to and fro as often: " + std::to_string(report.times.size()) +
          " times of the check may miss what becomes of it. Trace shorter frames.";
 }
@@ -117,7 +117,7 @@ std::string object_concerns(const ObjectValidity& object, const Validity& report
 
 std::string object_warning(const ObjectValidity& object, const Validity& report) {
   if (!object.has_paths) return missing_warning(object, report);
-  if (object.is_too_fast) return fast_warning(object, report);
+  if (object.is_too_fast && !report.is_radar_too_fast) return fast_warning("'" + object.name + "'", object.turn, report);
   std::string concerns = object_concerns(object, report);
   if (std::abs(object.error_db) > kObjectErrorDb && (!concerns.empty() || report.shares_hold())) {
     std::ostringstream error;
@@ -217,6 +217,8 @@ std::vector<std::string> Validity::warnings() const {
                   " was hidden from the trace: its echoes are missing. " + advice(*this) +
                   most_of(*this, &ValidityShares::new_surface));
   }
+  const bool is_any_off = !std::ranges::all_of(objects, &ObjectValidity::ok);
+  if (is_radar_too_fast && is_any_off) out.push_back(fast_warning("The radar", turn_of_radar, *this));
   for (const ObjectValidity& object : objects) {
     const std::string warning = object.ok() ? "" : object_warning(object, *this);
     if (!warning.empty()) out.push_back(warning);

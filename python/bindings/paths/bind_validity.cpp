@@ -101,6 +101,7 @@ void def_validity_travel(py::class_<Validity, ValidityPtr>& bound) {
   def_travel(
       bound, attribute("num_paths", &Validity::num_paths, "P, their number"),
       attribute("times", &Validity::times, "[T] s, of the check"), field("has_array", &Validity::has_array),
+      field("turn_of_radar", &Validity::turn_of_radar), field("is_radar_too_fast", &Validity::is_radar_too_fast),
       attribute("shares", &Validity::shares, "ValidityShares of all paths"),
       attribute("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power"),
       attribute("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas"),

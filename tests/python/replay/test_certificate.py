@@ -114,6 +114,21 @@ def test_many_keys_within_a_frame_are_a_warning_about_keys():
     assert told.startswith("'chest' goes from key to key so often") and "turns" not in told
 
 
+def test_many_keys_of_the_radar_are_one_warning_about_the_radar():
+    """A radar that shakes by 1 mm through 200 linear keys, before two chests at rest: neither of them goes anywhere."""
+    radar = radar_of()
+    times = np.linspace(-0.01, 1.01, 205) * frame_of(radar)
+    ways = 1e-3 * np.sin(2.0 * np.pi * 4.0 * times / frame_of(radar))[:, None] * (1, 0, 0)
+    radar = radar.replace(motion=ep.CurveMotion(ep.Curve(times, ways)))
+    scene = ep.Scene()
+    for side in (-1, 1):
+        scene.add(ep.actors.plate(0.3, 0.3), name=f"chest {side}", material=ROUGH, position=(4, side, 1), yaw=np.pi)
+    report = ep.validity(ep.trace(scene, radar, num_rays=500, max_bounces=1))
+    told, = (text for text in report.warnings if "goes from key to key" in text)
+    assert told.startswith("The radar goes from key to key so often") and len(report.times) == 256
+    assert not any(found.ok for found in report.objects.values())
+
+
 def test_slow_things_are_checked_at_few_times():
     radar = radar_of()
     scene = ep.Scene()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "echopath/base/constants.h"
@@ -13,28 +14,38 @@ namespace {
 constexpr double kSmallTurn = 0.25 * kPi;  // rad: what turns no farther is followed by the base
 constexpr double kChecksPerBreakpoint = 2.0;
 
-// Counts the breakpoints of the motions of a mesh, of those above it and of the radar.
-int64_t breakpoints_within(const Scene& scene, const Radar& radar, uint32_t mesh_id, const TimeSpan& frame) {
-  int64_t count = 0;
-  const auto add = [&](const std::vector<double>& times) {
-    count += std::ranges::count_if(times, [&](double time) { return time > frame.begin && time < frame.end; });
-  };
-  if (radar.motion) add(radar.motion->breakpoints(frame));
-  if (const auto& deformation = scene.node_of(mesh_id).deformation) add(deformation->breakpoints(frame));
-  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[i].parent) {
-    if (const auto& motion = scene.nodes()[i].motion) add(motion->breakpoints(frame));
-  }
+// Counts the breakpoints of a motion, of which there may be none, inside the frame.
+template <class Moves>
+int64_t breakpoints_within(const std::shared_ptr<const Moves>& motion, const TimeSpan& frame) {
+  if (!motion) return 0;
+  return std::ranges::count_if(motion->breakpoints(frame),
+                               [&](double time) { return time > frame.begin && time < frame.end; });
+}
+
+// Counts the breakpoints of the motions of a mesh and of those above it.
+int64_t breakpoints_within(const Scene& scene, uint32_t mesh_id, const TimeSpan& frame) {
+  int64_t count = breakpoints_within(scene.node_of(mesh_id).deformation, frame);
+  for (int i = scene.meshes()[mesh_id].node; i >= 0; i = scene.nodes()[i].parent)
+    count += breakpoints_within(scene.nodes()[i].motion, frame);
   return count;
 }
 
-std::vector<double> turns_of(const Scene& scene, const Radar& radar, const TimeSpan& frame) {
-  const double of_radar = turn_rate(radar, frame);
+std::vector<double> turns_of(const Scene& scene, double turn_of_radar, const TimeSpan& frame) {
   std::vector<double> turns;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    turns.push_back((turn_rate(scene, id, frame) + of_radar) * (frame.end - frame.begin));
-  }
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id)
+    turns.push_back(turn_rate(scene, id, frame) * (frame.end - frame.begin) + turn_of_radar);
   return turns;
 }
+
+double turn_of(const Radar& radar, const TimeSpan& frame) { return turn_rate(radar, frame) * (frame.end - frame.begin); }
+
+// Returns how many times beyond the base are due for so many breakpoints and so far a turn (rad).
+double further_times(int64_t num_breakpoints, double turn) {
+  const double at_breakpoints = kChecksPerBreakpoint * static_cast<double>(num_breakpoints);
+  return turn > kSmallTurn ? at_breakpoints + std::ceil(kChecksPerTurn * turn / kTwoPi) : at_breakpoints;
+}
+
+bool are_too_many(double further) { return kBaseCheckTimes + further > kMaxCheckTimes; }
 
 TimeSpan frame_of(const Radar& radar, double start) {
   const int last_tx = static_cast<int>(radar.transmitters.size()) - 1, last_chirp = radar.waveform.num_chirps - 1;
@@ -57,13 +68,15 @@ CheckTimes check_times(const Scene& scene, const Radar& radar, double start) {
   const bool moves = radar.is_moving() || scene.is_anything_moving();
   if (frame.begin == frame.end || !moves) return given_check_times(scene, radar, start, {frame.begin});
   CheckTimes found;
-  found.turn = turns_of(scene, radar, frame);
+  found.turn_of_radar = turn_of(radar, frame);
+  found.turn = turns_of(scene, found.turn_of_radar, frame);
   found.num_base = kBaseCheckTimes;
+  const int64_t of_radar = breakpoints_within(radar.motion, frame);
+  found.is_radar_too_fast = are_too_many(further_times(of_radar, found.turn_of_radar));
   int most = kBaseCheckTimes;
   for (uint32_t id = 0; id < found.turn.size(); ++id) {
-    double more = kChecksPerBreakpoint * static_cast<double>(breakpoints_within(scene, radar, id, frame));
-    if (found.turn[id] > kSmallTurn) more += std::ceil(kChecksPerTurn * found.turn[id] / kTwoPi);
-    if (kBaseCheckTimes + more > kMaxCheckTimes) found.too_fast.push_back(id);
+    const double more = further_times(of_radar + breakpoints_within(scene, id, frame), found.turn[id]);
+    if (are_too_many(more)) found.too_fast.push_back(id);
     found.of_mesh.push_back(static_cast<int>(std::min<double>(kBaseCheckTimes + more, kMaxCheckTimes)));
     most = std::max(most, found.of_mesh.back());
   }
@@ -73,7 +86,9 @@ CheckTimes check_times(const Scene& scene, const Radar& radar, double start) {
 
 CheckTimes given_check_times(const Scene& scene, const Radar& radar, double start, std::vector<double> times) {
   CheckTimes found;
-  found.turn = turns_of(scene, radar, frame_of(radar, start));
+  const TimeSpan frame = frame_of(radar, start);
+  found.turn_of_radar = turn_of(radar, frame);
+  found.turn = turns_of(scene, found.turn_of_radar, frame);
   found.num_base = static_cast<int>(times.size());
   found.of_mesh.assign(scene.meshes().size(), found.num_base);
   found.times = std::move(times);

@@ -17,8 +17,10 @@ struct CheckTimes {
   std::vector<double> times;       // s
   int num_base = 0;                // at which everything is checked
   std::vector<int> of_mesh;        // [meshes] how many of them a mesh needs
-  std::vector<double> turn;        // [meshes] rad, how far it turns within the frame at most (Motion::turn_rate)
+  std::vector<double> turn;        // [meshes] rad, how far it turns within the frame, seen by the radar (Motion::turn_rate)
   std::vector<uint32_t> too_fast;  // IDs of meshes that would need more than kMaxCheckTimes, by turns or breakpoints
+  double turn_of_radar = 0.0;      // rad, its part of all turns
+  bool is_radar_too_fast = false;  // its motion alone would need more than kMaxCheckTimes
 };
 
 // Returns the beginning of the frame that starts at `start` (s), and where something moves its end and times between: eight

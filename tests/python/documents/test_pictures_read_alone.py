@@ -11,7 +11,7 @@ from matplotlib.text import Text
 import echopath as ep
 from echopath import plots
 from echopath.paths.subset import first_group, strongest_of_each
-from echopath.plots.scene_view import _is_cut
+from echopath.plots.scene_view.drawing import is_cut
 from echopath.signals.measures import for_pictures
 from echopath.truth.places import true_places
 
@@ -63,8 +63,8 @@ def test_maps_of_parts_with_small_print_name_their_range():
 def test_mirrors_have_no_edge_where_the_picture_cuts_them():
     low, high = np.zeros(3), np.full(3, 2.0)
     on_border = np.array([[2.0, 0.3, 0.1], [2.0, 1.1, 0.1]])
-    assert _is_cut(on_border, low, high) and not _is_cut(on_border - [0.5, 0.0, 0.0], low, high)
-    assert not _is_cut(np.array([[2.0, 0.3, 0.1], [1.0, 0.3, 0.1]]), low, high)  # which only ends there
+    assert is_cut(on_border, low, high) and not is_cut(on_border - [0.5, 0.0, 0.0], low, high)
+    assert not is_cut(np.array([[2.0, 0.3, 0.1], [1.0, 0.3, 0.1]]), low, high)  # which only ends there
 
 
 def texts_of(figure) -> list:

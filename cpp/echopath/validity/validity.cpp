@@ -20,7 +20,6 @@ namespace {
 
 constexpr int64_t kPathsPerBlock = 2048;
 constexpr int64_t kBlocksInFlight = 64;  // fixed: sums must not depend on the number of threads
-constexpr size_t kTimesAtOnce = kBaseCheckTimes;
 
 bool is_field(const LocalPath& path) { return path.diffuse == 0 && path.last_material >= 0; }
 
@@ -39,7 +38,7 @@ class ValidityCheck {
 
   Validity run() {
     findings_.resize(sample_.paths.size());
-    for (size_t first = 0; first < report_.times.size(); first += kTimesAtOnce) check_times_from(first);
+    for (size_t first = 0; first < report_.times.size(); first += check_.times_at_once()) check_times_from(first);
     sum_findings();
     seen_ = find_seen_powers(paths_, radar_, check_, at_times_, job_);
     make_objects();
@@ -69,7 +68,7 @@ class ValidityCheck {
   void check_times_from(size_t first) {
     const std::vector<size_t> members = members_from(first);
     if (first > 0 && members.empty()) return;
-    check_.pose(first, kTimesAtOnce, job_);
+    check_.pose(first, job_);
     const int64_t size = std::ssize(members), num_blocks = num_chunks(size, kPathsPerBlock);
     if (job_) job_->start(num_blocks);
     for (int64_t begin = 0; begin < num_blocks; begin += kBlocksInFlight) {

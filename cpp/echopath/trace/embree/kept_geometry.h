@@ -2,6 +2,7 @@
 // Keeps geometry from one trace of a scene to the next.
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "echopath/trace/embree/embree_scene.h"
 
@@ -27,6 +28,10 @@ class GeometryLoan {
 
 // Holds the memory of one EmbreeScene between loans. Thread-safe; must outlive its loans.
 class KeptGeometry {
+ public:
+  // Keeps what another use has left over, if anything.
+  explicit KeptGeometry(std::unique_ptr<EmbreeScene> geometry = nullptr) : geometry_(std::move(geometry)) {}
+
  private:
   friend class GeometryLoan;
   std::unique_ptr<EmbreeScene> take();

@@ -46,8 +46,13 @@ class FrameCheck {
   // Returns how many of the times a path needs, counted from the first, by what it touches and what may come in its way.
   int times_of(const LocalPath& path) const;
 
-  // Poses the scene at the times [first, first + count), for `check`. No other call may run meanwhile.
-  void pose(size_t first, size_t count, Job* job = nullptr);
+  // Returns how many times are best posed together. Each has geometry of its own then, which a scene of many triangles, even
+  // if few of them move, is quicker without, and which takes its memory.
+  size_t times_at_once() const;
+  // Poses the scene at so many times from the one of index `first` on, for `check`. No other call may run meanwhile.
+  void pose(size_t first, Job* job = nullptr);
+  // Ends the check: nothing is posed any more. Hands over the geometries for other uses, of which there is at least one.
+  std::vector<std::unique_ptr<EmbreeScene>> take_geometries();
   // Returns the echoes [P] at the trace time. Thread-safe, as all that follows.
   std::vector<Echo> at_trace(std::span<const int64_t> paths) const;
   // Returns the echoes [P, time] at the posed times. `local` holds the same paths; `traced` holds their echoes at the trace
@@ -77,7 +82,7 @@ class FrameCheck {
   std::vector<Echo> echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const;
   void find_sweeps();
   // Returns the geometry at one of the posed times, updated from the time that stood in its place.
-  std::shared_ptr<const EmbreeScene> posed_geometry(size_t index, const PosedScene& pose, Job* job);
+  const EmbreeScene& posed_geometry(size_t index, const PosedScene& pose, Job* job);
 
   const Paths& paths_;
   CheckTimes times_;
@@ -91,10 +96,9 @@ class FrameCheck {
   std::vector<uint8_t> mesh_moves_;  // by mesh ID
   bool is_geometry_still_, is_still_;
   Vec3 origin_;
-  std::shared_ptr<EmbreeScene> traced_;
-  std::vector<std::shared_ptr<EmbreeScene>> geometries_;  // [posed times], updated from time to time
-  std::unique_ptr<const View> trace_view_;
-  std::vector<std::unique_ptr<const View>> views_;  // posed
+  std::vector<std::unique_ptr<EmbreeScene>> geometries_;  // [posed times], the first of them first posed as traced
+  std::unique_ptr<const View> trace_view_;                // for cosines, which ask no geometry
+  std::vector<std::unique_ptr<const View>> views_;        // posed
   // Poses the first antennas and all meshes; they are kept for the time of the trace and for the posed times.
   PosedNodes posed_nodes(std::span<const double> times) const;
   PosedNodes traced_nodes_, posed_nodes_;

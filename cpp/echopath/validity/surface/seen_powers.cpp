@@ -59,7 +59,7 @@ std::map<size_t, SeenNow> seen_by(const SurfaceSearch& found, Radar radar, const
 
 }  // namespace
 
-std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& radar, const FrameCheck& check,
+std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& radar, FrameCheck& check,
                                              ObjectsAtTimes& at_times, Job* job) {
   std::map<size_t, SeenPower> objects;
   if (!check.anything_moves() && !check.has_array()) return objects;
@@ -72,7 +72,8 @@ std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& ra
   look.num_rays = std::max(kLeastRaysOfLook, std::clamp(num_wanted, kLeastSearchRays, kMostSearchRays) / num_looks);
   look.seed = paths.frame.seed ^ kSearchSeed;
   const BandSum::Band band(radar.waveform);
-  KeptGeometry then, now;
+  std::vector<std::unique_ptr<EmbreeScene>> left_over = check.take_geometries();
+  KeptGeometry then(std::move(left_over.front())), now(left_over.size() > 1 ? std::move(left_over[1]) : nullptr);
   for (size_t time = 0; time < times.size(); ++time) {
     look.time = times[time];
     for (look.antenna = 0; look.antenna < num_pairs; ++look.antenna) {

@@ -16,8 +16,8 @@ struct SeenPower {
 
 // Returns the powers of objects by node index; there are none where nothing moves and there is no array. Adds the power of
 // new surface that the antennas of the trace receive at the base times to `at_times`. Paths and radar are those of the
-// check. The result has the same bits for any number of threads. Raises Cancelled.
-std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& radar, const FrameCheck& check,
+// check, which ends here. The result has the same bits for any number of threads. Raises Cancelled.
+std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& radar, FrameCheck& check,
                                              ObjectsAtTimes& at_times, Job* job);
 
 }  // namespace echopath

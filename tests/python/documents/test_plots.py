@@ -24,6 +24,7 @@ from echopath.plots import (
     save_png,
 )
 from echopath.plots.clip import clip_triangles, outline
+from echopath.plots.scene_view import drawing
 from support.radars import build_radar
 
 AREA_TOLERANCE = 1e-12
@@ -536,6 +537,27 @@ def test_what_is_smaller_than_a_dot_of_the_picture_is_drawn_as_dots():
     (left, low), (right, high) = to_page((49.65, -0.35)), to_page((50.35, 0.35))  # a square within the ball
     column, row = slice(int(np.ceil(left)), int(right)), slice(-int(high), -int(np.ceil(low)))
     assert page[row, column].size > 0 and page[row, column].max() < 200
+
+
+def test_a_ground_of_too_many_triangles_is_drawn_whole_of_fewer(monkeypatch):
+    """20,000 triangles of 0.4 m, which are larger than dots, in a picture that may have 3000."""
+    monkeypatch.setattr(drawing, "MOST_TRIANGLES", 3000)
+    side = np.linspace(-20.0, 20.0, 101)
+    x, y = np.meshgrid(side + 25.0, side, indexing="ij")
+    corner = np.arange(101 * 101).reshape(101, 101)
+    a, b, c, d = (part.ravel() for part in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]))
+    ground = ep.Mesh(np.stack([x, y, 0.1 * np.sin(x)], axis=-1).reshape(-1, 3),
+                     np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]))
+    scene = ep.Scene()
+    scene.add(ground, name="ground", material=ep.Material(reflectivity=0.3, scattering=1.0))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    figure.canvas.draw()
+    from_above = figure.axes[1]
+    assert max(len(some.get_paths()) for some in from_above.collections if isinstance(some, PolyCollection)) <= 3000
+    page = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    (left, low), (right, high) = from_above.transData.transform(((7.0, 2.0), (43.0, 18.0)))  # beside rays and names
+    assert page[-int(high):-int(np.ceil(low)), int(np.ceil(left)):int(right)].min(axis=-1).max() < 200  # nothing is white
 
 
 def test_the_name_of_a_bent_object_stands_at_the_object():

@@ -8,13 +8,13 @@ import numpy as np
 
 from ...base.text.mesh_names import object_of
 from ..clip import clip_triangles, outline
+from .dots import thinned
 
 BODY_COLOUR = np.array([0.35, 0.38, 0.44])
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
+MOST_TRIANGLES = 100_000                # of all meshes that are no mirrors: Matplotlib takes 20 us to draw each of them
 CUT = 1e-6                              # m: what lies as near to the border of the picture was cut there
 MARGIN, SHARE_OF_MARGIN = 0.6, 0.25      # m around the rays, and most of the longest side of what is smaller
-DOTS = 3000                             # along the longest side of a picture: what is smaller than one cannot be told apart
-DOT_COVERS = 2.0                        # of its size: triangles of that leave no gaps between dots
 FLOOR = 0.02                            # of the height of what is drawn: level grounds end no farther above its lowest point
 WIDE_GROUND, LYING = 0.5, 0.7           # of the longest side of the picture, and mean cosine of the slope, of grounds that rise
 MIDDLE = 0.1                            # of the longer side of an object, to either side of its middle: what has its name above
@@ -53,9 +53,10 @@ def collect(scene, shown, time: float, names, named: list) -> Drawing:
     low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     middle = 0.5 * (transmitter + receiver)
     drawing = Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, named, time), {}, margin)
+    most = MOST_TRIANGLES / max(scene.num_triangles, 1)
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
-        _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh)
+        _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh, most)
     return drawing
 
 
@@ -109,9 +110,9 @@ def _middle_of(points) -> tuple:
     return np.append(some[:, :2].min(axis=0), low[2]), np.append(some[:, :2].max(axis=0), high[2])
 
 
-def _add_mesh(drawing: Drawing, triangles, mesh) -> None:
-    dot = (drawing.high - drawing.low).max() / DOTS
-    shown = triangles if mesh.material.mirror else _as_dots(triangles, drawing.low, dot)
+def _add_mesh(drawing: Drawing, triangles, mesh, most: float) -> None:
+    """most: triangles to be drawn, over those that there are"""
+    shown = triangles if mesh.material.mirror else thinned(triangles, drawing.low, drawing.high, most)
     polygons = clip_triangles(shown, drawing.low, drawing.high)
     if mesh.material.mirror:
         drawing.mirrors += polygons
@@ -125,19 +126,6 @@ def _add_mesh(drawing: Drawing, triangles, mesh) -> None:
             drawing.grounds.append((triangles[..., 2].max(), len(drawing.bodies), len(drawing.bodies) + len(polygons)))
         drawing.bodies += polygons
         drawing.body_colours += _shaded(np.array([polygon[:3] for polygon in polygons]))
-
-
-def _as_dots(triangles, low, dot: float) -> np.ndarray:
-    """Triangles [N, 3, 3], of those smaller than a dot in m one for each dot, which covers it: a person far away has thousands.
-    low: [3] where dots begin"""
-    size = np.ptp(triangles, axis=1).max(axis=1)
-    small = np.flatnonzero(size < dot)
-    middle = triangles[small].mean(axis=1)
-    place = np.floor((middle - low) / dot).astype(np.int64)
-    _, first = np.unique((place[:, 0] * 2**20 + place[:, 1]) * 2**20 + place[:, 2], return_index=True)
-    kept, middle = small[first], middle[first, None]
-    larger = DOT_COVERS * dot / np.maximum(size[kept], np.finfo(float).tiny)
-    return np.concatenate([triangles[size >= dot], middle + (triangles[kept] - middle) * larger[:, None, None]])
 
 
 def _is_ground(drawing: Drawing, triangles) -> bool:

@@ -26,8 +26,12 @@ _PLACES = {"house", "home", "kennel", "stop", "station", "park", "lot", "garage"
            "crossing", "bridge", "sign", "rack", "stand", "shelter", "shed", "stable", "barn", "pen", "hole"}
 _KNOWN = {word for known, _, _ in _SIZES.values() for word in known}
 # words of what stands about such things in a scene, which is as large as it likes
-_SURROUNDINGS = {"ground", "terrain", "road", "street", "pavement", "sidewalk", "wall", "walls", "house", "houses", "building",
-                 "buildings", "town", "city", "village", "forest", "sky"}
+_SURROUNDINGS = {"ground", "terrain", "road", "street", "pavement", "sidewalk", "house", "houses", "building", "buildings",
+                 "town", "city", "village", "forest", "sky"}
+_ENCLOSURES = {"wall", "walls", "floor", "ceiling"}  # the same, in a room, too
+# a room, whatever else is named in it
+_ROOMS = {"room", "bedroom", "bathroom", "livingroom", "classroom", "kitchen", "office", "apartment", "corridor"}
+_ROOM = ("a room", 1.0, 200.0)
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "km": 1e3}  # m
 SMALLEST, LARGEST = 0.02, 5e4  # m, of anything that a radar looks at
 _FIGURE, _BODY = ("a figure with a skeleton", 0.05, 10.0), ("a single body", SMALLEST, 500.0)
@@ -72,7 +76,8 @@ def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = F
     is_figure: whether it has a skeleton; is_body: whether it is one mesh alone, and no terrain
     """
     usual = _FIGURE if is_figure else _BODY if is_body else ("a scene", SMALLEST, LARGEST)
-    what, least, most = _expected(names) or usual
+    named = _expected(names)
+    what, least, most = usual if named is None or (is_figure and named is _ROOM) else named  # figures are smaller than their room
     if extent == 0.0 or least <= extent <= most:
         return None
     fits = [f"unit={value:g} ({name})" for name, value in _UNITS.items() if least <= extent / unit * value <= most]
@@ -83,7 +88,12 @@ def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = F
 def _expected(names: list[str]) -> tuple[str, float, float] | None:
     """(what it is, least and greatest extent in m) by the names; None: these do not say."""
     words_of_names = [{word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)} for name in names]
-    if any(words & _SURROUNDINGS and not words & _KNOWN for words in words_of_names):
+    surroundings = set().union(*(words for words in words_of_names if not words & _KNOWN))
+    if surroundings & _SURROUNDINGS:
+        return None
+    if surroundings & _ROOMS:
+        return _ROOM
+    if surroundings & _ENCLOSURES:
         return None
     for words in words_of_names:
         for what, (known, least, most) in _SIZES.items():

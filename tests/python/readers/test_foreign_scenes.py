@@ -259,10 +259,19 @@ def test_a_file_without_surfaces_is_refused_in_any_format(tmp_path, name):
     (9.0, 1.0, ["dog_house"], None), (60.0, 1.0, ["BusStop"], None),
     (60.0, 1.0, ["map", "house_left", "ground", "van0"], None), (60.0, 1.0, ["map", "van0"], "a vehicle of 60 m is hardly right"),
     (4.2, 1.0, ["thing", "Car_Body"], None), (4.2, 1.0, ["thing", "body", "wheel"], None),
+    (8000.0, 1.0, ["room", "floor", "person"], "a room of 8 km is hardly right; with unit=0.001 [(]mm[)]"),
+    (8.0, 1.0, ["LivingRoom", "person"], None), (8.0, 1.0, ["scene", "floor", "person", "table"], None),
+    (600.0, 1.0, ["town", "house", "office"], None), (60.0, 1.0, ["scene", "car_floor"], "a vehicle of 60 m is hardly right"),
 ])
 def test_sizes_that_cannot_be_say_which_unit_would_be_right(extent, unit, names, words):
     doubt = unit_doubt(extent, unit, names)
     assert doubt is None if words is None else re.match(words, doubt)
+
+
+def test_a_figure_in_a_room_is_held_to_the_size_of_a_figure():
+    assert unit_doubt(1.8, 1.0, ["room", "figure"], is_figure=True) is None
+    told = unit_doubt(180.0, 1.0, ["room", "figure"], is_figure=True)
+    assert told is not None and told.startswith("a figure with a skeleton of 180 m is hardly right; with unit=0.001 (mm)")
 
 
 def test_one_body_of_kilometres_is_told_with_the_unit_that_would_be_right():

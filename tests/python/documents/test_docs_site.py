@@ -31,7 +31,7 @@ TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "liquid_l
                                          "scanning_radar")),
          *(f"results/{name}" for name in ("angle_map", "spectrogram", "breath_and_heartbeat", "arms_only", "rcs_over_angle",
                                           "polarimetry", "label_masks", "detections", "truth_and_tracks",
-                                          "synthetic_aperture", "rays_of_a_peak", "pictures")),
+                                          "synthetic_aperture", "rays_of_a_peak", "own_processing", "pictures")),
          *(f"runs/{name}" for name in ("scene_file", "frames_in_time", "several_processes", "dataset")))
 LARGEST_FILE = 200_000  # bytes
 

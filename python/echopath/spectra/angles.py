@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import (
+    COMMON,
     LARGEST_COUNT,
     ArrayLike,
     Progress,
@@ -37,6 +38,8 @@ _OF_CELLS = optional(array("[N]", finite=True))
 _BEAM_RULES = {
     "azimuth": _ANGLES, "elevation": _ANGLES, "method": one_of(BeamMethod), "overlaps": one_of(Overlaps), "compensate": flag,
     "diagonal_loading": real(1e-9, 1e3), "forward_backward": flag, "window": window_rule}
+MAP_RULES = {**COMMON, **_BEAM_RULES, "velocity": optional(real(unit="m/s")), "combine": one_of(Combine),
+             "velocity_gate": gate}  # of `range_azimuth`
 
 
 @checked()
@@ -133,7 +136,7 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
                           range_neighbours=range_neighbours, forward_backward=forward_backward, progress=progress)
 
 
-@checked(**_BEAM_RULES, velocity=optional(real(unit="m/s")), combine=one_of(Combine), velocity_gate=gate)
+@checked(**MAP_RULES)
 def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
                   elevation: ArrayLike | None = 0.0, *, velocity: float | None = None, combine: Combine = "sum",
                   velocity_gate: ArrayLike | None = None, method: BeamMethod = "bartlett", window: Window = "rect",

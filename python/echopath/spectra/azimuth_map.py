@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import copy
-import warnings
 from collections.abc import Mapping, Set
 
 import numpy as np
@@ -12,12 +11,13 @@ from ..arguments.checks import keywords, optional, real, refused
 from ..arguments.gates import gate, in_gate
 from ..arguments.keywords import parameters_of
 from ..base.radar.velocities import velocity_span_of
-from .angles import range_azimuth
+from .angles import MAP_RULES, range_azimuth
 
 DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
 
 _ARRAYS = ("azimuth", "elevation", "velocity_gate")
 _OWN = ("spectrum", "radar", "progress")  # of the call, which no settings have
+_OF_MAP = ("velocity", "combine", "velocity_gate")  # which the beams of a map have not
 _KEYWORDS = keywords("range_azimuth", tuple(name for name in parameters_of(range_azimuth) if name not in _OWN))
 
 
@@ -54,10 +54,10 @@ def checked_settings(radar, settings, velocity_gate=None, zero_pad: int | None =
     checked = settings | {"velocity": None, "velocity_gate": None}
     if settings.get("azimuth") is None and not sees_azimuth(radar, settings):
         checked["azimuth"] = 0.0  # the radar gets no map: its default may be refused
+    passed = {name: MAP_RULES[name](name, value) for name, value in checked.items()}
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
-        range_azimuth(_core.range_doppler(cube, small), small, **checked)
+    beams = {name: value for name, value in passed.items() if name not in _OF_MAP}
+    _core.beamform(_core.range_doppler(cube, small), small, **beams)  # warns of nothing, not of a radar that gets no map either
     return settings
 
 

@@ -133,6 +133,16 @@ def test_a_thread_says_once_what_python_says_once():
     assert warned_in_threads("always") == 3 * [__file__] and warned_in_threads("default") == [__file__]
 
 
+def test_simulations_in_a_loop_say_once_what_python_says_once(radar):
+    coarse, row = _coarse_ball(), [ep.Antenna((0, 0.002 * number, 0)) for number in range(4)]
+    for one in (radar, radar.replace(receivers=row)):  # without a map of azimuths, and with one
+        with warnings.catch_warnings(record=True) as record:
+            warnings.simplefilter("default")
+            for _ in range(3):
+                ep.simulate(coarse, one, num_rays=100, guard=False)
+        assert len(_lines(record, "edges of")) == 1
+
+
 def test_warnings_that_are_errors_end_the_loop(radar):
     with warnings.catch_warnings(), pytest.raises(RuntimeWarning, match="has no mesh that takes part"):
         warnings.simplefilter("error")

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTimeRounding = 1e-12;    // relative, and in s for times below 1 s
 constexpr double kMinDisplacement = 1e-9;  // m
+constexpr double kLongEnd = 8.0;           // times the piece next to it
 constexpr int64_t kPointsPerTask = 680;    // keeps three rows of their coordinates in the first-level cache
 
 using Velocity = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;  // of a point with up to 4 coordinates, per s
@@ -100,8 +101,14 @@ std::vector<double> SplineKnots::breakpoints() const {
   return {times_.begin() + 1, times_.end() - 1};
 }
 
+double SplineKnots::end_share(size_t end_piece, size_t next_piece) const {
+  const double ratio = step_[end_piece] / step_[next_piece];
+  return ratio <= kLongEnd ? ratio : 0.0;
+}
+
 // Row i: h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (slope[i] - slope[i-1]). The ends m[0] and m[T-1] are
-// eliminated by a continuous third derivative at knots 1 and T-2; the matrix stays diagonally dominant.
+// eliminated by a continuous third derivative at knots 1 and T-2, or in long end pieces by none; the matrix stays diagonally
+// dominant.
 void SplineKnots::factor() {
   const size_t n = times_.size();
   const std::vector<double>& h = step_;
@@ -114,8 +121,9 @@ void SplineKnots::factor() {
     inverse_[1] = 1.0 / (3.0 * (h[0] + h[1]));
     return;
   }
-  diagonal[1] += h[0] * (1.0 + h[0] / h[1]), upper_[1] -= h[0] * h[0] / h[1];
-  diagonal[n - 2] += h[n - 2] * (1.0 + h[n - 2] / h[n - 3]), lower_[n - 2] -= h[n - 2] * h[n - 2] / h[n - 3];
+  const double first = end_share(0, 1), last = end_share(n - 2, n - 3);
+  diagonal[1] += h[0] * (1.0 + first), upper_[1] -= h[0] * first;
+  diagonal[n - 2] += h[n - 2] * (1.0 + last), lower_[n - 2] -= h[n - 2] * last;
   lower_[1] = 0.0, upper_[n - 2] = 0.0;
   for (size_t i = 1; i + 1 < n; ++i) {
     inverse_[i] = 1.0 / (diagonal[i] - lower_[i] * upper_[i - 1]);
@@ -174,7 +182,7 @@ void SplineKnots::solve_columns(const std::vector<const double*>& rows, const st
   for (size_t i = n - 3; i >= 1; --i) {
     for (int64_t c = begin; c < end; ++c) out[i][c] -= upper_[i] * out[i + 1][c];
   }
-  const double first = h[0] / h[1], last = h[n - 2] / h[n - 3];
+  const double first = end_share(0, 1), last = end_share(n - 2, n - 3);
   for (int64_t c = begin; c < end; ++c) {
     out[0][c] = (1.0 + first) * out[1][c] - first * out[2][c];
     out[n - 1][c] = (1.0 + last) * out[n - 2][c] - last * out[n - 3][c];

@@ -13,7 +13,8 @@ namespace echopath {
 //
 // kCubic is the C2 cubic spline with not-a-knot ends (de Boor, "A Practical Guide to Splines", ch. IV): the first two
 // and the last two pieces are one cubic each, so every cubic is reproduced. Two knots give the line, three the
-// parabola.
+// parabola. An end piece more than eight times as long as its neighbour is a parabola: as part of the same cubic it
+// would swing by what the neighbour bends times the cube of their ratio.
 //
 // kMonotone has cubic pieces whose speed at a knot is the weighted harmonic mean of the speeds of the straight ways before
 // and behind (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984, p. 300), and whose direction is the mean of
@@ -49,6 +50,9 @@ class SplineKnots {
 
  private:
   void factor();
+  // Returns by how much the second derivative at an end differs from that at the next knot, over how much that one differs
+  // from that of the knot behind it.
+  double end_share(size_t end_piece, size_t next_piece) const;
   void velocities_of_points(const std::vector<const double*>& rows, int64_t num_axes, const std::vector<double*>& out,
                             int64_t begin, int64_t end) const;
   void solve_columns(const std::vector<const double*>& rows, const std::vector<double*>& out, int64_t begin,

@@ -16,6 +16,8 @@
 namespace echopath {
 namespace {
 
+constexpr double kLongChirp = 1.0;  // s: of a sampling rate in MHz
+
 // A chirp may fill its slot: num_samples / sampling_rate may round above the interval by an ulp or two.
 constexpr double kSlotTolerance = 1e-9;
 // Of the sine of phases that are meant as signs, multiples of pi.
@@ -99,7 +101,8 @@ void ChirpSequence::validate() const {
   require(num_chirps >= 1, "num_chirps", "must be at least 1", num_chirps);
   require_positive(chirp_interval, "chirp_interval");
   require(chirp_interval >= chirp_duration() * (1.0 - kSlotTolerance), "chirp_interval",
-          "must be at least num_samples / sampling_rate = " + std::to_string(chirp_duration() * 1e6) + " us",
+          streamed("must be at least num_samples / sampling_rate = ", chirp_duration(), " s",
+                   chirp_duration() > kLongChirp ? ", with sampling_rate in Hz" : ""),
           chirp_interval);
   validate_list(extra_idle, "extra_idle", -std::numeric_limits<double>::min(), "must be finite and not negative");
   validate_list(frequency_steps, "frequency_steps", -start_frequency, "must be finite and leave a positive start_frequency");

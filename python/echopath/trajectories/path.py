@@ -12,6 +12,8 @@ PIECES = 4             # of each interval between knots, for the integral of the
 MOST_HALVINGS = 24     # of a piece: those that a hairpin needs lie in it alone
 FINE_PARTS = 256       # of each interval between knots, of even u: |p'| is small where a spline bends within little way
 DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance, and by which distances may lie beyond the end
+ROUNDING = 4.0 * np.finfo(float).eps  # of the length: no piece of a path of thousands of kilometres meets that tolerance
+LONG_END = 2.0              # times the chord next to it: what a longer chord at an end swings by, not-a-knot, grows with its cube
 ON_THE_SPOT = 1e-5     # m, of way, in less of which a path that looks the other way turns back
 TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
 NEWTON_STEPS = 5       # after which a distance is met to rounding, where the most pieces do not meet the tolerance
@@ -93,7 +95,7 @@ class Path:
         for _ in range(MOST_HALVINGS + 1):
             self._s = np.concatenate([[0.0], np.cumsum(self._integral(self._u[:-1], self._u[1:]))])
             self._quintics = self._made_quintics()
-            is_off = self._errors() >= DISTANCE_TOLERANCE
+            is_off = self._errors() >= max(DISTANCE_TOLERANCE, ROUNDING * self._s[-1])
             self._is_met = not is_off.any()
             if self._is_met:
                 return
@@ -167,15 +169,21 @@ def turn_of(tangent, bend):
 
 
 class SplinePath(Path):
-    """A C2 cubic spline over the chord lengths through points [P, 3], not-a-knot at its ends; two points: a line, three: a
-    parabola."""
+    """A C2 cubic spline over the chord lengths through points [P, 3]; two points: a line, three: a parabola.
+
+    Its ends are not-a-knot, which is of the fourth order. Where the last chord is much longer than the one next to it, as that
+    of a track that was lost before its last row, noise of centimetres would swing it by many metres: there it has the slope of
+    the parabola through the last three points.
+    """
 
     def __init__(self, points):
         from scipy.interpolate import CubicSpline
 
         points = np.asarray(points, float)
         knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=-1))])
-        self._spline = CubicSpline(knots, points, bc_type="not-a-knot")
+        backwards = np.cumsum(np.diff(knots)[::-1])
+        ends = _end_of_spline(points[:3], knots[1:3]), _end_of_spline(points[::-1][:3], -backwards[:2])
+        self._spline = CubicSpline(knots, points, bc_type=ends if len(points) > 3 else "not-a-knot")
         super().__init__(knots)
 
     def jets(self, u):
@@ -183,6 +191,14 @@ class SplinePath(Path):
 
     def slopes_at(self, u):
         return self._spline(u, 1)
+
+
+def _end_of_spline(points, away):
+    """SciPy's condition at an end, from the points [3, 3] there, inwards, and how far [2] the others are from the first."""
+    if len(points) < 3 or abs(away[0]) <= LONG_END * abs(away[1] - away[0]):
+        return "not-a-knot"
+    near, far = (points[1:] - points[0]) / away[:, None]
+    return 1, near - away[0] * (far - near) / (away[1] - away[0])
 
 
 class ArcPath(Path):

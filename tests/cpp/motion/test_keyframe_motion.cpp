@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -56,6 +57,29 @@ TEST(KeyframeMotion, SplinesThroughThreeKeysAreTheirParabola) {
 TEST(KeyframeMotion, SplinesThroughTwoKeysAreTheirLine) {
   const std::vector<double> times = {0.0, 0.2};
   EXPECT_LT(worst_error(KeyframeMotion(times, sampled(line, times), {}), line), kRounding);
+}
+
+// A parabola from 0 to 0 over `kRest`, whose slope at the end is no steeper than what follows, is no higher than a quarter
+// of their product.
+TEST(KeyframeMotion, ALongRestBeforeOrBehindAWaySwingsNoFartherThanAParabola) {
+  constexpr double kRest = 10.0, kSpeed = 1.4;
+  std::vector<double> times = {0.0};
+  std::vector<Vec3> places = {Vec3::Zero()};
+  for (int i = 0; i < 5; ++i) {
+    times.push_back(kRest + 0.1 * i);
+    places.emplace_back(0.1 * kSpeed * i, 0.0, 0.0);
+  }
+  for (const bool is_behind : {false, true}) {
+    if (is_behind) {
+      std::ranges::reverse(times), std::ranges::reverse(places);
+      for (double& time : times) time = kRest + 0.4 - time;
+    }
+    const KeyframeMotion motion(times, places, {});
+    for (int i = 0; i <= 100; ++i) {
+      const double time = (is_behind ? 0.4 : 0.0) + 0.01 * kRest * i;
+      EXPECT_LE(std::abs(motion.at(time).translation().x()), 0.25 * kSpeed * kRest) << time;
+    }
+  }
 }
 
 TEST(KeyframeMotion, SplinesPassThroughTheirKeys) {

@@ -547,7 +547,27 @@ def test_beside_a_lane_that_turns_back_on_itself_no_way_leads_on(aside):
         ep.Lane([(0, 0), (50, 0), (0, aside)]).trajectory(speed=5.0, offset=2.0)
 
 
+@pytest.mark.parametrize("is_lost_at_end", (False, True))
+def test_a_track_lost_beside_its_end_does_not_swing(is_lost_at_end):
+    """Ten fixes 1 m apart with 10 cm of noise, 100 m from the first: a cubic whose slopes at both ends differ from those of its
+    chord by .3, as those of such noise may, swings by 4/27 of 100 m times their sum. Not-a-knot it swings by 600 m."""
+    along = np.concatenate([[0.0], 100.0 + np.arange(10.0)])
+    across = 0.1 * np.random.default_rng(1).uniform(-1.0, 1.0, len(along))
+    if is_lost_at_end:
+        along, across = along[-1] - along[::-1], across[::-1]
+    track = ep.Trajectory(np.stack([along, across, np.zeros(len(along))], axis=-1), times=0.1 * along)
+    times = np.linspace(track.begin, track.end, 2001)
+    assert np.abs(track.position(times)[:, 1]).max() < 4.0 / 27.0 * 100.0 * 0.6
+    assert np.linalg.norm(track.velocity(times), axis=-1).max() < 12.0
+
+
 # --- cost ---
+
+def test_a_path_of_thousands_of_kilometres_is_made_of_few_pieces():
+    """As where a fix of latitude 0 stands among those of a town: its length rounds to more than a nanometre."""
+    path = SplinePath(np.array([(0.0, 0.0, 0.0), (5.4e6, 0.0, 0.0), (3.0, 5.0, 0.0), (4.0, 5.0, 0.0)]))
+    assert path.length > 1e7 and len(path._u) < 100_000
+
 
 def test_places_on_a_spline_are_found_without_search_or_by_it(monkeypatch):
     """Uneven points: quintics over the distance and Newton steps from coarse ones agree within a nanometre."""

@@ -30,7 +30,7 @@ from .style import (
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Axes
-    from ..in_time.maps import Spectrogram, TimeMap
+    from ..in_time.maps import TimeMap
     from ..in_time.spectrogram_labels import SpectrogramLabels
 
 AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": AZIMUTH_LABEL}
@@ -38,6 +38,7 @@ SIZE = 9.0, 4.4         # inches
 LABEL_FILL = 0.6        # opacity of a label over the map
 LEGEND_COLUMNS, LEGEND_LETTERS = 4, 90  # at most, of all columns together
 LEGEND_ROW = 15.0       # points
+LARGEST_STEP = 1.5      # of the usual one from column to column, beyond which there is a gap
 NARROWEST_TRAIN = 1.0 / 250.0  # of the time shown: about three pixels of a picture, below which gaps beside it are not drawn
 
 
@@ -46,7 +47,8 @@ def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = 
     """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None).
 
     Gaps between trains of chirps stay blank, except behind trains that would be too narrow to be seen, as frames of 10 ms are in
-    a film of a minute: these are drawn until the next one begins, as far as trains usually lie apart.
+    a film of a minute: these are drawn until the next one begins, as far as trains usually lie apart. Where a map has columns
+    alone, those form a train that follow each other within one and a half of their usual steps.
 
     map: as `ep.spectrogram` and its like give it; ax: axes to draw in; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, as parts have no noise, to the
@@ -62,7 +64,7 @@ def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = 
     with axes_or_new(ax, *SIZE, (TIME_LABEL, AXIS_LABELS[map.AXIS])) as ax:
         look = {"cmap": MAP_COLOURS, "vmin": vmin, "vmax": vmax}
         if map.AXIS == "velocity":
-            edges, columns = _columns_and_gaps(map)
+            edges, columns = _columns_and_gaps(map.times, map.train, map.trains)
             image = _image(ax, edges, values, _with_gaps(level, columns), **look)
             _crop(ax, values, level, vmin)
         else:
@@ -87,7 +89,7 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     colours = part_colours(names)
     with axes_or_new(ax, *SIZE, (TIME_LABEL, VELOCITY_LABEL)) as ax:
         owner = np.ma.masked_less(labels.dominant, 0)
-        edges, columns = _columns_and_gaps(labels)
+        edges, columns = _columns_and_gaps(labels.times, labels.train, labels.trains)
         grey = _image(ax, edges, labels.velocity, _with_gaps(level, columns), cmap="gray", vmin=vmin, vmax=vmax)
         _image(ax, edges, labels.velocity, _with_gaps(owner, columns), cmap=ListedColormap(colours), vmin=-0.5,
                vmax=len(names) - 0.5, alpha=LABEL_FILL)
@@ -104,20 +106,32 @@ def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None
     return ax
 
 
-def _columns_and_gaps(map: Spectrogram | SpectrogramLabels) -> tuple[np.ndarray, np.ndarray]:
-    """(edges [E + 1] in s, indices [E] of the times of the map between them, -1 in a gap between trains)."""
-    begins = map.trains[:, 0]
-    ends = _ends_as_drawn(map.trains)
+def _columns_and_gaps(times, train, trains) -> tuple[np.ndarray, np.ndarray]:
+    """(edges [E + 1] in s, indices [E] of the times between them, -1 in a gap between trains).
+
+    times: [T] s, of columns; train: [T], the train of each; trains: [N, 2] s, their first and last ends
+    """
+    begins = trains[:, 0]
+    ends = _ends_as_drawn(trains)
     edges, columns = [], []
-    for number in np.unique(map.train):
-        inside = np.flatnonzero(map.train == number)
+    for number in np.unique(train):
+        inside = np.flatnonzero(train == number)
         if edges and edges[-1] < begins[number]:
             columns.append(-1)
         elif edges:
             edges.pop()
-        edges += [begins[number], *cell_edges(map.times[inside])[1:-1], ends[number]]
+        edges += [begins[number], *cell_edges(times[inside])[1:-1], ends[number]]
         columns += list(inside)
     return np.array(edges), np.array(columns)
+
+
+def _trains_of_columns(times) -> tuple[np.ndarray, np.ndarray]:
+    """(train [T] of each of at least two columns, ends [N, 2] of the trains in s, half a usual step beyond their columns)."""
+    steps = np.diff(times)
+    usual = np.median(steps)
+    is_gap = steps > LARGEST_STEP * usual
+    is_first, is_last = np.append(True, is_gap), np.append(is_gap, True)
+    return np.cumsum(is_first) - 1, np.stack([times[is_first] - 0.5 * usual, times[is_last] + 0.5 * usual], axis=1)
 
 
 def _ends_as_drawn(trains) -> np.ndarray:
@@ -139,10 +153,12 @@ def _with_gaps(cells, columns):
 
 
 def image_over_time(ax, times, values, level, **look):
-    """The cells [T, X] as an image."""
+    """The cells [T, X] as an image, blank in gaps between the times [T] in s."""
     if len(times) == 1:
         ax.set_xticks(times)  # its width means nothing
-    return _image(ax, cell_edges(times), values, level, **look)
+        return _image(ax, cell_edges(times), values, level, **look)
+    edges, columns = _columns_and_gaps(times, *_trains_of_columns(times))
+    return _image(ax, edges, values, _with_gaps(level, columns), **look)
 
 
 def _image(ax, edges, values, level, **look):

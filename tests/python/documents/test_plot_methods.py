@@ -391,6 +391,22 @@ def test_a_spectrogram_leaves_gaps_between_long_frames_blank():
     assert all(np.isnan(level_at(mesh, start + 0.3)) for start in starts[:-1])
 
 
+@pytest.mark.parametrize("columns", [1, 3])
+def test_ranges_and_azimuths_over_time_leave_gaps_between_frames_blank(columns):
+    """Two drives of eight frames of 20 ms, and one frame that is lost: nobody knows what was there between them."""
+    starts = np.concatenate([0.02 * np.delete(np.arange(8), 3), 0.3 + 0.02 * np.arange(8)])
+    times = (starts[:, None] + 1e-3 * np.arange(columns)).ravel()  # of columns within 3 ms of a frame
+    power = np.tile(np.geomspace(1e-13, 1e-11, len(times))[:, None], 8)
+    common = {"times": times, "power": power, "noise_power": 1e-15, "window": "hann", "zero_pad": 1, "combine": "sum",
+              "velocity_gate": (-1.0, 1.0)}
+    for found in (ep.RangeTime(range=np.arange(8.0) - 4.0, **common),
+                  ep.AngleTime(azimuth=np.radians(np.arange(8.0) - 4.0), range_gate=(0.0, 10.0), **common)):
+        mesh, = [one for one in found.plot().collections if one.get_array() is not None]
+        shown = [level_at(mesh, time) for time in times]
+        assert shown == pytest.approx(10.0 * np.log10(power[:, 0]) + 30.0)
+        assert all(np.isnan(level_at(mesh, time)) for time in (0.0635, 0.2, 0.285))
+
+
 def test_of_many_tracks_at_one_place_those_of_the_legend_have_their_numbers(ax):
     """Four find room there, of which one is the last track, as it alone follows an object."""
     count = 30

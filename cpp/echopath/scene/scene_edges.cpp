@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "echopath/scene/edges/moving_groups.h"
 #include "echopath/scene/seams.h"
 
 namespace echopath {
@@ -49,9 +50,10 @@ class KnownSeams {
 
   static Key key_of(const Scene& scene) {
     Key key(scene.meshes().size());
+    const MovingGroups groups(scene);
     for (uint32_t id = 0; id < key.size(); ++id) {
       if (!has_echoing_edges(scene, id)) continue;
-      const auto [group, place] = place_in_group(scene, id);
+      const auto [group, place] = groups.place_of(id);
       key[id] = {scene.node_of(id).mesh, group, place};
     }
     return key;

@@ -7,6 +7,7 @@
 
 #include "echopath/base/disjoint_sets.h"
 #include "echopath/scene/edges/edge_finder.h"
+#include "echopath/scene/edges/moving_groups.h"
 #include "echopath/scene/scene_edges.h"
 
 namespace echopath {
@@ -17,7 +18,7 @@ constexpr double kTouch = 2e-6;  // of the extent of a group of meshes: boxes ne
 // Describes a whole mesh at one place in a group of nodes that keep their places to each other. Its parts are meshes of the
 // scene.
 struct Placed {
-  int group = 0;  // the node that moves them, -1: none
+  int group = 0;  // MovingGroups
   const Mesh* surface = nullptr;
   Transform place;  // in the frame of the group
   std::vector<uint32_t> meshes;
@@ -28,9 +29,11 @@ struct Placed {
 // Gathers the surfaces of a scene, each once where it stands, whatever is between its parts in the order of the meshes.
 class PlacedSurfaces {
  public:
-  void add(const Scene& scene, uint32_t mesh_id) {
-    const auto [group, place] = place_in_group(scene, mesh_id);
-    const MeshPtr& mesh = scene.node_of(mesh_id).mesh;
+  explicit PlacedSurfaces(const Scene& scene) : scene_(scene), groups_(scene) {}
+
+  void add(uint32_t mesh_id) {
+    const auto [group, place] = groups_.place_of(mesh_id);
+    const MeshPtr& mesh = scene_.node_of(mesh_id).mesh;
     const Mesh* surface = &mesh->surface();
     if (mesh->whole()) {
       std::vector<size_t>& there = of_parts_[{group, surface}];
@@ -49,6 +52,8 @@ class PlacedSurfaces {
   std::vector<Placed> all;
 
  private:
+  const Scene& scene_;
+  MovingGroups groups_;
   std::map<std::pair<int, const Mesh*>, std::vector<size_t>> of_parts_;  // by group and surface: where in `all`
 };
 
@@ -179,17 +184,11 @@ class Seams {
   FoundEdges found_;
 };
 
-// Returns the place of a node, whose motion may rest, in the frame of its parent.
-Transform place_at_rest(const Node& node) {
-  const TimeSpan span = node.motion ? node.motion->span() : TimeSpan{};
-  return moved(node.placement, node.motion.get(), std::clamp(0.0, span.begin, span.end));
-}
-
 // Returns the surfaces that touch others, group by group.
 std::vector<std::vector<Placed>> touching_groups(const Scene& scene) {
-  PlacedSurfaces placed;
+  PlacedSurfaces placed(scene);
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    if (has_echoing_edges(scene, id)) placed.add(scene, id);
+    if (has_echoing_edges(scene, id)) placed.add(id);
   }
   std::vector<Placed>& all = placed.all;
   find_contacts(all);
@@ -203,20 +202,6 @@ std::vector<std::vector<Placed>> touching_groups(const Scene& scene) {
 }
 
 }  // namespace
-
-std::pair<int, Transform> place_in_group(const Scene& scene, uint32_t mesh_id) {
-  Transform place = Transform::Identity();
-  int node = scene.meshes()[mesh_id].node;
-  for (; node >= 0; node = scene.nodes()[node].parent) {
-    const Node& at = scene.nodes()[node];
-    if (moves(at.motion)) {
-      place = Transform(at.placement.linear()) * place;  // motion.h: moved
-      break;
-    }
-    place = place_at_rest(at) * place;
-  }
-  return {node, place};
-}
 
 SeamedEdges::SeamedEdges(const Scene& scene) : edges(scene.meshes().size()), is_changed(edges.size()) {
   DisjointSets bodies(edges.size());

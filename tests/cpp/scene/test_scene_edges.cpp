@@ -112,6 +112,40 @@ TEST_F(SceneEdgesTest, MeshesWhoseMotionsRestStayTogether) {
   EXPECT_EQ(edges.body_of(1), 0u);
 }
 
+// As they stay together, whoever moves them: a floor and a wall, which share an edge of 1 m.
+TEST_F(SceneEdgesTest, MeshesThatMoveAlikeStayTogether) {
+  const auto placed = [](const Vec3& at) { return Transform(Eigen::Translation3d(at)); };
+  const auto floor = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+             wall = quad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1});
+  const auto moving = [](const Vec3& velocity, const Vec3& turning) {
+    return std::make_shared<const LinearMotion>(velocity, turning);
+  };
+  const auto keyed = std::make_shared<const KeyframeMotion>(std::vector{0.0, 1.0}, std::vector<Vec3>{{0, 0, 0}, {1, 2, 0}},
+                                                            std::vector<Quaternion>());
+  struct Case {
+    std::shared_ptr<const Motion> of_floor, of_wall;
+    Vec3 wall_at;
+    bool are_together;
+  };
+  const Vec3 along(3, 0, 0), up(0, 0, 1), none = Vec3::Zero();
+  for (const Case& one : {Case{moving(along, none), moving(along, none), {1, 0, 0}, true},
+                          Case{moving(along, none), moving(1.1 * along, none), {1, 0, 0}, false},
+                          Case{moving(along, up), moving(along, up), {0, 0, 0}, true},
+                          Case{moving(along, up), moving(along, up), {1, 0, 0}, false},  // each turns about its own origin
+                          Case{keyed, keyed, {0, 0, 0}, true}, Case{keyed, nullptr, {0, 0, 0}, false}}) {
+    scene_ = Scene();
+    for (const bool is_wall : {false, true}) {
+      Node node;
+      node.name = is_wall ? "wall" : "floor";
+      node.motion = is_wall ? one.of_wall : one.of_floor;
+      node.placement = placed(is_wall ? one.wall_at : none);
+      const int mover = scene_.add(std::move(node));
+      add(is_wall ? "panel" : "plate", is_wall ? wall : floor, mover);
+    }
+    EXPECT_NEAR(length(SceneEdges(scene_), 0, false), one.are_together ? 1.0 : 0.0, 1e-9);
+  }
+}
+
 TEST_F(SceneEdgesTest, OtherMaterialsTakeNoPart) {
   add("floor", quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}));
   metal_.mirror = true;

@@ -6,7 +6,8 @@ import numpy as np
 from .. import _core
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN, RESIDUE
 from ..base.numerics.analytic import as_samples
-from ..receiver.channels import transmitter_factors
+from ..receiver.channels import receiver_factors, transmitter_factors
+from ..receiver.filters import response
 from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes
 from ..transmit import demultiplex, signal_shape
@@ -16,8 +17,10 @@ from ..transmit.signals import has_steps
 
 def cubes_beside(frame) -> dict:
     """{name: [tx, rx, chirp, sample]} in sqrt(W) of what a frame has of it, each transmitter alone, without faults of the
-    receiver; what codes leave has the errors of the transmitters."""
-    received = {INTERFERENCE: frame.interference_cube, RAIN: frame.rain_cube, LEAKAGE: _leaked(frame.radar)}
+    receiver, but that real samples of leakage have the phase in which it leaves the filters; what codes leave has the errors of
+    the transmitters."""
+    leaked = _leaked(frame.radar, frame.paths.frame.start_time)
+    received = {INTERFERENCE: frame.interference_cube, RAIN: frame.rain_cube, LEAKAGE: leaked}
     received = {name: cube for name, cube in received.items() if cube is not None}
     leaves_residue = _leaves_residue(frame)
     if not received and not leaves_residue:
@@ -67,8 +70,21 @@ def _transmitter_factors(radar):
     return 1.0 if factors is None else factors[:, None, None, None]
 
 
-def _leaked(radar):
-    leaked = None if radar.receiver is None else leakage(radar, radar.receiver, SlotTimes(radar, 0.0))
+def _leaked(radar, start_time: float = 0.0):
+    if radar.receiver is None:
+        return None
+    slots, real = SlotTimes(radar, start_time), radar.waveform.real
+    leaked = leakage(radar, radar.receiver, slots)
     if leaked is None:
         return None
-    return np.array(np.broadcast_to(as_samples(leaked, radar.waveform.real), signal_shape(radar)))
+    if real:
+        leaked = leaked * _turn_of_leakage(radar, slots)
+    return np.array(np.broadcast_to(as_samples(leaked, real), signal_shape(radar)))
+
+
+def _turn_of_leakage(radar, slots):
+    """What the receivers' chains and the filters turn leakage by, of size 1, as a cube takes it: [T, rx, C, 1]. Real samples of
+    less than a period have another level for each phase: in the first cells by 15 dB and more."""
+    behind = response(radar.receiver, slots.slope[:, None, :, None] * radar.receiver.leakage_delay)
+    factors = receiver_factors(radar.receiver, radar, slots)
+    return np.exp(1j * np.angle(behind if factors is None else behind * factors))

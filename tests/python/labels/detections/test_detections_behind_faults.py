@@ -72,6 +72,28 @@ def test_leakage_in_the_first_cell_behind_a_high_pass_is_no_noise(labels):
     assert first.any() and np.all(found.snr_db[first] > 40.0) and set(found.part[first]) == {"leakage"}
 
 
+@pytest.mark.parametrize("faults", [dict(high_pass=[200e3]), dict(receiver_phase=[1.5])], ids=["filter", "chain"])
+def test_real_samples_of_leakage_are_told_in_the_phase_that_the_receiver_gives_them(faults):
+    """Of 0.6 periods in a chirp, the first cell has a level for each phase: that of the tone behind the receiver, by its closed
+    form, is 10 dB above the one without faults."""
+    delay, corner = 2e-9, faults.get("high_pass", [0.0])[0]
+    radar = build_radar(start_frequency=76.5e9, bandwidth=300e6, num_samples=64, sampling_rate=6.4e6, num_chirps=24,
+                        chirp_interval=20e-6, transmit_power=0.02, real=True,
+                        receiver=ep.Receiver(leakage_db=[[-50.0]], leakage_delay=delay, **faults))
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.1), name="ball", material="metal", smooth=True, position=(14, 2, 0))
+    frame = ep.simulate(scene, radar, num_rays=500, guard=False, detections=True, noise_seed=1)
+    slope, time = 300e6 / 10e-6, np.arange(64) / 6.4e6
+    beat = slope * delay
+    turn = 1j * beat / (1j * beat + corner) * np.exp(1j * faults.get("receiver_phase", [0.0])[0])
+    phase = 2.0 * np.pi * (76.5e9 * delay + beat * time - 0.5 * slope * delay ** 2) + np.angle(turn)
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(64) / 64)
+    amplitude = 2.0 * np.sqrt(0.02 * 1e-5) * np.sum(window * np.cos(phase)) / window.sum()  # of the lower half, times sqrt(2)
+    assert np.abs(frame.beside_spectra["leakage"].values[0, 0, 12, 0]) == pytest.approx(abs(amplitude), rel=1e-6)
+    first = frame.detections.range < radar.waveform.range_resolution
+    assert first.any() and set(frame.detections.part[first]) == {"leakage"}
+
+
 def test_images_far_from_leakage_behind_a_high_pass_are_noise_and_not_leakage():
     """What "ddm" leaves of the leakage at the ranges of the images is above them before the filter, and far below behind it."""
     half = 0.00193

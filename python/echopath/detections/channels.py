@@ -45,9 +45,9 @@ class Channels:
                 near.append(channel)
         return groups
 
-    def gains_in(self, cells, gains) -> np.ndarray:
-        """By how much the receiver makes amplitudes of echoes in cells [N, 2] larger, [N, C]; gains: EchoGains"""
-        return gains.of("", *self.indices.T[:, :, None], cells[:, 1]).T
+    def gains_of(self, gains, count: int) -> np.ndarray:
+        """By how much the receiver makes amplitudes of so many echoes larger, [N, C]; gains: EchoGains at their ranges"""
+        return gains.of("", *self.indices.T[:, :, None], np.arange(count)).T
 
     def _apart(self, channel: int) -> np.ndarray:
         """Bins of range by which the length of a path may differ between a channel and each one, at most, [C]."""

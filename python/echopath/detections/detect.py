@@ -137,14 +137,17 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     parts = None if parts is None else labelling.maps_of("parts", _signals_of(parts, paths, radar, progress), spectrum, radar)
     beside = labelling.maps_of("beside", beside, spectrum, radar)
     found = cfar(spectrum, radar, **rules, progress=progress)
-    gains = EchoGains(radar, spectrum.range, _start_of(paths) if start_time is None else start_time)
-    beams = rules["beams"]
-    warn_of_missing_noise(radar, _core.mean_power(spectrum) if beams else found.power, gains.of_filters)
+    start_time = _start_of(paths) if start_time is None else start_time
+    of_noise, beams = EchoGains(radar, spectrum.range, start_time).of_filters, rules["beams"]
+    warn_of_missing_noise(radar, _core.mean_power(spectrum) if beams else found.power, of_noise)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
-    makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, gains, peaks["beam_weights"])
+    noise = mean_noise(radar, spectrum.window, cells, of_noise, peaks["beam_weights"])
+    gains = EchoGains(radar, peaks["range"], start_time)  # of a cell, filters of several poles change by more than half
+    makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, noise, gains,
+                     peaks["beam_weights"])
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
     directions = directions_of(spectrum, radar, peaks, angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
@@ -163,7 +166,8 @@ class _Makers(NamedTuple):
     objects: object
     known: FamilyPowers | None
     noise_floor: float  # W
-    gains: EchoGains
+    noise: np.ndarray   # [N] W, thermal, in the mean, of the cells
+    gains: EchoGains    # at the ranges of the peaks
     beams: np.ndarray | None  # weights [N, tx, rx] of the beams that found the cells
 
 
@@ -181,7 +185,7 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; echoes: with paths; progress: as in `detect`."""
     parts, labels, beside, gains, beams = makers.parts, makers.labels, makers.beside, makers.gains, makers.beams
-    found = labelling.CellLabels(mean_noise(radar, spectrum.window, cells, gains, beams))
+    found = labelling.CellLabels(makers.noise)
     if makers.paths is not None:
         known = makers.known or family_powers(makers.paths, makers.objects, progress)
         families, whole, measured = _families_of(spectrum, radar, cells, power, makers, known.families, echoes, progress)

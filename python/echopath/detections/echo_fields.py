@@ -71,16 +71,16 @@ class EchoFields:
         """Yields of each of cells [N, 2] the indices [K] of the paths that hold it, their fields [C, K] in sqrt(W), and power in
         W of all behind the receiver; those in channels, or, with beams, [1, K] in the beam of the cell.
 
-        gains: EchoGains; beams: weights [N, tx, rx] of `find_peaks`; progress: as in `detect`
+        gains: EchoGains at the ranges of the cells; beams: weights [N, tx, rx] of `find_peaks`; progress: as in `detect`
         """
         if beams is None:
             self.evaluate(cells, progress)
-            for cell, gain in zip(cells, self._few.gains_in(cells, gains)):
+            for cell, gain in zip(cells, self._few.gains_of(gains, len(cells))):
                 index, field = self.fields(cell)
                 yield index, field, np.mean(np.abs(gain * field.sum(axis=1)) ** 2)
             return
         weights = by_channel(beams)
-        behind = weights * self._all.gains_in(cells, gains)
+        behind = weights * self._all.gains_of(gains, len(cells))
         keys = [_key(cell) for cell in cells]
         self._follow(keys)
         held = [self._holding(cell) for cell in with_progress(keys, len(keys), progress, "paths of cells")]

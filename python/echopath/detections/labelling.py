@@ -17,13 +17,14 @@ def part_powers(maps: dict, cells, gains, beams=None) -> tuple:
     """Names [K], powers [K, N] of maps of parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels, or
     in beams.
 
-    gains: EchoGains of the receiver, through which the parts have not gone; beams: weights [N, tx, rx], None: none
+    gains: EchoGains of the receiver, through which the parts have not gone, at the ranges of the cells; beams: weights
+        [N, tx, rx], None: none
     """
     velocity, distance = cells[:, 0], cells[:, 1]
     powers, whole = [], 0.0
     for name, part in maps.items():
         tx, rx = (np.arange(count) for count in part.values.shape[:2])
-        values = part.values[:, :, velocity, distance] * gains.of(name, tx[:, None, None], rx[:, None], distance)
+        values = part.values[:, :, velocity, distance] * gains.of(name, tx[:, None, None], rx[:, None], np.arange(len(cells)))
         powers.append(_power_of(values, beams))
         whole = whole + values
     return list(maps), np.array(powers), _power_of(whole, beams)
@@ -65,10 +66,10 @@ def label_powers(spectrum, labels, beside: dict, cells, gains) -> tuple:
     """As part_powers, from Labels of the range-Doppler map and maps of what is beside them: with the gain in the mean over the
     channels. Labels keep no fields, so that the power of all is the sum of theirs and of what is beside them."""
     velocity, distance = cells[:, 0], cells[:, 1]
-    tx, rx = (np.arange(count) for count in spectrum.values.shape[:2])
-    powers = [labels.power[k, velocity, distance] * _mean_gain(gains.of(name, tx[:, None, None], rx[:, None], distance))
+    tx, rx, place = (np.arange(count) for count in (*spectrum.values.shape[:2], len(cells)))
+    powers = [labels.power[k, velocity, distance] * _mean_gain(gains.of(name, tx[:, None, None], rx[:, None], place))
               for k, name in enumerate(labels.part_names)]
-    whole = labels.whole[velocity, distance] * _mean_gain(gains.of("", tx[:, None, None], rx[:, None], distance))
+    whole = labels.whole[velocity, distance] * _mean_gain(gains.of("", tx[:, None, None], rx[:, None], place))
     if not beside:
         return list(labels.part_names), np.array(powers), whole
     names, more, all_beside = part_powers(beside, cells, gains)

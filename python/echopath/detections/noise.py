@@ -23,12 +23,12 @@ def warn_of_missing_noise(radar, power, of_filters) -> None:
                   f"detections are sidelobes and rounding; {_way_out(radar.receiver)}")
 
 
-def mean_noise(radar, window, cells, gains, beams=None) -> np.ndarray:
+def mean_noise(radar, window, cells, of_filters, beams=None) -> np.ndarray:
     """Mean power [N] of thermal noise in W in cells [N, 2] of a map, of a channel or in a beam.
 
-    window: of the map; gains: EchoGains; beams: weights [N, tx, rx] of the beams of the cells, None: none
+    window: of the map; of_filters: gains [range] of amplitudes; beams: weights [N, tx, rx] of the beams of the cells, None: none
     """
-    of_channel = _core.cell_noise_power(radar, window) * gains.of_filters[cells[:, 1]] ** 2
+    of_channel = _core.cell_noise_power(radar, window) * of_filters[cells[:, 1]] ** 2
     return of_channel if beams is None else of_channel * np.sum(np.abs(beams) ** 2, axis=(1, 2))
 
 

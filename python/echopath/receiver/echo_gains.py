@@ -15,15 +15,16 @@ _WITHOUT_TRANSMITTERS = (INTERFERENCE, LEAKAGE, RESIDUE)  # the first has not th
 
 
 class EchoGains:
-    """By how much a receiver makes the amplitudes of echoes larger, by channels and by the cells of range of a map.
+    """By how much a receiver makes the amplitudes of echoes larger, by channels and by the range where they show in a map.
 
     Model: errors of the chains, of the receivers as the root of their mean square over the frame; the filters at the beat
-    frequency of the range, in the first cell at half a bin, because an echo that shows there need not beat at 0, where
+    frequency of the range, in the first half of a bin at its end, because an echo that shows there need not beat at 0, where
     high-passes let nothing through, and of leakage, whose sidelobes and what is left of it by a code reach far, at its own
     frequency everywhere; the share that the imbalance leaves where it was. Coupling, phase noise and compression count for
     nothing.
-    radar: that has the receiver; ranges: [R] m, of the map; start_time: s, of the frame
-    of_filters: [R], in the middle of the cells, as that of noise
+    radar: that has the receiver; ranges: [R] m, of the cells of the map or of its peaks, which stand between them; start_time: s,
+        of the frame
+    of_filters: [R], at these ranges, as that of noise
     """
 
     def __init__(self, radar, ranges, start_time: float = 0.0):
@@ -40,7 +41,7 @@ class EchoGains:
     def of(self, part: str, tx, rx, distance) -> np.ndarray:
         """The gains of a part of this name.
 
-        tx, rx, distance: indices of antennas and of cells of range, of shapes that broadcast to that of the result
+        tx, rx, distance: indices of antennas and of the ranges, of shapes that broadcast to that of the result
         """
         of_filters = self._of_leakage if part == LEAKAGE else self._of_echoes
         of_transmitters = np.ones_like(self._of_transmitters) if part in _WITHOUT_TRANSMITTERS else self._of_transmitters

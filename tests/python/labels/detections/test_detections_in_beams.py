@@ -124,7 +124,7 @@ def test_fields_of_paths_in_a_beam_add_up_to_those_of_the_signal(waveform):
     peaks = _core.find_peaks(noisy, sender, ep.cfar(noisy, sender, beams=True, false_alarm_rate=1e-3))
     is_echo = peaks["power"] > 30.0 * peaks["noise"]
     cells, weights = peaks["cells"][is_echo], peaks["beam_weights"][is_echo]
-    gains = EchoGains(sender, spectrum.range)
+    gains = EchoGains(sender, peaks["range"][is_echo])
     made = list(echo_fields(paths, spectrum).each(cells, gains, weights))
     values = spectrum.values[:, :, cells[:, 0], cells[:, 1]]
     behind = values * 10.0 ** (np.linspace(-6.0, 6.0, 16)[:, None] / 20.0)
@@ -139,7 +139,7 @@ def test_cells_are_followed_in_turns_where_memory_is_short(monkeypatch):
     paths = ep.trace(arc(), sender, num_rays=5000, max_bounces=1)
     spectrum = ep.range_doppler(ep.synthesize(paths, sender), sender)
     peaks = _core.find_peaks(spectrum, sender, ep.cfar(spectrum, sender, beams=True, false_alarm_rate=0.01))
-    asked = peaks["cells"], EchoGains(sender, spectrum.range), peaks["beam_weights"]
+    asked = peaks["cells"], EchoGains(sender, peaks["range"]), peaks["beam_weights"]
     at_once = list(echo_fields(paths, spectrum).each(*asked))
     monkeypatch.setattr("echopath.detections.echo_fields.MAX_MEMORY", 1)
     in_turns = list(echo_fields(paths, spectrum).each(*asked))

@@ -78,7 +78,7 @@ def label_powers(spectrum, labels, beside: dict, cells, gains) -> tuple:
 
 def _mean_gain(gains) -> np.ndarray:
     """Of powers, [N], of gains of amplitudes [tx, rx, N]."""
-    return np.mean(gains ** 2, axis=(0, 1))
+    return np.mean(np.abs(gains) ** 2, axis=(0, 1))
 
 
 def families_of_cells(families, fields, count: int, peak_of, *, noise_floor: float, progress=None) -> tuple:

@@ -17,11 +17,11 @@ _WITHOUT_TRANSMITTERS = (INTERFERENCE, LEAKAGE, RESIDUE)  # the first has not th
 class EchoGains:
     """By how much a receiver makes the amplitudes of echoes larger, by channels and by the range where they show in a map.
 
-    Model: errors of the chains, of the receivers as the root of their mean square over the frame; the filters at the beat
-    frequency of the range, in the first half of a bin at its end, because an echo that shows there need not beat at 0, where
-    high-passes let nothing through, and of leakage, whose sidelobes and what is left of it by a code reach far, at its own
-    frequency everywhere; the share that the imbalance leaves where it was. Coupling, phase noise and compression count for
-    nothing.
+    Model: errors of the chains, with the phases that beams tell apart, of the receivers as the root of their mean square over the
+    frame and in their mean phase; the size of what the filters pass at the beat frequency of the range, in the first half of a
+    bin at its end, because an echo that shows there need not beat at 0, where high-passes let nothing through, and of leakage,
+    whose sidelobes and what is left of it by a code reach far, at its own frequency everywhere; the share that the imbalance
+    leaves where it was. Coupling, phase noise and compression count for nothing.
     radar: that has the receiver; ranges: [R] m, of the cells of the map or of its peaks, which stand between them; start_time: s,
         of the frame
     of_filters: [R], at these ranges, as that of noise
@@ -36,10 +36,11 @@ class EchoGains:
         leaked = np.full(len(ranges), 0.5 * speed_of_light * receiver.leakage_delay)
         self._of_leakage = _filter_gains(receiver, radar.waveform, leaked)
         self._of_receivers = _kept(receiver, radar.waveform) * _mean_of_receivers(receiver, radar, start_time)
-        self._of_transmitters = _sizes(transmitter_factors(receiver, radar), len(radar.transmitters))
+        of_transmitters = transmitter_factors(receiver, radar)
+        self._of_transmitters = np.ones(len(radar.transmitters), complex) if of_transmitters is None else of_transmitters
 
     def of(self, part: str, tx, rx, distance) -> np.ndarray:
-        """The gains of a part of this name.
+        """The gains of a part of this name, complex.
 
         tx, rx, distance: indices of antennas and of the ranges, of shapes that broadcast to that of the result
         """
@@ -63,8 +64,7 @@ def _kept(receiver: Receiver, waveform) -> float:
 
 def _mean_of_receivers(receiver: Receiver, radar, start_time: float) -> np.ndarray:
     factors = receiver_factors(receiver, radar, SlotTimes(radar, start_time))
-    return np.ones(len(radar.receivers)) if factors is None else np.sqrt(np.mean(np.abs(factors) ** 2, axis=(0, 2, 3)))
-
-
-def _sizes(factors, count: int) -> np.ndarray:
-    return np.ones(count) if factors is None else np.abs(factors)
+    if factors is None:
+        return np.ones(len(radar.receivers), complex)
+    phase = np.angle(np.mean(factors, axis=(0, 2, 3)))
+    return np.sqrt(np.mean(np.abs(factors) ** 2, axis=(0, 2, 3))) * np.exp(1j * phase)

@@ -128,6 +128,21 @@ def test_images_far_from_leakage_behind_a_high_pass_are_noise_and_not_leakage():
     assert not np.any(found.part[is_image] == "leakage") and found.is_noise[is_image].all()
 
 
+@pytest.mark.parametrize("source", ["paths", "parts"])
+@pytest.mark.parametrize("faults", [dict(receiver_phase=3.0 * np.cos(5.0 * np.arange(8))),
+                                    dict(phase_drift=300.0 * np.cos(5.0 * np.arange(8)), transmitter_phase=[2.0])])
+def test_echoes_are_no_noise_in_beams_that_phases_of_the_chains_turn(spheres, faults, source):
+    """Those that stand 20 dB and more above the noise, in the beams that find them behind the receiver."""
+    radar, paths, _ = spheres
+    radar = radar.replace(receiver=ep.Receiver(**faults))
+    paths = ep.trace(paths.scene, radar, num_rays=6000, max_bounces=1, start_time=0.01)
+    cube = ep.receive(ep.synthesize(paths), radar, seed=1, start_time=0.01).cube
+    parts = {"parts": {"all": ep.synthesize(paths)}, "start_time": 0.01}
+    found = ep.detect(ep.range_doppler(cube, radar), radar, beams=True, **({"paths": paths} if source == "paths" else parts))
+    strong = found.snr_db > 20.0
+    assert strong.sum() == len(TARGETS) and not found.is_noise[strong].any()
+
+
 def test_parts_and_labels_without_paths_are_told_when_the_frame_begins(spheres):
     """By then gains have drifted by 30 dB: echoes as they were at time 0 hold a thousandth of their power."""
     radar, paths, _ = spheres
@@ -197,7 +212,7 @@ def test_leakage_passes_the_filters_at_its_beat_frequency_wherever_it_shows():
     radar, _ = gains_of()
     ranges = radar.waveform.range_resolution * np.arange(64)
     radar, gains = gains_of(ranges, leakage_db=[[-20.0]], leakage_delay=delay, high_pass=corners)
-    of_leakage = gains.of("leakage", 0, 0, np.arange(64))
+    of_leakage = np.abs(gains.of("leakage", 0, 0, np.arange(64)))
     beat = delay * radar.waveform.bandwidth * radar.waveform.sampling_rate / 64
     assert of_leakage == pytest.approx(np.prod([beat / np.hypot(beat, corner) for corner in corners]))
     received = ep.range_doppler(ep.receive(np.zeros(signal_shape(radar), complex), radar, seed=None).cube, radar, window="hann")

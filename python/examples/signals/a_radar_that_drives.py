@@ -3,7 +3,7 @@ A radar that drives
 ===================
 
 The radar moves with 10 m/s past posts at the roadside. What stands still approaches with the cosine of its bearing, so that
-posts lie on a circle in the map of range and velocity; what does not lie there moves by itself.
+posts at one distance from its way lie on one curve in the map of range and velocity; what does not lie there moves by itself.
 """
 import matplotlib.pyplot as plt
 import numpy as np

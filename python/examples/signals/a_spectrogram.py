@@ -32,7 +32,7 @@ labels = ep.spectrogram_labels({name: ep.spectrogram(cubes, radar, **settings) f
 print(spectrogram, labels, sep="\n")
 
 # %%
-# Velocities are negative: she comes nearer. Feet reach three times the walking speed, and stand still when they carry her.
+# Velocities are negative: she comes nearer. Feet reach four times the walking speed, and stand still when they carry her.
 figure, axes = plt.subplots(2, 1, figsize=(9, 8), layout="constrained", sharex=True)
 spectrogram.plot(ax=axes[0], title="Two seconds of a walking person")
 labels.plot(ax=axes[1], title="Which part of the body made each cell")

@@ -6,8 +6,8 @@ The radar cross section of a compact car at 77 GHz over aspect. Its panels are c
 points that mirror the radar, and where a panel is square to it, abeam and behind, the echo flashes.
 
 At 77 GHz a panel of a metre is 250 wavelengths wide, and an echo to the side of its flash is what is left of a sum that nearly
-cancels. No affordable number of rays knows each of 72 aspects to 3 dB (131 072 leave 56 of them), of which `ep.rcs` warns. The
-picture is of the course over aspect, whose median four times as many rays move by 0.6 dB, so the warning is silenced.
+cancels. No affordable number of rays knows each of 72 aspects to 3 dB (131 072 leave 26 of them), of which `ep.rcs` warns. The
+picture is of the course over aspect, whose median four times as many rays move by 0.7 dB, so the warning is silenced.
 """
 import warnings
 

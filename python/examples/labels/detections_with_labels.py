@@ -23,7 +23,8 @@ scene.add(ep.actors.wall(30, 4), name="wall", material=ep.Material.metal(mirror=
 frame = ep.simulate(scene, radar, num_rays=40_000, detections={"false_alarm_rate": 1e-5}, guard=False)
 
 # %%
-# ``points`` are places in the radar's frame; ghosts that took the wall both ways lie behind it, others between.
+# ``points`` are places in the radar's frame. Ghosts that took the wall both ways lie behind it; of those that took it one way
+# transmitters and receivers see different directions, so that the array puts them anywhere about these.
 found, points = frame.detections, frame.detections.points
 figure, axes = plt.subplots(figsize=(9, 6.5), layout="constrained")
 for name, colour in (("walker", "tab:blue"), ("car", "tab:orange")):

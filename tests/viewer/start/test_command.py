@@ -74,6 +74,12 @@ def test_without_a_screen_it_says_so_at_once(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have a screen")
+def test_a_platform_of_qt_without_opengl_is_named_instead_of_a_wait_for_its_scene():
+    done = run(VIEW, DISPLAY="", WAYLAND_DISPLAY="", QT_QPA_PLATFORM="minimal")
+    assert done.returncode == 2 and "OpenGL, which Qt's platform 'minimal'" in done.stderr and "off_screen" in done.stderr
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have one screen")
 def test_a_library_of_the_screen_that_cannot_be_loaded_is_named_before_qt_ends_the_program(tmp_path, monkeypatch):
     """As where libxcb-icccm4 is not installed: the loader of the system says which file it is."""

@@ -18,7 +18,9 @@ from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
 from .files.exporting import export
 from .main_window import MainWindow
-from .qt import Qt, QtCore, QtWidgets
+from .qt import Qt, QtCore, QtGui, QtWidgets
+
+OTHER_WAY = "ep.plot_rays(scene, paths, off_screen=True, screenshot='rays.png') draws without one"
 
 
 def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **settings):
@@ -40,6 +42,7 @@ def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **set
         load_state(state)
     require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
+    _require_opengl()
     window = _opened(view_input, line, state if early is None else None, picture is None)
     if what and isinstance(what[0], ep.Live):
         window.open_panel("Live")
@@ -94,8 +97,14 @@ def require_screen() -> None:
     if display:
         _require_libraries()
         return
-    raise OSError("the viewer needs a screen, and DISPLAY names none; ep.plot_rays(scene, paths, off_screen=True, "
-                  "screenshot='rays.png') draws without one")
+    raise OSError(f"the viewer needs a screen, and DISPLAY names none; {OTHER_WAY}")
+
+
+def _require_opengl() -> None:
+    """Raises OSError where windows of Qt cannot draw a scene, which a picture of it would wait for without an end."""
+    if not QtGui.QOpenGLContext().create():
+        raise OSError("the viewer needs a screen with OpenGL, which Qt's platform "
+                      f"'{QtGui.QGuiApplication.platformName()}' does not bring here; {OTHER_WAY}")
 
 
 def _require_libraries() -> None:

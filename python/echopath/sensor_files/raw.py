@@ -46,8 +46,10 @@ def save_raw(frames: Frame | Iterable[Frame], path: str | os.PathLike[str]) -> i
     size = 0
     with written_whole(path, suffix=".part") as temporary, open(temporary, "wb") as file:
         for frame in frames:
-            if not isinstance(frame, Frame) or frame.cube is None:
+            if not isinstance(frame, Frame):
                 raise refused(TypeError, "frames", "frames with their signals", frame)
+            if frame.cube is None:
+                raise refused(ValueError, "frames", "frames with their signals", frame)
             size += file.write(raw_bytes(frame.received, frame.radar))
     return size
 

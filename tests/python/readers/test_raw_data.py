@@ -169,6 +169,10 @@ def test_frames_follow_each_other_and_a_file_that_fails_is_not_written(written, 
     assert sequence[1].save_raw(tmp_path / "second.bin") == size // 2
     assert (tmp_path / "second.bin").read_bytes() == whole[size // 2:]
 
+    sequence[0].paths.save(tmp_path / "record.h5")
+    with pytest.raises(ValueError, match="^frames: must be frames with their signals, got Frame"):
+        ep.save_raw(ep.load_frame(tmp_path / "record.h5"), tmp_path / "none.bin")
+
     def failing():
         yield sequence[0]
         raise RuntimeError("no second frame")

@@ -79,7 +79,7 @@ double angle_about(const Wedge& wedge, const Vec3& direction);
 
 // Returns the share of a straight piece of an edge: the mean of e^{-j(x s + b s^2)} over s in [-1, 1], where phases grow by
 // `linear_phase` = 2x (rad) along the piece and are `quadratic_phase` = b (rad) ahead at its ends, as of spherical waves. It
-// is exact to the second order in b: within 1 % of a piece where b is at most 0.8.
+// is exact to the second order in b: within 1.3 % of a piece where b is at most 0.8.
 std::complex<double> edge_filter(double linear_phase, double quadratic_phase);
 
 }  // namespace echopath

@@ -15,7 +15,7 @@ Result = TypeVar("Result")
 
 def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str],
                    within: Mapping[str, Iterable[str]] | None = None) -> None:
-    """Raises TypeError naming the first of `words` that is not in `known`, and the one that was meant, or all of them.
+    """Raises TypeError naming the first of `words` that is not in `known`, and the one that was meant, or all that are not given.
 
     callee: name of the function, as its caller sees it; words, known: names of keywords
     within: {one of `known`: the keys of the dict that it may be}, of which the word may be one
@@ -28,7 +28,9 @@ def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str],
                 raise TypeError(f"{callee}: unknown keyword '{readable}', it belongs to {' or '.join(homes)}")
             left = [name for name in known if name not in words and name != "self"]
             meant = _core.meant_name(readable, left)
-            hint = f", the nearest right one is '{meant}'" if meant else f"; its arguments are {', '.join(left)}" if left else ""
+            other = "other " if any(one in known for one in words) else ""
+            hint = (f", the nearest right one is '{meant}'" if meant else
+                    f"; its {other}arguments are {', '.join(left)}" if left else "")
             raise TypeError(f"{callee}: unknown keyword '{readable}'{hint}")
 
 

@@ -48,6 +48,11 @@ def test_words_unlike_any_get_the_list_instead(call):
         call(qqqq=1)
 
 
+def test_a_list_without_the_arguments_that_are_given_says_so():
+    with pytest.raises(TypeError, match="unknown keyword 'qqqq'; its other arguments are full_scale_dbm, "):
+        ep.Adc(bits=12, qqqq=1)
+
+
 @pytest.mark.parametrize("word, owner", [("bandwidth", "the ChirpSequence in 'waveform'"),
                                          ("pattern", "each Antenna in 'transmitters'")])
 def test_words_of_an_argument_lead_to_it(word, owner):

@@ -16,6 +16,19 @@ from echopath.cli import main
 PATIENCE = 60  # s
 VIEW = [sys.executable, "-m", "echopath", "view"]
 HAS_SCREEN = sys.platform != "linux" or bool(os.environ.get("DISPLAY"))
+# A picture of a scene that does not come.
+WAITING = """
+import sys
+from echopath.cli import main
+from echopath_viewer.window import settling
+
+def late(window):
+    print("up", flush=True)
+    return ["scene"]
+
+settling.what_is_late = late
+sys.exit(main(["view", sys.argv[1], "--picture", "waited_for.png"]))
+"""
 # A window that announces itself and then does `work` with it.
 ANNOUNCED = """
 import sys
@@ -103,10 +116,11 @@ def test_without_the_extra_it_says_what_to_install():
 
 @pytest.mark.hard
 @pytest.mark.skipif(not HAS_SCREEN, reason="needs a screen")
-@pytest.mark.parametrize("name", WORK)
-def test_ctrl_c_ends_the_work_and_closes_the_window(frame, tmp_path, name):
+@pytest.mark.parametrize("script", [*(ANNOUNCED.format(work=work) for work in WORK.values()), WAITING],
+                         ids=[*WORK, "a picture"])
+def test_ctrl_c_ends_the_work_and_closes_the_window(frame, tmp_path, script):
     ep.save_frame(frame, tmp_path / "frame.h5")
-    command = [sys.executable, "-c", ANNOUNCED.format(work=WORK[name]), str(tmp_path / "frame.h5")]
+    command = [sys.executable, "-c", script, str(tmp_path / "frame.h5")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as viewer:
         watchdog = threading.Timer(PATIENCE, viewer.kill)  # where the window never comes up

@@ -52,7 +52,8 @@ def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **set
     if line is None and what and isinstance(what[0], (str, os.PathLike)):
         window.watch_file(what[0], view_input)
     if picture is not None:
-        return _save_picture(window, picture, scale)
+        with closing_on_ctrl_c(application):
+            return _save_picture(window, picture, scale)
     if not block:
         return window
     with closing_on_ctrl_c(application):

@@ -51,8 +51,9 @@ def closing_on_ctrl_c(application):
         watch.stop()
         sys.excepthook = print_exception
         signal.signal(signal.SIGINT, handler)
-    if is_heard():
+        was_heard = is_heard()
         _heard.clear()
+    if was_heard:
         raise KeyboardInterrupt
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import time
 
+from .ctrl_c import is_heard
 from .qt import QtCore, QtWidgets
 
 LOOK_MS = 500  # between looks where no event comes
@@ -22,7 +23,7 @@ def what_is_late(window) -> list[str]:
 def settle(window, patience: float) -> None:
     """Handles events until nothing of a MainWindow is late; a picture of the scene that does not come is asked for again.
 
-    Raises TimeoutError naming what is late after `patience` s.
+    Raises TimeoutError naming what is late after `patience` s, KeyboardInterrupt on Ctrl-C within `closing_on_ctrl_c`.
     """
     QtWidgets.QApplication.processEvents()
     deadline = time.monotonic() + patience
@@ -33,5 +34,7 @@ def settle(window, patience: float) -> None:
         if time.monotonic() > deadline:
             raise TimeoutError(f"window: must show all of its session within {patience:g} s, but late are: {', '.join(late)}")
         QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+        if is_heard():
+            raise KeyboardInterrupt
     # Rows of tabs that docks no longer have are there until then.
     QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)

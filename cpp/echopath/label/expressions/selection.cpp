@@ -121,7 +121,7 @@ namespace {
 
 Selection around_glob(std::string_view before, std::string_view glob, std::string_view after) {
   const bool is_quotable = !glob.empty() && glob.find('\'') == std::string_view::npos;
-  require(is_quotable, "glob", "must be non-empty and without quotes", glob);
+  require(is_quotable, "glob", "must be non-empty and without quotes", glob.empty() ? "''" : glob);
   return Selection::path_expression(std::string(before).append("'").append(glob).append("'").append(after));
 }
 

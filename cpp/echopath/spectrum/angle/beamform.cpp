@@ -78,7 +78,7 @@ void BeamformOptions::validate() const {
   }
   const bool is_plain = window.kind == WindowKind::kRect;
   require(method == BeamMethod::kBartlett || is_plain, "window", "must be rect for capon, which finds its own weights",
-          "another");
+          window.name());
 }
 
 void require_cells_of(const RangeDoppler& map, const std::vector<Cell>& cells) {

@@ -151,7 +151,7 @@ Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<V
 std::vector<double> element_weights(const VirtualArray& array, const Window& window) {
   std::vector<double> weights(array.elements.size(), 1.0);
   if (window.kind != WindowKind::kRect) {
-    require(array.grid.has_value(), "window", "must be rect for an array that is no grid of equal steps", "another");
+    require(array.grid.has_value(), "window", "must be rect for an array that is no grid of equal steps", window.name());
     const auto rows = centred_window_samples(window, array.grid->num_rows);
     const auto columns = centred_window_samples(window, array.grid->num_columns);
     for (size_t e = 0; e < weights.size(); ++e) {

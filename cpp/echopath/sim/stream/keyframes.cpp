@@ -77,7 +77,7 @@ StretchRecords::StretchRecords(const Paths& paths, const Radar& radar, const std
 
 void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stretch>& stretches) {
   const auto num_stretches = std::ssize(stretches), num_looks = std::min<ptrdiff_t>(kMaxSurfaceSearches, num_stretches);
-  KeptGeometry then, before;
+  KeptGeometry then;  // and as earlier looks had it
   const auto look_at = [&](double time, int look) {
     SurfaceSearchSettings settings;
     settings.time = time;
@@ -93,7 +93,7 @@ void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stre
     std::vector<uint8_t> keep = own_doubles_.doubles_in(seen.paths, job_);
     for (size_t path = 0; path < keep.size(); ++path) keep[path] |= seen.is_new[path];
     Paths found = thinned(seen.paths.select(keep, job_), job_);
-    for (auto earlier = looks.rbegin(); earlier != looks.rend(); ++earlier) take_out(*earlier, radar, found, before);
+    for (auto earlier = looks.rbegin(); earlier != looks.rend(); ++earlier) take_out(*earlier, radar, found, then);
     if (found.num_paths() > 0) found_.push_back(parted(found, seen.doubles));
     looks.push_back({time, std::move(seen.doubles)});
   }

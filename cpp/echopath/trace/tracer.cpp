@@ -238,8 +238,9 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead, const RecordFil
 // memory.
 Paths Tracer::run(Job* job, PlaneDoubles* doubles, const RecordFilter& filter) const {
   Job of_filter(job);  // its progress is not that of the rays
+  const SheetPasses passes(*empty_.scene, empty_.frame.trace_time, geometry_.rounding(), job);
   const auto finished = [&](Paths part) {
-    add_passes(part, geometry_.rounding(), job);
+    passes.add_to(part, job);
     if (filter) part = filter(std::move(part), &of_filter);
     return part;
   };

@@ -69,7 +69,7 @@ Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) cons
   writer.append(parts, job);
   writer.finish();
   doubles.leave_out(paths, job);
-  add_passes(paths, shared.rounding, job);
+  SheetPasses(*paths.scene, paths.frame.trace_time, shared.rounding, job).add_to(paths, job);
   return paths;
 }
 

@@ -24,8 +24,28 @@ std::vector<uint32_t> sheets_of(const Scene& scene) {
   return ids;
 }
 
+// Holds the passes of some paths in a row.
+struct PassBlock {
+  std::vector<Pass> passes;
+  std::vector<int64_t> counts;  // by path
+  int64_t num_stopped = 0;
+};
+
+void join(const std::vector<PassBlock>& blocks, Paths& paths) {
+  paths.passes.clear();
+  paths.pass_offsets.assign(1, 0);
+  for (const PassBlock& block : blocks) {
+    paths.passes.insert(paths.passes.end(), block.passes.begin(), block.passes.end());
+    for (const int64_t count : block.counts) paths.pass_offsets.push_back(paths.pass_offsets.back() + count);
+    paths.frame.statistics.num_stopped_passes += block.num_stopped;
+  }
+  if (paths.passes.empty()) paths.pass_offsets.clear();
+}
+
+}  // namespace
+
 // Holds the sheets of a scene alone.
-class SheetScene {
+class SheetPasses::SheetScene {
  public:
   // `ids` names the sheets, of which there is at least one.
   SheetScene(const Scene& scene, std::vector<uint32_t> ids, double time, const RayRounding& rounding, Job* job)
@@ -54,14 +74,7 @@ class SheetScene {
   EmbreeScene geometry_;
 };
 
-// Holds the passes of some paths in a row.
-struct PassBlock {
-  std::vector<Pass> passes;
-  std::vector<int64_t> counts;  // by path
-  int64_t num_stopped = 0;
-};
-
-class PassFinder {
+class SheetPasses::PassFinder {
  public:
   PassFinder(Paths& paths, const SheetScene& sheets)
       : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(sheets.origin()),
@@ -166,25 +179,16 @@ class PassFinder {
   std::map<uint32_t, SheetModel> models_;  // by mesh ID
 };
 
-void join(const std::vector<PassBlock>& blocks, Paths& paths) {
-  paths.passes.clear();
-  paths.pass_offsets.assign(1, 0);
-  for (const PassBlock& block : blocks) {
-    paths.passes.insert(paths.passes.end(), block.passes.begin(), block.passes.end());
-    for (const int64_t count : block.counts) paths.pass_offsets.push_back(paths.pass_offsets.back() + count);
-    paths.frame.statistics.num_stopped_passes += block.num_stopped;
-  }
-  if (paths.passes.empty()) paths.pass_offsets.clear();
+SheetPasses::SheetPasses(const Scene& scene, double trace_time, const RayRounding& rounding, Job* job) {
+  std::vector<uint32_t> ids = sheets_of(scene);
+  if (!ids.empty()) sheets_ = std::make_unique<const SheetScene>(scene, std::move(ids), trace_time, rounding, job);
 }
 
-}  // namespace
+SheetPasses::~SheetPasses() = default;
 
-void add_passes(Paths& paths, const RayRounding& rounding, Job* job) {
-  if (paths.num_paths() == 0) return;
-  std::vector<uint32_t> ids = sheets_of(*paths.scene);
-  if (ids.empty()) return;
-  const SheetScene sheets(*paths.scene, std::move(ids), paths.frame.trace_time, rounding, job);
-  const PassFinder finder(paths, sheets);
+void SheetPasses::add_to(Paths& paths, Job* job) const {
+  if (paths.num_paths() == 0 || !sheets_) return;
+  const PassFinder finder(paths, *sheets_);
   std::vector<PassBlock> blocks(num_chunks(paths.num_paths(), kPathsTogether));
   Job own(job);
   parallel_for_chunks(paths.num_paths(), kPathsTogether,

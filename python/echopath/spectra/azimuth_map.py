@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import keywords, optional, real, refused
-from ..arguments.gates import gate, in_gate
+from ..arguments.gates import gate, require_cell
 from ..arguments.keywords import parameters_of
 from ..base.radar.velocities import velocity_span_of
 from .angles import MAP_RULES, range_azimuth
@@ -46,7 +46,9 @@ def checked_settings(radar, settings, velocity_gate=None, zero_pad: int | None =
         raise refused(ValueError, "velocity_gate", "None where a velocity is chosen", settings["velocity_gate"])
     velocity = optional(real(unit="m/s"))("velocity", settings.get("velocity"))
     if zero_pad is not None:
-        in_gate("velocity_gate", _velocities(radar, zero_pad), gate("velocity_gate", settings.get("velocity_gate")), "m/s")
+        count = radar.waveform.num_chirps * zero_pad
+        require_cell("velocity_gate", velocity_span_of(radar) / count, count,
+                     gate("velocity_gate", settings.get("velocity_gate")), "m/s")
     limit = radar.waveform.max_velocity(radar.num_slots)
     if velocity is not None and abs(velocity) > limit:
         raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
@@ -59,12 +61,6 @@ def checked_settings(radar, settings, velocity_gate=None, zero_pad: int | None =
     beams = {name: value for name, value in passed.items() if name not in _OF_MAP}
     _core.beamform(_core.range_doppler(cube, small), small, **beams)  # warns of nothing, not of a radar that gets no map either
     return settings
-
-
-def _velocities(radar, zero_pad: int) -> np.ndarray:
-    """[V] m/s, the axis of a map."""
-    count = radar.waveform.num_chirps * zero_pad
-    return (np.arange(count) - count // 2) * (velocity_span_of(radar) / count)
 
 
 def _kept(settings: dict) -> dict:

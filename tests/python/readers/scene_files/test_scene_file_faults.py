@@ -50,6 +50,8 @@ FAULTS = [
     (RADAR + "[angle]\nmethod = 'capon'\nwindow = 'hann'", "angle.window: must be \"rect\" for capon"),
     (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),
     (RADAR + "[angle]\nvelocity_gate = [10.0, 11.0]", "angle: velocity_gate: must hold a cell of the axis from -9.67"),
+    (RADAR.replace("num_chirps = 8", "num_chirps = 2000000000") + "[angle]\nvelocity_gate = [10.0, 11.0]",  # 16 GB of cells
+     "angle: velocity_gate: must hold a cell of the axis from -9.671 to 9.671 m/s in steps of 9.67e-09"),
     (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
     (RADAR + "[radar.receiver]\nreceiver_phase = [0.1, 0.2, 0.3]",
      "radar: receiver.receiver_phase: must be of the shape (1,) for this radar, got an array [3] of float64"),

@@ -29,7 +29,7 @@ _KNOWN = {word for known, _, _ in _SIZES.values() for word in known}
 _SURROUNDINGS = {"ground", "terrain", "road", "street", "pavement", "sidewalk", "house", "houses", "building", "buildings",
                  "town", "city", "village", "forest", "sky"}
 _ENCLOSURES = {"wall", "walls", "floor", "ceiling"}  # the same, in a room, too
-# a room, whatever else is named in it
+# words of a room, whatever else is named in it; what ends otherwise, as an office chair or a tower of offices, is none itself
 _ROOMS = {"room", "bedroom", "bathroom", "livingroom", "classroom", "kitchen", "office", "apartment", "corridor"}
 _ROOM = ("a room", 1.0, 200.0)
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "km": 1e3}  # m
@@ -87,12 +87,13 @@ def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = F
 
 def _expected(names: list[str]) -> tuple[str, float, float] | None:
     """(what it is, least and greatest extent in m) by the names; None: these do not say."""
-    words_of_names = [{word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)} for name in names]
+    in_order = [[word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)] for name in names]
+    words_of_names = [set(words) for words in in_order]
     surroundings = set().union(*(words for words in words_of_names if not words & _KNOWN))
     if surroundings & _SURROUNDINGS:
         return None
     if surroundings & _ROOMS:
-        return _ROOM
+        return _ROOM if any(_ROOMS.intersection(words[-1:]) for words in in_order) else None
     if surroundings & _ENCLOSURES:
         return None
     for words in words_of_names:

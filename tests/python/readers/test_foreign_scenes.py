@@ -261,6 +261,8 @@ def test_a_file_without_surfaces_is_refused_in_any_format(tmp_path, name):
     (4.2, 1.0, ["thing", "Car_Body"], None), (4.2, 1.0, ["thing", "body", "wheel"], None),
     (8000.0, 1.0, ["room", "floor", "person"], "a room of 8 km is hardly right; with unit=0.001 [(]mm[)]"),
     (8.0, 1.0, ["LivingRoom", "person"], None), (8.0, 1.0, ["scene", "floor", "person", "table"], None),
+    (0.9, 1.0, ["office_chair"], None), (600.0, 1.0, ["scene", "OfficeTower01", "apartment_block"], None),
+    (900.0, 1.0, ["scene", "MainOffice01"], "a room of 900 m is hardly right"), (8.0, 1.0, ["kitchen_scan", "person"], None),
     (600.0, 1.0, ["town", "house", "office"], None), (60.0, 1.0, ["scene", "car_floor"], "a vehicle of 60 m is hardly right"),
 ])
 def test_sizes_that_cannot_be_say_which_unit_would_be_right(extent, unit, names, words):

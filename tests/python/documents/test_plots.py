@@ -560,6 +560,40 @@ def test_a_ground_of_too_many_triangles_is_drawn_whole_of_fewer(monkeypatch):
     assert page[-int(high):-int(np.ceil(low)), int(np.ceil(left)):int(right)].min(axis=-1).max() < 200  # nothing is white
 
 
+@pytest.mark.parametrize("num_poles", [45, 100])
+def test_poles_on_a_ground_of_too_many_triangles_stay_where_and_as_high_as_they_are(monkeypatch, num_poles):
+    """One pole in each metre of a row, of 32 triangles of 4 m by 1 cm: fewer in all than the share of their mesh, and more."""
+    monkeypatch.setattr(drawing, "MOST_TRIANGLES", 3000)
+    angle = 2.0 * np.pi * np.arange(16) / 16
+    ring = 0.03 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    foot = (ring + np.stack([1.0 + np.arange(num_poles), np.zeros(num_poles)], axis=-1)[:, None]).reshape(-1, 2)
+    this = np.arange(len(foot))
+    following, count = np.where(this % 16 == 15, this - 15, this + 1), len(foot)
+    poles = ep.Mesh(np.concatenate([np.column_stack([foot, np.zeros(count)]), np.column_stack([foot, np.full(count, 4.0)])]),
+                    np.concatenate([np.column_stack([this, following, following + count]),
+                                    np.column_stack([this, following + count, this + count])]))
+    scene, rough = ep.Scene(), ep.Material(reflectivity=0.3, scattering=1.0)
+    scene.add(ep.actors.ground(110.0, edge=1.0), name="ground", position=(50, 0, 0), material=rough)
+    scene.add(poles, name="poles", material=rough)
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    drawn = np.concatenate([path.vertices for some in figure.axes[2].collections if isinstance(some, PolyCollection)
+                            for path in some.get_paths()])
+    assert drawn[:, 1].max() == pytest.approx(4.0)
+    assert set(1 + np.arange(num_poles)) <= set(drawn[drawn[:, 1] > 3.9, 0].round())
+
+
+def test_many_meshes_of_few_triangles_are_thinned_as_one_of_many_is(monkeypatch):
+    monkeypatch.setattr(drawing, "MOST_TRIANGLES", 1000)
+    scene, rough = ep.Scene(), ep.Material(reflectivity=0.3, scattering=1.0)
+    for place in range(16):
+        scene.add(ep.actors.sphere(1.0, subdivisions=4), name=f"ball {place}", position=(10 + 3 * place, 0, 0), material=rough)
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    assert scene.num_triangles > 2000
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    assert sum(len(some.get_paths()) for some in figure.axes[1].collections if isinstance(some, PolyCollection)) <= 1000
+
+
 def test_the_name_of_a_bent_object_stands_at_the_object():
     """In its box that of a rail along a curve would be as far beside it as the curve is deep, 8 m here."""
     scene = ep.Scene()

@@ -5,26 +5,40 @@ import numpy as np
 
 DOTS = 3000           # along the longest side of a picture: what is smaller than one cannot be told apart
 DOT_COVERS = 3.0      # of its size: triangles of that leave no gaps between dots
-LEAST = 1000          # triangles that any mesh may have
+LEAST = 12            # triangles that any mesh may have, as a box has
 COARSER = 1.5
 
 
-def thinned(triangles, low, high, most: float) -> np.ndarray:
+def thinned(triangles, low, high, most: float = np.inf) -> np.ndarray:
     """Triangles [N, 3, 3], of those smaller than a dot of the picture one for each dot, which covers it: a person far away has
-    thousands. Of a mesh of too many, dots are coarser.
+    thousands. Of a mesh of more than `most`, dots are coarser.
 
-    low, high: corners [3] of the picture in m; most: share of the triangles that may be left, unless there are few
+    low, high: corners [3] of the picture in m
     """
-    dot, allowed = (high - low).max() / DOTS, max(most * len(triangles), LEAST)
+    dot = (high - low).max() / DOTS
     a, b, c = np.moveaxis(triangles, 1, 0)
-    size = (np.maximum(np.maximum(a, b), c) - np.minimum(np.minimum(a, b), c)).max(axis=1)
-    middle = (a + b + c) / 3.0
+    length = (np.maximum(np.maximum(a, b), c) - np.minimum(np.minimum(a, b), c)).max(axis=1)
+    size, middle = length, (a + b + c) / 3.0
     kept = _one_for_each_dot(middle, size, low, dot)
-    while len(kept) > allowed:
+    if len(kept) > most:  # long triangles count as short ones of their area: of poles some of each are kept, not some poles
+        size = np.sqrt(np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    while len(kept) > most:
         dot *= COARSER
         kept = _one_for_each_dot(middle, size, low, dot)
-    larger = np.where(size[kept] < dot, DOT_COVERS * dot / np.maximum(size[kept], np.finfo(float).tiny), 1.0)
+    covering = np.maximum(DOT_COVERS * dot / np.maximum(length[kept], np.finfo(float).tiny), 1.0)
+    larger = np.where(size[kept] < dot, covering, 1.0)
     return middle[kept, None] + (triangles[kept] - middle[kept, None]) * larger[:, None, None]
+
+
+def most_of_each(counts, most: float) -> float:
+    """How many triangles each mesh of `counts` may have for all of them to have `most`: the smaller ones keep all of theirs."""
+    counts, left = sorted(counts), most
+    for place, count in enumerate(counts):
+        share = left / (len(counts) - place)
+        if count > share:
+            return max(share, LEAST)
+        left -= count
+    return most
 
 
 def _one_for_each_dot(middle, size, low, dot: float) -> np.ndarray:

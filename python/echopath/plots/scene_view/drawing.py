@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.text.mesh_names import object_of
 from ..clip import clip_triangles, outline
-from .dots import thinned
+from .dots import most_of_each, thinned
 
 BODY_COLOUR = np.array([0.35, 0.38, 0.44])
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
@@ -53,11 +53,18 @@ def collect(scene, shown, time: float, names, named: list) -> Drawing:
     low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     middle = 0.5 * (transmitter + receiver)
     drawing = Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, named, time), {}, margin)
-    most = MOST_TRIANGLES / max(scene.num_triangles, 1)
-    for mesh_id, mesh in enumerate(scene.meshes):
-        vertices = np.asarray(scene.world_vertices(mesh_id, time))
-        _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh, most)
+    meshes = list(enumerate(scene.meshes))
+    counts = [len(thinned(_triangles(scene, mesh_id, mesh, time), low, high))
+              for mesh_id, mesh in meshes if not mesh.material.mirror]
+    most = most_of_each(counts, MOST_TRIANGLES)
+    for mesh_id, mesh in meshes:
+        _add_mesh(drawing, _triangles(scene, mesh_id, mesh, time), mesh, most)
     return drawing
+
+
+def _triangles(scene, mesh_id: int, mesh, time: float):
+    """[N, 3, 3] of a mesh in the world."""
+    return np.asarray(scene.world_vertices(mesh_id, time))[np.asarray(mesh.mesh.triangles)]
 
 
 def _segments(paths, points, count: int, transmitter, receiver):
@@ -111,7 +118,7 @@ def _middle_of(points) -> tuple:
 
 
 def _add_mesh(drawing: Drawing, triangles, mesh, most: float) -> None:
-    """most: triangles to be drawn, over those that there are"""
+    """most: triangles to be drawn of it"""
     shown = triangles if mesh.material.mirror else thinned(triangles, drawing.low, drawing.high, most)
     polygons = clip_triangles(shown, drawing.low, drawing.high)
     if mesh.material.mirror:

@@ -130,10 +130,13 @@ def test_images_far_from_leakage_behind_a_high_pass_are_noise_and_not_leakage():
 
 @pytest.mark.parametrize("source", ["paths", "parts"])
 @pytest.mark.parametrize("faults", [dict(receiver_phase=3.0 * np.cos(5.0 * np.arange(8))),
-                                    dict(phase_drift=300.0 * np.cos(5.0 * np.arange(8)), transmitter_phase=[2.0])])
+                                    dict(phase_drift=300.0 * np.cos(5.0 * np.arange(8))),
+                                    dict(transmitter_phase=[0.0, 3.0])], ids=["receivers", "drift", "transmitters"])
 def test_echoes_are_no_noise_in_beams_that_phases_of_the_chains_turn(spheres, faults, source):
     """Those that stand 20 dB and more above the noise, in the beams that find them behind the receiver."""
     radar, paths, _ = spheres
+    if "transmitter_phase" in faults:
+        radar = radar.replace(transmitters=[*radar.transmitters, ep.Antenna((0, 4.0 * radar.waveform.wavelength, 0))])
     radar = radar.replace(receiver=ep.Receiver(**faults))
     paths = ep.trace(paths.scene, radar, num_rays=6000, max_bounces=1, start_time=0.01)
     cube = ep.receive(ep.synthesize(paths), radar, seed=1, start_time=0.01).cube

@@ -17,8 +17,8 @@ from ..transmit.signals import has_steps
 
 def cubes_beside(frame) -> dict:
     """{name: [tx, rx, chirp, sample]} in sqrt(W) of what a frame has of it, each transmitter alone, without faults of the
-    receiver, but that real samples of leakage have the phase in which it leaves the filters; what codes leave has the errors of
-    the transmitters."""
+    receiver, but that real samples of leakage have the phase in which it leaves the receivers' chains and filters; what codes
+    leave has the errors of the transmitters."""
     leaked = _leaked(frame.radar, frame.paths.frame.start_time)
     received = {INTERFERENCE: frame.interference_cube, RAIN: frame.rain_cube, LEAKAGE: leaked}
     received = {name: cube for name, cube in received.items() if cube is not None}
@@ -33,7 +33,8 @@ def cubes_beside(frame) -> dict:
 
 
 def leakage_map(radar, window, zero_pad: int):
-    """Range-Doppler map of what the transmitters leak into the receivers alone, the same in all frames of a radar; None: nothing.
+    """Range-Doppler map of what the transmitters leak into the receivers alone, in a frame that starts at 0 s; None: nothing. It
+    is the same in all frames of a radar, but for real samples behind chains whose phases drift.
 
     window, zero_pad: as of `range_doppler`
     """

@@ -145,7 +145,7 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db) / (len(_core.virtual_array(radar).elements) if beams else 1)
     noise = mean_noise(radar, spectrum.window, cells, of_noise, peaks["beam_weights"])
-    gains = EchoGains(radar, peaks["range"], start_time)  # of a cell, filters of several poles change by more than half
+    gains = EchoGains(radar, peaks["range"], start_time)  # within a cell, filters of several poles change by more than half
     makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, noise, gains,
                      peaks["beam_weights"])
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)

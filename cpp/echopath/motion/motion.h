@@ -55,10 +55,10 @@ class LinearMotion : public Motion {
 };
 
 // Interpolates translations [T] in m and unit quaternions [T] given at ascending times [T] in s, T >= 2. kCubic uses C2
-// not-a-knot cubic splines through the translations and the sign-continuous quaternions (then normalised); kLinear is
-// piecewise linear with slerp; kMonotone uses C1 cubics that do not swing past keys (spline.h). Both latter have a
-// breakpoint at each inner time. As q and -q are one rotation, it turns the shorter way between keys, so neighbours should
-// be less than 180 degrees apart.
+// cubic splines (spline.h) through the translations and the sign-continuous quaternions (then normalised); kLinear is
+// piecewise linear with slerp; kMonotone uses C1 cubics that do not swing past keys. Both latter have a breakpoint at each
+// inner time. As q and -q are one rotation, it turns the shorter way between keys, so neighbours should be less than 180
+// degrees apart.
 class KeyframeMotion : public Motion {
  public:
   // Empty translations mean zero, empty rotations mean identity; not both may be empty. Rotations may be off unit length by

@@ -48,9 +48,7 @@ class SelectionParser {
     if (take("~")) return ~parse_operand();
     if (take("(")) return parse_parentheses();
     if (take(kPower)) return parse_power();
-    if (peek() != 'T')
-      fail_at_word("a path expression T ... R, as T .* '" + example_name() +
-                   "' .* R for what touches a mesh, power, ~ or (");
+    if (peek() != 'T') fail("a path expression T ... R, as T .* 'name' .* R for what touches a mesh, power, ~ or (");
     return Selection::path_expression(read_path_expression(text_, at_));
   }
 
@@ -95,20 +93,10 @@ class SelectionParser {
     at_ += symbol.size();
     return true;
   }
-  std::string_view word() {
-    skip_space();
-    const std::string_view rest = text_.substr(at_);
-    return rest.substr(0, rest.find_first_of(" \t\r\n()&|"));
-  }
-  // Returns the name that was meant, where a name of a mesh stands alone.
-  std::string example_name() {
-    std::string name(word());
-    std::erase(name, '\'');
-    return name.empty() || !std::isalpha(static_cast<unsigned char>(name.front())) ? "name" : name;
-  }
-  // Quotes the whole word that is there, unless it has quotes.
+  // Quotes the whole word that is there.
   [[noreturn]] void fail_at_word(const std::string& expected) {
-    const std::string_view word = this->word();
+    skip_space();
+    const std::string_view rest = text_.substr(at_), word = rest.substr(0, rest.find_first_of(" \t\r\n()&|"));
     if (word.size() <= 1) fail(expected);
     throw_expression_error(text_, at_, "expected " + expected + ", got '" + std::string(word) + "'");
   }

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..paths.resolution import Interval, unmet_interval
+from ..paths.resolution import Interval, Unmet
 from .labels import COMES_INTO_VIEW, NONE, UNRESOLVED, GhostLabel, ObjectLabel, is_occluded
 
 _MOST_NUMBERED = np.iinfo(np.int16).max + 1  # labels, from 0 on, in the maps of objects and ghosts
@@ -66,11 +66,12 @@ def label_objects(names, found: FamilyCells, visibility: dict, appearing, plane,
     hidden then, but not throughout the frame; paths: of the trace, with the radar that is to receive them
     """
     labels, chosen = [], {}
+    unmet = Unmet(paths) if paths.num_paths == paths.frame.statistics.num_paths else None
     for index, name in enumerate(names):
         real, _ = _families_of(name, found)
         if real is not None:
             chosen[real] = index
-        labels.append(_object_label(name, real, found, visibility[name], name in appearing, plane, paths))
+        labels.append(_object_label(name, real, found, visibility[name], name in appearing, plane, unmet))
     return labels, _map_of(found, chosen)
 
 
@@ -97,17 +98,13 @@ def label_ghosts(found: FamilyCells, plane):
     return labels, _map_of(found, {f: index for index, f in enumerate(ghosts) if found.regions[f] is not None})
 
 
-def _object_label(name, real, found: FamilyCells, seen, appears: bool, plane, paths) -> ObjectLabel:
+def _object_label(name, real, found: FamilyCells, seen, appears: bool, plane, unmet: Unmet | None) -> ObjectLabel:
+    """unmet: of the paths; None where the record leaves paths out, which tells nothing of objects without any"""
     region = None if real is None else found.regions[real]
-    received = _unmet(paths, seen) if real is None else found.intervals[real]
+    received = found.intervals[real] if real is not None else unmet and unmet.interval(seen)
     return ObjectLabel(name=name, status=_status_of(name, found, seen, appears, plane, received),
                        power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
                        occluders=dict(seen.occluders), **_cells(region, plane), received=received)
-
-
-def _unmet(paths, seen) -> Interval | None:
-    """Of an object without a path: None where the record leaves paths out, which tells nothing of those that it had."""
-    return unmet_interval(paths, seen) if paths.num_paths == paths.frame.statistics.num_paths else None
 
 
 def _status_of(name: str, found: FamilyCells, seen, appears: bool, plane, received: Interval | None) -> str:

@@ -1,6 +1,7 @@
 """Which powers the rays of a trace know, of each object and ghost family, and what would make them know the others."""
 
 import dataclasses
+import functools
 import math
 import sys
 from typing import NamedTuple
@@ -164,9 +165,9 @@ def unresolved_of(paths, found: FamilyPowers, objects=None, *, least_power=0.0, 
     in_doubt = [(family, power) for family, power in zip(families.families, powers)
                 if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
     flagged = set(large_planes(paths.scene, paths.radar, paths.frame.trace_time) if in_doubt else ())
-    planes = [mesh for mesh in paths.scene.meshes if mesh.id in flagged]
+    planes = _Planes([mesh.name for mesh in paths.scene.meshes if mesh.id in flagged], families.objects)
     found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.ghost_type, family.order,
-                        interval_of(power), _advice(paths, families, family, power, planes)) for family, power in in_doubt]
+                        interval_of(power), _advice(paths, family, power, planes)) for family, power in in_doubt]
     met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
     found += _unseen(paths, objects, [name for name in families.objects if name not in met], progress)
     return UnresolvedList(sorted((one for one in found if one.interval.high > least_power),
@@ -175,12 +176,35 @@ def unresolved_of(paths, found: FamilyPowers, objects=None, *, least_power=0.0, 
 
 # --- advice ---
 
-def _advice(paths, families, family, power, planes) -> str:
-    """What would resolve a power: mirrors for large planes, else as many rays as its interval asks for.
+class _Planes:
+    """The meshes that `mark_mirrors` would flag, by what they belong to."""
 
-    planes: meshes that `mark_mirrors` would flag
-    """
-    wide = [] if power.diffuse > power.coherent else _wide_planes(planes, families, family)
+    def __init__(self, names: list[str], objects):
+        """names: of these meshes; objects: names of the objects"""
+        self._of_node: dict[str, list] = {}  # numbers of those at a node and below it
+        self._names = names
+        for number, name in enumerate(names):
+            for node in _nodes_of(name):
+                self._of_node.setdefault(node, []).append(number)
+        of_objects = {number for one in objects for number in self._of_node.get(one, ())}
+        self._of_surroundings = [number for number in range(len(names)) if number not in of_objects]
+
+    def touched_by(self, family) -> list[str]:
+        """Names of those that a family touches and nobody marked; an object's own have images without being marked."""
+        if not family.object:
+            return [self._names[number] for number in self._of_surroundings]
+        touched = {number for name in family.via for number in self._of_node.get(name, ())}
+        return [self._names[number] for number in sorted(touched)]
+
+
+def _nodes_of(name: str) -> list[str]:
+    """Full names of a mesh's node and of all above it."""
+    return ["/".join(name.split("/")[:depth + 1]) for depth in range(name.count("/") + 1)]
+
+
+def _advice(paths, family, power, planes: _Planes) -> str:
+    """What would resolve a power: mirrors for large planes, else as many rays as its interval asks for."""
+    wide = [] if power.diffuse > power.coherent else planes.touched_by(family)
     if wide:
         return f"mirror=True for {', '.join(wide)}"
     if paths.frame.footprint == "none" and power.bias > power.chance:
@@ -220,83 +244,91 @@ def _missing(power) -> tuple[float, float]:
     return power.bias_of_rays / wanted, 2.0 * power.chance / wanted
 
 
-def _belongs(mesh, name: str) -> bool:
-    return mesh.name == name or mesh.name.startswith(name + "/")
-
-
-def _wide_planes(planes, families, family) -> list:
-    """Names of those of the planes that nobody marked that a family touches."""
-    def is_touched(mesh):
-        if family.object:  # its own planes have images without being marked
-            return any(_belongs(mesh, name) for name in family.via)
-        return not any(_belongs(mesh, name) for name in families.objects)
-
-    return [mesh.name for mesh in planes if is_touched(mesh)]
-
-
 # --- what no ray has met ---
 
 def _unseen(paths, objects, names, progress) -> list:
     """Unresolved for those `names` of the objects that the radar sees."""
     if not names:
         return []
-    found = []
+    unmet, names, found = Unmet(paths), set(names), []
     for seen in visibility_in_trace(paths, paths.radar, objects, num_directions=UNMET_DIRECTIONS, progress=progress):
-        interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
+        interval = unmet.interval(seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
         if interval.high > 0.0:
-            found.append(Unresolved(seen.name, (), 0, 1, interval, _advice_to_meet(paths, seen)))
+            found.append(Unresolved(seen.name, (), 0, 1, interval, unmet.advice(seen)))
     return found
 
 
-def _advice_to_meet(paths, seen) -> str:
-    if paths.num_paths < paths.frame.statistics.num_paths:
-        return "its paths may be among those that were left out of this record"
-    times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.mesh_ids) * _visible_angle(seen), 1e-9))
-    return f"{_rays(paths, times)} to meet it"
+class Unmet:
+    """What no ray of some paths has met: what it may send, and what would meet it, object by object."""
 
+    def __init__(self, paths):
+        self._paths = paths
 
-def unmet_interval(paths, seen) -> Interval:
-    """Of the mean power in W of an object that no ray of the paths has met. seen: its ObjectVisibility
+    def interval(self, seen) -> Interval:
+        """Of the mean power in W of an object that no ray of the paths has met. seen: its ObjectVisibility
 
-    From 0, to the power of the largest surface that the rays may have missed, facing the radar: as large as three launch cells
-    there, or as all that is seen of the object; sigma = 4 pi A^2 / lambda^2 where it may reflect as a mirror does, as far as
-    that is below pi d^2 of a mirror without end, and 4 A (Lambert). [0, 0] where nothing of the object is in sight.
-    """
-    if not (seen.transmitter.in_view and seen.receiver.in_view and seen.visible_share > 0.0):
-        return Interval(0.0, 0.0, 0.0)
-    density, radar = _ray_density(paths, seen.mesh_ids), paths.radar
-    solid_angle = min(_visible_angle(seen), UNSEEN_HITS / max(density, 1e-300))
-    distances = seen.transmitter.distance, max(seen.receiver.distance, 1e-3)
-    wavelength = _core.speed_of_light / radar.waveform.start_frequency
-    area = solid_angle * distances[0] ** 2
-    most = math.pi * distances[0] * distances[1]  # of a mirror without end, whatever its area
-    is_rough = all(paths.scene.meshes[mesh].material.scattering == 1.0 for mesh in seen.mesh_ids)
-    cross_section = 4.0 * area + (0.0 if is_rough else min(4.0 * math.pi * area ** 2 / wavelength ** 2, most))
-    gain = math.prod(max(one.pattern.peak_gain for one in antennas) for antennas in (radar.transmitters, radar.receivers))
-    high = (radar.transmit_power * gain * wavelength ** 2 * cross_section
-            / ((4.0 * math.pi) ** 3 * max(distances[0], 1e-3) ** 2 * distances[1] ** 2))
-    return Interval(0.0, 0.0, high)
+        From 0, to the power of the largest surface that the rays may have missed, facing the radar: as large as three launch
+        cells there, or as all that is seen of the object; sigma = 4 pi A^2 / lambda^2 where it may reflect as a mirror does, as
+        far as that is below pi d^2 of a mirror without end, and 4 A (Lambert). [0, 0] where nothing of the object is in sight.
+        """
+        if not (seen.transmitter.in_view and seen.receiver.in_view and seen.visible_share > 0.0):
+            return Interval(0.0, 0.0, 0.0)
+        density, radar = self._ray_density(seen.mesh_ids), self._paths.radar
+        solid_angle = min(_visible_angle(seen), UNSEEN_HITS / max(density, 1e-300))
+        distances = seen.transmitter.distance, max(seen.receiver.distance, 1e-3)
+        wavelength = _core.speed_of_light / radar.waveform.start_frequency
+        area = solid_angle * distances[0] ** 2
+        most = math.pi * distances[0] * distances[1]  # of a mirror without end, whatever its area
+        is_rough = all(self._meshes[mesh].material.scattering == 1.0 for mesh in seen.mesh_ids)
+        cross_section = 4.0 * area + (0.0 if is_rough else min(4.0 * math.pi * area ** 2 / wavelength ** 2, most))
+        gain = math.prod(max(one.pattern.peak_gain for one in antennas) for antennas in (radar.transmitters, radar.receivers))
+        high = (radar.transmit_power * gain * wavelength ** 2 * cross_section
+                / ((4.0 * math.pi) ** 3 * max(distances[0], 1e-3) ** 2 * distances[1] ** 2))
+        return Interval(0.0, 0.0, high)
+
+    def advice(self, seen) -> str:
+        if self._paths.num_paths < self._paths.frame.statistics.num_paths:
+            return "its paths may be among those that were left out of this record"
+        times = max(2.0, UNSEEN_HITS / max(self._ray_density(seen.mesh_ids) * _visible_angle(seen), 1e-9))
+        return f"{_rays(self._paths, times)} to meet it"
+
+    def _ray_density(self, mesh_ids) -> float:
+        """Rays per sr of the stratum that aims at an object, the thinnest of those at its things, or the field of view."""
+        own = [density for node in self._nodes_above(mesh_ids) if (density := self._densities.get(node)) is not None]
+        return min(own) if own else self._strata[-1].ray_density if self._strata else 0.0
+
+    def _nodes_above(self, mesh_ids) -> set:
+        """Indices of the nodes of meshes and of all above them."""
+        above = set()
+        for mesh in mesh_ids:
+            node = self._meshes[mesh].node
+            while node >= 0 and node not in above:
+                above.add(node)
+                node = self._nodes[node].parent
+        return above
+
+    @functools.cached_property
+    def _nodes(self) -> list:
+        return self._paths.scene.nodes  # a list that is made anew when it is asked for, as the next two
+
+    @functools.cached_property
+    def _meshes(self) -> list:
+        return self._paths.scene.meshes
+
+    @functools.cached_property
+    def _strata(self) -> list:
+        return self._paths.frame.strata
+
+    @functools.cached_property
+    def _densities(self) -> dict:
+        """{index of a node: rays per sr of the thinnest stratum that aims at it}"""
+        densities = {}
+        for stratum in self._strata:
+            if not stratum.num_mirrors and stratum.focus_of < 0:
+                density = stratum.ray_density
+                densities[stratum.object] = min(density, densities.get(stratum.object, density))
+        return densities
 
 
 def _visible_angle(seen) -> float:
     return seen.transmitter.solid_angle * seen.transmitter.visible_share
-
-
-def _ray_density(paths, mesh_ids) -> float:
-    """Rays per sr of the stratum that aims at an object, or of the thinnest of those at its things, or of the field of view."""
-    strata = paths.frame.strata
-    above = _nodes_above(paths.scene, mesh_ids)
-    own = [stratum.ray_density for stratum in strata if stratum.object in above and not stratum.num_mirrors
-           and stratum.focus_of < 0]
-    return min(own, default=strata[-1].ray_density if strata else 0.0)
-
-
-def _nodes_above(scene, mesh_ids) -> set:
-    """Indices of the nodes of meshes and of all above them."""
-    nodes, meshes, above = scene.nodes, scene.meshes, set()
-    for mesh in mesh_ids:
-        node = meshes[mesh].node
-        while node >= 0 and node not in above:
-            above.add(node)
-            node = nodes[node].parent
-    return above

@@ -2,6 +2,7 @@
 import csv
 import dataclasses
 import re
+import time
 from types import SimpleNamespace
 
 import h5py
@@ -16,7 +17,7 @@ from echopath.bench.physics import targets
 from echopath.bench.physics.closed_forms import WAVELENGTH
 from echopath.cli import main, report
 from echopath.frame_file import LeftOut
-from echopath.paths.resolution import _times_the_rays, unmet_interval
+from echopath.paths.resolution import Unmet, _times_the_rays
 from echopath.paths.visibility import visibility_in_trace
 from support.radars import build_radar
 from support.scenes.coarse_bodies import coarse_bodies
@@ -382,6 +383,18 @@ def test_a_power_is_resolved_that_is_known_to_three_tenths_of_a_decibel_on_eithe
     assert interval.resolved is resolved
 
 
+def test_two_thousand_objects_that_no_ray_met_are_told_in_a_fraction_of_a_second():
+    """Each is looked up, and the lists of the scene, which take milliseconds here, are not made for it."""
+    scene, plate = ep.Scene(), ep.actors.plate(1.0, 1.0)
+    for k in range(2000):
+        scene.add(plate, name=f"plate_{k}", material="metal", position=(500.0, 2.0 * (k % 40) - 40.0, 2.0 * (k // 40)), yaw=np.pi)
+    paths = ep.trace(scene, build_radar(), num_rays=50_000, max_bounces=1).select("T 'plate_0' R")
+    begin = time.process_time()
+    unmet = [one for one in ep.unresolved(paths) if one.interval.power == 0.0]
+    assert time.process_time() - begin < 1.5
+    assert len(unmet) > 1800
+
+
 @pytest.mark.parametrize("material, falls", [(ep.Material(reflectivity=0.5, scattering=1.0), 4.0), (ep.Material.metal(), 16.0)])
 def test_what_rays_may_have_missed_is_three_cells_of_theirs_large(material, falls):
     """Four times the rays leave a quarter of the area, to which rough echoes go, and those of a mirror as its square."""
@@ -391,7 +404,7 @@ def test_what_rays_may_have_missed_is_three_cells_of_theirs_large(material, fall
     highs = []
     for num_rays in (4000, 16000):
         paths = ep.trace(scene, radar, num_rays=num_rays, max_bounces=1)
-        highs.append(unmet_interval(paths, visibility_in_trace(paths, radar)[0]).high)
+        highs.append(Unmet(paths).interval(visibility_in_trace(paths, radar)[0]).high)
     assert highs[0] / highs[1] == pytest.approx(falls, rel=0.05)
 
 
@@ -401,7 +414,7 @@ def test_no_more_can_have_been_missed_than_a_mirror_without_end_sends():
     scene.add(ep.actors.plate(3.0, 3.0), name="plate", material=ep.Material.metal(), position=(distance, 0, 0), yaw=np.pi)
     radar = build_radar()
     paths = ep.trace(scene, radar, num_rays=100, max_bounces=1)
-    high = unmet_interval(paths, visibility_in_trace(paths, radar)[0]).high
+    high = Unmet(paths).interval(visibility_in_trace(paths, radar)[0]).high
     wavelength = ep.speed_of_light / radar.waveform.start_frequency
     of_mirror = radar.transmit_power * (wavelength / (4.0 * np.pi * 2.0 * distance)) ** 2
     assert of_mirror < high < of_mirror * (1.0 + 37.0 / (np.pi * distance ** 2))

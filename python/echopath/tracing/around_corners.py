@@ -109,10 +109,14 @@ class Hidden:
 
 def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
     """Objects of which something else hides a part from the first antennas at a time in s."""
-    names = [name for name in dict.fromkeys(object_of(mesh.name) for mesh in scene.meshes) if scene[name].visible]
-    facing = [_facing(scene, radar, name, names, time) for name in names]
-    if not facing:
+    meshes: dict[str, list] = {}
+    for mesh in scene.meshes:
+        meshes.setdefault(object_of(mesh.name), []).append(mesh)
+    meshes = {name: own for name, own in meshes.items() if scene[name].visible}
+    if not meshes:
         return []
+    empty = _empty(scene, meshes)
+    facing = [_facing(scene, radar, name, own, _alone(empty, name), time) for name, own in meshes.items()]
     places = np.concatenate([one.points.at(scene, time) for one in facing])  # together: each search finds the scene's edges anew
     ways = [ways_to(scene, radar, end, places, time, progress=progress) for end in _first_antennas(radar)]
     straight = np.prod([np.abs(field_toward(radar, end, places, time)) ** 2 for end in _first_antennas(radar)], axis=0)
@@ -131,9 +135,8 @@ class _Facing(NamedTuple):
     points: SurfacePoints
 
 
-def _facing(scene, radar, name, names, time) -> _Facing:
-    alone = _alone(scene, name, names)
-    points = surface_points(scene, [mesh for mesh in scene.meshes if object_of(mesh.name) == name], time, NUM_POINTS)
+def _facing(scene, radar, name, meshes, alone, time) -> _Facing:
+    points = surface_points(scene, meshes, time, NUM_POINTS)
     ways = [ways_to(alone, radar, end, points.at(scene, time), time, edges=False) for end in _first_antennas(radar)]
     return _Facing(name, alone, points[np.all([_is_free(way) for way in ways], axis=0)])
 
@@ -162,12 +165,18 @@ def _decibels(ratio) -> float:
     return 10.0 * float(np.log10(ratio)) if ratio > 0.0 else -np.inf
 
 
-def _alone(scene, name, names):
-    """The scene without the other objects."""
-    alone = Scene(scene)  # those of records cannot be changed
-    for other in names:
-        if other != name:
-            alone[other].visible = False
+def _empty(scene, names):
+    """The scene without the objects."""
+    empty = Scene(scene)  # those of records cannot be changed
+    for name in names:
+        empty[name].visible = False
+    return empty
+
+
+def _alone(empty, name):
+    """The scene of one object, from that without any."""
+    alone = Scene(empty)
+    alone[name].visible = True
     return alone
 
 

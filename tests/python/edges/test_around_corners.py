@@ -6,6 +6,7 @@ from scipy.special import fresnel, jv
 
 import echopath as ep
 from echopath import _core
+from echopath.scene.node import SceneNode
 
 FREQUENCY = 77e9
 WAVENUMBER = 2.0 * np.pi * FREQUENCY / 299792458.0
@@ -416,3 +417,14 @@ def test_a_corner_may_slide_by_during_the_frame(radar, driving):
                 if one.name == "block")
     powers = [np.mean(np.abs(ep.synthesize_around_corners(scene, radar, seed=seed, num_rays=500)) ** 2) for seed in range(6)]
     assert 10.0 * np.log10(np.mean(powers) / told.power) == pytest.approx(0.0, abs=3.0)  # six speckles: 2 dB
+
+
+def test_each_object_of_a_crowd_is_hidden_and_shown_once(radar, monkeypatch):
+    """Not hidden again for every other object that is looked at alone: the changes are as many as the objects, twice."""
+    scene, num_objects, changes = ep.Scene(), 12, []
+    for k in range(num_objects):
+        scene.add(ep.actors.plate(1.0, 1.0), name=f"plate_{k}", material="metal", position=(5.0 + k, 0.1 * k, 1.0), yaw=np.pi)
+    change = SceneNode._change
+    monkeypatch.setattr(SceneNode, "_change", lambda node, **fields: (changes.append(node), change(node, **fields))[1])
+    assert len(ep.around_corners(scene, radar, num_rays=100)) > 0
+    assert len(changes) <= 2 * num_objects

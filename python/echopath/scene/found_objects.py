@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from os.path import commonprefix
 from typing import NamedTuple
 
 import numpy as np
@@ -137,7 +138,7 @@ def _expanded(parts: list[_Part]) -> list[_Part]:
 def _depth_of_several(names: list[list[str]]) -> int:
     """How many segments of the names [M] it takes until they differ; all, where they never do."""
     deepest = max(map(len, names), default=1)
-    return next((depth for depth in range(1, deepest) if len({tuple(name[:depth]) for name in names}) > 1), deepest)
+    return min(len(commonprefix(names)) + 1, deepest)
 
 
 def _stand_apart(parts: list[_Part]) -> bool:

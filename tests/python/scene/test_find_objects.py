@@ -1,4 +1,6 @@
 """What labels of a scene tell apart where a town was read as one object."""
+import time
+
 import numpy as np
 import pytest
 
@@ -162,3 +164,15 @@ def test_what_stands_in_a_room_is_found_before_and_after_its_walls_are_marked():
     assert ep.find_objects(scene, radar) == found
     assert len(ep.mark_mirrors(scene, radar)) == 3
     assert ep.find_objects(scene, radar) == found
+
+
+def test_groups_that_are_nested_deeply_are_looked_through_at_once():
+    """Names are compared whole, not at each of their levels for each level. The last seven are as long as a vehicle."""
+    scene, group, depth = ep.Scene(), None, 250
+    for level in range(depth):
+        group = scene.add(None, name="g", parent=group)
+        _add(scene, group, "bin", (1.0, 1.0, 1.0), (3.0 * level, 0.0, 0.0))
+    begin = time.process_time()
+    found = ep.find_objects(scene, make_radar().replace(position=(100.0, 50.0, 0.0)))
+    assert time.process_time() - begin < 1.0
+    assert len(found) == depth - 6 and sum(glob.endswith("/bin") for glob in found.values()) == depth - 7

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "echopath/base/principal_box.h"
 #include "echopath/em/surface/coherent_share.h"
-#include "echopath/scene/edges/planar_patches.h"
+#include "echopath/scene/edges/patch_sizes.h"
 #include "echopath/scene/mesh/direction_count.h"
 
 namespace echopath {
@@ -15,20 +17,21 @@ namespace {
 
 constexpr double kZones = 2.0;    // widths of the Fresnel zone from which on a plane is large
 constexpr int kPlanesOfBody = 3;  // large ones, of what may be a body: a wall has its two sides
-constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
 
 // Measures the planes of one mesh.
 class PlaneMeasure {
  public:
-  PlaneMeasure(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const LargePlaneRule& rule)
-      : vertices_(vertices), triangles_(triangles), rule_(rule) {}
+  PlaneMeasure(const MeshPtr& mesh, const Transform& place, const LargePlaneRule& rule)
+      : mesh_(mesh), linear_(place.linear()), vertices_(mesh->vertices()), triangles_(mesh->triangles()), rule_(rule) {
+    for (Vec3& vertex : vertices_) vertex = place * vertex;
+  }
 
   // Returns the triangles of MeshOfLargePlanes; nothing where the mesh is none.
   std::optional<std::vector<uint32_t>> find() const {
     const Box box = box_about(vertices_);
-    const double extent = box.diagonal().norm();
-    if (!(extent >= least_width_at(nearest_distance(box)))) return std::nullopt;  // most meshes are told by their boxes
-    Sizes sizes = measured(flat_tolerance(extent));
+    const double least_width = least_width_at(nearest_distance(box));
+    if (!(box.diagonal().norm() >= least_width)) return std::nullopt;  // most meshes are told by their boxes
+    Sizes sizes = measured(least_width);
     if (!are_large(sizes, box)) return std::nullopt;
     if (sizes.num_small <= rule_.most_small_planes) sizes.small.clear();
     std::ranges::sort(sizes.small);
@@ -40,7 +43,8 @@ class PlaneMeasure {
     double whole = 0.0, large = 0.0;  // m^2, of the mesh and of its large planes
     int num_large = 0, num_small = 0;
     std::vector<uint32_t> small;  // triangles of the small planes
-    Vec3 normal = Vec3::UnitX();  // of the widest plane
+    double widest = 0.0;          // m^2, of the widest plane
+    Vec3 normal = Vec3::UnitX();  // of this one
   };
 
   bool are_large(const Sizes& sizes, const Box& box) const {
@@ -54,32 +58,40 @@ class PlaneMeasure {
     return sizes.whole > 0.0 && sizes.large >= least_share * sizes.whole;
   }
 
-  // Measures the planes, which are flat to within a tolerance in m.
-  Sizes measured(double tolerance) const {
-    const TriangleContacts contacts(vertices_, triangles_, tolerance);
-    const auto patches = planar_patches(vertices_, triangles_, tolerance, contacts);
-    std::vector<uint32_t> patch_of(triangles_.size(), kNoPatch);
-    for (uint32_t patch = 0; patch < patches.size(); ++patch) {
-      for (const uint32_t triangle : patches[patch]) patch_of[triangle] = patch;
-    }
+  // Measures the planes, of which large ones have some width (m) at least.
+  Sizes measured(double least_width) const {
+    const std::shared_ptr<const PatchSizes> planes = patch_sizes(mesh_, linear_);
     Sizes found;
-    double widest = 0.0;
-    for (const std::vector<uint32_t>& patch : patches) {
-      const double area = area_of(patch);
-      found.whole += area;
-      if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, contacts, patch_of)) {
-        found.large += area;
-        ++found.num_large;
-      } else {
-        ++found.num_small;
-        found.small.insert(found.small.end(), patch.begin(), patch.end());
-      }
-      if (area > widest) {
-        widest = area;
-        found.normal = normal_of(patch.front());
-      }
+    std::vector<uint8_t> is_of_several(triangles_.size());
+    for (size_t plane = 0; plane < planes->ends.size(); ++plane) {
+      const std::span<const uint32_t> triangles = planes->of_plane(plane);
+      for (const uint32_t triangle : triangles) is_of_several[triangle] = 1;
+      add(triangles, planes->area[plane], planes->rim[plane], least_width, found);
+    }
+    for (uint32_t triangle = 0; triangle < triangles_.size(); ++triangle) {
+      if (is_of_several[triangle]) continue;
+      const auto& [a, b, c] = triangles_[triangle];
+      const double rim =
+          (vertices_[b] - vertices_[a]).norm() + (vertices_[c] - vertices_[b]).norm() + (vertices_[a] - vertices_[c]).norm();
+      add({&triangle, 1}, 0.5 * cross_of_sides(vertices_, triangles_[triangle]).norm(), rim, least_width, found);
     }
     return found;
+  }
+
+  // Adds a plane of an area in m^2 and a rim in m, which is large only where it is as wide as the least one.
+  void add(std::span<const uint32_t> plane, double area, double rim, double least_width, Sizes& found) const {
+    found.whole += area;
+    if (4.0 * area >= least_width * rim && 4.0 * area >= least_width_at(farthest_distance(plane)) * rim) {
+      found.large += area;
+      ++found.num_large;
+    } else {
+      ++found.num_small;
+      found.small.insert(found.small.end(), plane.begin(), plane.end());
+    }
+    if (area > found.widest) {
+      found.widest = area;
+      found.normal = normal_of(plane.front());
+    }
   }
 
   // Returns whether an antenna stands in the box along the mesh's own axes and has more of the mesh around it than half of
@@ -111,7 +123,7 @@ class PlaneMeasure {
     return nearest;
   }
 
-  double farthest_distance(const std::vector<uint32_t>& patch) const {
+  double farthest_distance(std::span<const uint32_t> patch) const {
     double farthest = 0.0;
     for (const uint32_t triangle : patch) {
       for (const uint32_t corner : triangles_[triangle]) {
@@ -119,12 +131,6 @@ class PlaneMeasure {
       }
     }
     return farthest;
-  }
-
-  double area_of(const std::vector<uint32_t>& patch) const {
-    double twice = 0.0;
-    for (const uint32_t triangle : patch) twice += cross_of_sides(vertices_, triangles_[triangle]).norm();
-    return 0.5 * twice;
   }
 
   Vec3 normal_of(uint32_t triangle) const { return cross_of_sides(vertices_, triangles_[triangle]).normalized(); }
@@ -139,18 +145,9 @@ class PlaneMeasure {
     return most - least;
   }
 
-  // Returns the length in m of the edges that lead out of the patch.
-  static double rim_of(const std::vector<uint32_t>& patch, const TriangleContacts& contacts,
-                       const std::vector<uint32_t>& patch_of) {
-    double length = 0.0;
-    for (const uint32_t triangle : patch) {
-      const auto is_of_patch = [&](uint32_t other) { return patch_of[other] == patch_of[triangle]; };
-      length += contacts.open_length(triangle, is_of_patch);
-    }
-    return length;
-  }
-
-  const std::vector<Vec3>& vertices_;
+  const MeshPtr& mesh_;
+  Mat3 linear_;
+  std::vector<Vec3> vertices_;  // m, world
   const std::vector<Triangle>& triangles_;
   const LargePlaneRule& rule_;
 };
@@ -177,9 +174,7 @@ std::vector<MeshOfLargePlanes> meshes_of_large_planes(const Scene& scene, const 
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     if (!may_be_mirror(scene, node, rule)) continue;
-    std::vector<Vec3> vertices = node.mesh->vertices();
-    for (Vec3& vertex : vertices) vertex = placed[scene.meshes()[id].node] * vertex;
-    std::optional<std::vector<uint32_t>> small = PlaneMeasure(vertices, node.mesh->triangles(), rule).find();
+    std::optional<std::vector<uint32_t>> small = PlaneMeasure(node.mesh, placed[scene.meshes()[id].node], rule).find();
     if (small) found.push_back({id, std::move(*small)});
   }
   return found;

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "cpp/support/boxes.h"
+#include "echopath/scene/edges/patch_sizes.h"
 #include "echopath/scene/edges/planar_patches.h"
 
 namespace echopath::test_planar_patches {
@@ -77,6 +78,41 @@ TEST(TriangleContacts, ATriangleListedTwiceHasTwoRims) {
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 1}};
   const TriangleContacts contacts(vertices, triangles, 1e-4);
   for (uint32_t t = 0; t < 2; ++t) EXPECT_NEAR(contacts.open_length(t, [](uint32_t) { return true; }), 12.0, 1e-12);
+}
+
+// A floor of `side` by `side` squares of 1 m, and a triangle of its own that stands apart.
+MeshPtr tiled_floor(uint32_t side) {
+  std::vector<Vec3> vertices;
+  for (uint32_t i = 0; i <= side; ++i)
+    for (uint32_t k = 0; k <= side; ++k) vertices.emplace_back(i, k, 0);
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < side; ++i) {
+    for (uint32_t k = 0; k < side; ++k) {
+      const uint32_t a = i * (side + 1) + k, b = a + side + 1;
+      triangles.push_back({a, b, b + 1});
+      triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+  const auto first = static_cast<uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), {{0, 0, 5}, {1, 0, 5}, {0, 1, 6}});
+  triangles.push_back({first, first + 1, first + 2});
+  return std::make_shared<const Mesh>(vertices, triangles);
+}
+
+// Under a place that doubles x and turns about z: 2 side^2 m^2 within a rim of 6 side m, for few and for many triangles.
+TEST(PatchSizes, AreThoseOfThePlacedMesh) {
+  Mat3 linear = Eigen::AngleAxisd(0.3, Vec3::UnitZ()).toRotationMatrix();
+  linear.col(0) *= 2.0;
+  for (const uint32_t side : {3u, 140u}) {
+    const MeshPtr floor = tiled_floor(side);
+    const auto found = patch_sizes(floor, linear), doubled = patch_sizes(floor, Mat3(2.0 * linear));
+    ASSERT_EQ(found->ends, std::vector<uint32_t>{2 * side * side});  // the triangle apart is a plane of one
+    EXPECT_NEAR(found->area[0], 2.0 * side * side, 1e-9 * side * side);
+    EXPECT_NEAR(found->rim[0], 6.0 * side, 1e-9 * side);
+    EXPECT_NEAR(doubled->area[0], 8.0 * side * side, 1e-9 * side * side);
+    EXPECT_EQ(found->of_plane(0).back(), 2 * side * side - 1);
+    EXPECT_EQ(patch_sizes(floor, linear) == found, side == 140u);  // which is kept
+  }
 }
 
 }  // namespace

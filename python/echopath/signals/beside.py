@@ -28,7 +28,7 @@ def cubes_beside(frame) -> dict:
     apart = _as_the_whole(frame)
     cubes = {name: apart(cube) for name, cube in received.items()}
     if RAIN in cubes and frame.coded_cube is not None:  # which was added up behind the transmitters, as echoes are
-        cubes[RAIN] = cubes[RAIN] / np.abs(_transmitter_factors(frame.radar))
+        cubes[RAIN] = cubes[RAIN] / _transmitter_factors(frame.radar)
     return cubes | ({RESIDUE: apart(frame.coded_cube) - _own(frame)} if leaves_residue else {})
 
 

@@ -79,12 +79,12 @@ def test_frames_have_them_for_their_parts(code):
 @pytest.mark.parametrize("code", [{}, dict(multiplexing="bpm"), dict(multiplexing="ddm", empty_slots=2)],
                          ids=["tdm", "bpm", "ddm"])
 def test_rain_beside_the_echoes_has_no_errors_of_the_transmitters_as_these_have_none(code):
-    """Labels hold it against ideal echoes, and detections count the errors of both: a back-off had counted twice."""
+    """Labels hold it against ideal echoes, and detections count the errors of both, in beams with their phases."""
     scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=20.0))
-    ideal, backed_off = (build_radar(**ARRAY, **code, receiver=ep.Receiver(transmitter_gain_db=[level, level]))
-                         for level in (0.0, -20.0))
+    ideal, faulty = (build_radar(**ARRAY, **code, receiver=ep.Receiver(**faults))
+                     for faults in ({}, dict(transmitter_gain_db=[-20.0, -20.0], transmitter_phase=[0.5, 0.5])))
     wanted, found = (ep.simulate(scene, radar, num_rays=100, noise_seed=None).beside_spectra["rain"].values
-                     for radar in (ideal, backed_off))
+                     for radar in (ideal, faulty))
     np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
 
 

@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ..transmit import mixes_of_turns
+
 SAME_LINE = 0.1  # bins of range, over which a response is a straight line: 0.4 % of the peak
 
 
@@ -64,3 +66,9 @@ class Channels:
 def by_channel(beams):
     """Weights [N, C] of those [N, tx, rx] of beams, of all channels."""
     return beams.reshape(len(beams), beams.shape[1] * beams.shape[2])
+
+
+def in_turns(beams, radar):
+    """Weights [turns, N, tx, rx] that beams [N, tx, rx] give the signals of single transmitters, as `demultiplex` mixes them of
+    echoes that are too fast for the map."""
+    return np.einsum("kab,nar->knbr", mixes_of_turns(radar), beams)

@@ -23,6 +23,7 @@ from ..signals.same_radar import difference
 from ..spectra.angles import estimate_angles
 from ..spectra.range_doppler import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMethod, cfar
 from . import labelling
+from .channels import in_turns
 from .detections import Detections
 from .directions import directions_of
 from .echo_fields import EchoFields
@@ -148,6 +149,8 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     gains = EchoGains(radar, peaks["range"], start_time)  # within a cell, filters of several poles change by more than half
     makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, noise, gains,
                      peaks["beam_weights"])
+    if beams:
+        makers = makers._replace(beams=_beams_of_echoes(radar, cells, makers, echoes))
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
     directions = directions_of(spectrum, radar, peaks, angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
@@ -168,7 +171,7 @@ class _Makers(NamedTuple):
     noise_floor: float  # W
     noise: np.ndarray   # [N] W, thermal, in the mean, of the cells
     gains: EchoGains    # at the ranges of the peaks
-    beams: np.ndarray | None  # weights [N, tx, rx] of the beams that found the cells
+    beams: np.ndarray | None  # weights [N, tx, rx] that the beams which found the cells give to the transmitters' signals
 
 
 def _start_of(paths) -> float:
@@ -180,6 +183,20 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
     if margin_db is None:
         margin_db = LabelSettings.noise_margin_db if labels is None else labels.noise_margin_db
     return floor_over(_core.cell_noise_power(radar, spectrum.window), margin_db)
+
+
+def _beams_of_echoes(radar, cells, makers: _Makers, echoes: EchoFields | None) -> np.ndarray:
+    """Weights [N, tx, rx] of the beams for the transmitters' signals, which the code leaves mixed where echoes are too fast for
+    the map: of its mixes, in the one in which the echoes have the most power."""
+    turned = in_turns(makers.beams, radar)
+    maps = {"": makers.without_noise} if makers.parts is None and makers.without_noise is not None else makers.parts
+    if len(turned) == 1 or (maps is None and echoes is None):
+        return makers.beams
+    if maps is None:
+        powers = [[power for _, _, power in echoes.each(cells, makers.gains, beams)] for beams in turned]
+    else:
+        powers = [labelling.part_powers(maps, cells, makers.gains, beams)[2] for beams in turned]
+    return turned[np.argmax(powers, axis=0), np.arange(len(cells))]
 
 
 def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoFields | None, progress) -> dict:

@@ -78,6 +78,17 @@ def _without_signs(slots, radar):
     return np.fft.ifft(np.einsum("tl,rcls->trcs", signs, by_slot, optimize=True), axis=2)
 
 
+def mixes_of_turns(radar) -> NDArray[np.complex128]:
+    """What the place of each transmitter has of each one, [turns, place, tx], of echoes whose velocities are so many times the
+    whole axis of the map beyond it: signs of "bpm" come apart as those of others then. Of other codes one turn of none."""
+    num_tx, length = len(radar.transmitters), radar.num_slots
+    if radar.multiplexing != "bpm" or num_tx == 1:
+        return np.eye(num_tx, dtype=complex)[None]
+    turns = np.arange(length) - length // 2
+    signs = hadamard(length)[:num_tx]
+    return np.einsum("al,bl,kl->kab", signs, signs, np.exp(2j * np.pi * np.outer(turns, _lateness(radar)))) / length
+
+
 def _lateness(radar):
     """Of the slots [slot] of a chirp, in intervals of chirps."""
     return np.array([radar.waveform.slot_start(slot) for slot in range(radar.num_slots)]) / chirp_period(radar)

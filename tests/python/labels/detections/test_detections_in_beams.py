@@ -8,6 +8,7 @@ import echopath as ep
 from echopath import _core
 from echopath.detections.uneven_fields import echo_fields
 from echopath.receiver.echo_gains import EchoGains
+from support.radars import build_radar
 
 WAVELENGTH = ep.speed_of_light / 77e9
 DISTANCE = 20.0
@@ -197,3 +198,23 @@ def test_noise_of_a_frame_is_what_its_signal_holds_less_than_half_of(beams):
     noise = ep.noise_power(sender) * (np.sum(np.abs(weights) ** 2, axis=(1, 2)) if beams else 1.0)
     assert np.array_equal(found.is_noise, echoes < 0.5 * (power - noise))
     assert 10 < found.is_noise.sum() < len(found) - 10
+
+
+@pytest.mark.parametrize("num_tx, turns, phases", [(2, 1, (0.0, 3.0)), (3, -1, ()), (4, -1, ()), (4, 2, (0.0, 1.5, -2.0, 2.8))])
+def test_signs_come_apart_mixed_of_what_is_too_fast_and_its_beams_tell_no_noise(num_tx, turns, phases):
+    """An echo 40 dB above the noise, the only one there is, whose velocity is so many times the axis of the map beyond it."""
+    half = 0.00193
+    radar = build_radar([(0, 4 * m * half, 0) for m in range(num_tx)], [(0, n * half, 0) for n in range(4)], bandwidth=300e6,
+                        sampling_rate=6.4e6, num_chirps=64, chirp_interval=20e-6, transmit_power=20.0, multiplexing="bpm",
+                        receiver=ep.Receiver(transmitter_phase=phases))
+    speed = (2.0 * turns - 0.4) * radar.waveform.max_velocity(radar.num_slots)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.15), name="ball", material="metal", smooth=True, position=(11.2, 2, 0),
+              motion=ep.LinearMotion(velocity=(speed, 0, 0)))
+    frame = ep.simulate(scene, radar, num_rays=300, guard=False, noise_seed=1, detections={"beams": True})
+    by_paths, by_parts = (ep.detect(frame.spectrum, radar, beams=True, **given)
+                          for given in ({"paths": frame.paths}, {"parts": {"all": frame.cube}}))
+    strongest = np.argmax(frame.detections.snr_db)
+    assert frame.detections.snr_db[strongest] > 40.0
+    assert [found.is_noise[strongest] for found in (frame.detections, by_paths, by_parts)] == [False] * 3
+    assert frame.detections.object[strongest] == by_paths.object[strongest] == "ball"

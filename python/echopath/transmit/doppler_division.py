@@ -6,7 +6,8 @@ shares have the least power, summed over the receivers and over the cells next t
 velocity is then that of share b + m; at velocities of other shares stands what an empty one holds, the noise, for each
 transmitter that of other cells nearby: detectors take the noise of channels for independent. Cells whose shares do not differ
 more than noise does, or not much more and are no stronger than noise, are left as they are, so that noise keeps its level and its
-distribution behind windows that fall towards the ends.
+distribution behind windows that fall towards the ends. Where filters leave far less noise at other ranges, targets must differ
+by more, because what is put in the place of noise reaches there.
 
 Both axes are tapered by Hamming's window meanwhile (sidelobes at -43 dB), so that a strong target does not decide for weak
 ones beside it; the taper is taken out again. Velocities of two targets at one range that are a multiple of a share apart
@@ -26,6 +27,9 @@ from .code import num_shares
 FALSE_TARGET_RATE = 1e-2
 # Share of them in which shares differ by enough for a target, were it strong enough.
 DIFFERENT_RATE = 0.3
+SURE_RATIO, SURE_LEVEL = 2.0, 1.5  # of targets beyond doubt, times the limits of noise in dB
+STANDS_OUT = 0.03  # of the mean noise: what seems a target may be 15 dB above it
+LESS = 3.0         # times as much noise as at another range: by less it may vary itself
 LOBE = 4  # cells of a target behind the taper; the noise of cells so far apart is independent
 # Chirps of a share below which the lobe of a target and its neighbours reach over the shares beside its own:
 # maps of tones are off by 1.3 of their peak with 2, by 0.26 with 3, and by 0.02 with 4.
@@ -46,7 +50,7 @@ def undo_doppler_division(signal: np.ndarray, radar, whole: np.ndarray | None = 
     cells = np.fft.fft2(signal * taper)
     deciding = cells if whole is None else np.fft.fft2(whole * taper)
     found = _found(_smoothed_power(deciding), num_tx, shares)
-    share, is_target = found.share, found.is_target(_limits_of_noise(num_tx, shares, num_rx))
+    share, is_target = found.share, found.is_target(_limits_of_noise(num_tx, shares, num_rx), _is_beside_less(deciding))
     cells = cells.reshape(num_rx, shares, num_chirps // shares, num_samples)
     empty = np.where(is_target, (share + num_tx) % shares, 0)
     noise = np.take_along_axis(cells, empty[None, None], axis=1)[:, 0]
@@ -92,9 +96,14 @@ class _Found(NamedTuple):
     ratio: np.ndarray
     level: np.ndarray
 
-    def is_target(self, limits: _Limits) -> np.ndarray:
-        """Whether there is one. The empty shares are few and the median is sure of the noise: it finds the weak ones."""
-        return (self.ratio > limits.alone) | ((self.ratio > limits.ratio) & (self.level > limits.level))
+    def is_target(self, limits: _Limits, is_beside_less=False) -> np.ndarray:
+        """Whether there is one. The empty shares are few and the median is sure of the noise: it finds the weak ones.
+
+        is_beside_less: [S], where what seems one and is none would stand out of the noise: there one must be sure
+        """
+        is_one = (self.ratio > limits.alone) | ((self.ratio > limits.ratio) & (self.level > limits.level))
+        is_sure = (self.ratio > limits.alone ** SURE_RATIO) | (self.level > limits.level ** SURE_LEVEL)
+        return is_one & np.where(is_beside_less, is_sure, True)
 
 
 def _found(power, num_tx: int, shares: int) -> _Found:
@@ -106,6 +115,19 @@ def _found(power, num_tx: int, shares: int) -> _Found:
     share, rest = np.argmin(empty, axis=0), np.min(empty, axis=0)
     full = (np.sum(power, axis=0) - rest) / num_tx
     return _Found(share, full * (shares - num_tx) / np.maximum(rest, tiny), full / noise)
+
+
+def _is_beside_less(cells) -> np.ndarray:
+    """Whether what is put in the place of a cell [rx, chirp, S] at a range would stand out of the noise there or elsewhere, [S]:
+    filters may leave far less than the sidelobes that cells have of other ranges, and the changes, as the taper is taken out
+    again, reach over cells with 5 dB less from each to the next."""
+    count = cells.shape[-1]
+    smooth = 0.5 * cells - 0.25 * (np.roll(cells, 1, axis=-1) + np.roll(cells, -1, axis=-1))  # Hann's taper, too: no sidelobes
+    tapers = np.sum(_hamming(count) ** 2), np.sum((_hann(count) * _hamming(count)) ** 2)
+    put, noise = (np.median(np.sum(np.abs(one) ** 2, axis=0), axis=0) / taper for one, taper in zip((cells, smooth), tapers))
+    reach = np.abs(np.fft.fft(_hann(count) / _hamming(count)) / count) ** 2 / STANDS_OUT
+    away = (np.arange(count)[:, None] - np.arange(count)) % count
+    return np.any(np.minimum(reach, 1.0 / LESS)[away] * put > noise[:, None], axis=0)
 
 
 @lru_cache
@@ -121,6 +143,10 @@ def _limits_of_noise(num_tx: int, shares: int, num_rx: int) -> _Limits:
     alone, different = np.quantile(ratio, [1.0 - 0.5 * FALSE_TARGET_RATE, 1.0 - DIFFERENT_RATE])
     together = np.quantile(np.where(ratio > different, level, 0.0), 1.0 - 0.5 * FALSE_TARGET_RATE)
     return _Limits(float(alone), float(different), float(together))
+
+
+def _hann(count: int) -> np.ndarray:
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
 
 
 def _hamming(count: int) -> np.ndarray:

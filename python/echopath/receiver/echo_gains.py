@@ -35,6 +35,7 @@ class EchoGains:
         self._of_echoes = _filter_gains(receiver, radar.waveform, np.maximum(ranges, half_bin))
         leaked = np.full(len(ranges), 0.5 * speed_of_light * receiver.leakage_delay)
         self._of_leakage = _filter_gains(receiver, radar.waveform, leaked)
+        self._is_real = radar.waveform.real
         self._of_receivers = _kept(receiver, radar.waveform) * _mean_of_receivers(receiver, radar, start_time)
         of_transmitters = transmitter_factors(receiver, radar)
         self._of_transmitters = np.ones(len(radar.transmitters), complex) if of_transmitters is None else of_transmitters
@@ -46,7 +47,9 @@ class EchoGains:
         """
         of_filters = self._of_leakage if part == LEAKAGE else self._of_echoes
         of_transmitters = np.ones_like(self._of_transmitters) if part in _WITHOUT_TRANSMITTERS else self._of_transmitters
-        return self._of_receivers[rx] * of_filters[distance] * of_transmitters[tx]
+        has_phases = part == LEAKAGE and self._is_real  # of the receivers, already (`cubes_beside`)
+        of_receivers = np.abs(self._of_receivers) if has_phases else self._of_receivers
+        return of_receivers[rx] * of_filters[distance] * of_transmitters[tx]
 
 
 def _filter_gains(receiver: Receiver, waveform, ranges) -> np.ndarray:

@@ -109,6 +109,17 @@ def test_real_samples_of_leakage_are_told_in_the_phase_that_the_receiver_gives_t
     assert first.any() and set(frame.detections.part[first]) == {"leakage"}
 
 
+def test_beams_tell_real_samples_of_leakage_behind_chains_out_of_phase():
+    """The only thing 50 dB above the noise."""
+    radar = build_radar([(0, 0, 0)], [(0, 0.00193 * n, 0) for n in range(4)], bandwidth=300e6, sampling_rate=6.4e6, num_chirps=24,
+                        chirp_interval=20e-6, real=True,
+                        receiver=ep.Receiver(leakage_db=[[-50.0] * 4], leakage_delay=2e-9, receiver_phase=[0.0, 1.5, -2.0, 2.8]))
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.1), name="ball", material="metal", smooth=True, position=(14, 2, 0))
+    found = ep.simulate(scene, radar, num_rays=300, guard=False, noise_seed=1, detections={"beams": True}).detections
+    assert set(found.part[found.snr_db > 50.0]) == {"leakage"}
+
+
 def test_images_far_from_leakage_behind_a_high_pass_are_noise_and_not_leakage():
     """What "ddm" leaves of the leakage at the ranges of the images is above them before the filter, and far below behind it."""
     half = 0.00193

@@ -21,7 +21,8 @@ def demultiplex(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]:
     each slot turned back to the time of the first by the velocity of its Doppler cell; exact for what stands still, and but for
     the ends of the frame for velocities within +-`max_velocity(num_slots)`. "ddm": each cell of range and velocity is one
     transmitter's, by the empty shares of the Doppler axis, so that velocities are known within +-`max_velocity()`; of two
-    targets at one range whose velocities are a share apart the stronger one is right (see `transmit/doppler_division.py`). With
+    targets at one range whose velocities are a share apart the stronger one is right (see `transmit/doppler_division.py`), and
+    a transmitter that is too weak to be heard is taken for an empty share, which gives an echo another velocity. With
     fewer than four chirps to a share transmitters do not come apart, and RuntimeWarning says so.
     "cdm": compressed by the conjugate code, which leaves what the codes correlate.
     Maps of "ddm" and "bpm" need windows that fall towards the ends, as "hann" does: the ends have more noise, with "rect" 2.8 dB

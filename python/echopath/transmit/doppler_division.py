@@ -122,12 +122,20 @@ def _is_beside_less(cells) -> np.ndarray:
     filters may leave far less than the sidelobes that cells have of other ranges, and the changes, as the taper is taken out
     again, reach over cells with 5 dB less from each to the next."""
     count = cells.shape[-1]
-    smooth = 0.5 * cells - 0.25 * (np.roll(cells, 1, axis=-1) + np.roll(cells, -1, axis=-1))  # Hann's taper, too: no sidelobes
-    tapers = np.sum(_hamming(count) ** 2), np.sum((_hann(count) * _hamming(count)) ** 2)
-    put, noise = (np.median(np.sum(np.abs(one) ** 2, axis=0), axis=0) / taper for one, taper in zip((cells, smooth), tapers))
-    reach = np.abs(np.fft.fft(_hann(count) / _hamming(count)) / count) ** 2 / STANDS_OUT
-    away = (np.arange(count)[:, None] - np.arange(count)) % count
-    return np.any(np.minimum(reach, 1.0 / LESS)[away] * put > noise[:, None], axis=0)
+    if count == 1:
+        return np.zeros(1, bool)
+    put = np.median(sum(np.abs(one) ** 2 for one in cells), axis=0) / np.sum(_hamming(count) ** 2)
+    noise = np.median(sum(np.abs(_smooth(one)) ** 2 for one in cells), axis=0) / np.sum((_hann(count) * _hamming(count)) ** 2)
+    reach = np.minimum(np.abs(np.fft.fft(_hann(count) / _hamming(count)) / count) ** 2 / STANDS_OUT, 1.0 / LESS)
+    is_beside = np.zeros(count, bool)
+    for away in np.flatnonzero(reach * put.max() > noise.min()):
+        is_beside |= reach[away] * put > np.roll(noise, -away)
+    return is_beside
+
+
+def _smooth(cells):
+    """Cells [chirp, S] behind Hann's taper, too, which leaves no sidelobes of other ranges."""
+    return 0.5 * cells - 0.25 * (np.roll(cells, 1, axis=-1) + np.roll(cells, -1, axis=-1))
 
 
 @lru_cache

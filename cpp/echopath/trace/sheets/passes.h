@@ -19,8 +19,8 @@ inline constexpr int kMostPasses = 64;
 // Finds the passes of any paths of one trace of a scene.
 class SheetPasses {
  public:
-  // `rounding` is that of the geometry that the rays of the trace have met, the whole scene: so what a path has of the sheets
-  // on its way depends on other sheets only as its rays do (EmbreeScene::Upkeep). Raises DeviceError and Cancelled.
+  // `rounding` is that of the geometry that the rays of the trace have met, the whole scene: so what a path has of the
+  // sheets on its way depends on other sheets only as its rays do (EmbreeScene::Upkeep). Raises DeviceError and Cancelled.
   SheetPasses(const Scene& scene, double trace_time, const RayRounding& rounding, Job* job);
   ~SheetPasses();
   // Does nothing where the scene has no sheets. The result is the same for any number of threads. Raises Cancelled.

@@ -11,7 +11,7 @@ from .. import _core
 from ..arguments.checks import Progress, an, checked, keywords, optional, real, refused, text
 from ..arguments.keywords import parameters_of
 from ..arguments.objects import Objects, objects_rule
-from ..arguments.part_names import BESIDE, require_names
+from ..arguments.part_names import BESIDE, RESIDUE, require_names
 from ..arguments.settings import LabelSettings
 from ..base.radar.antennas import centre_of
 from ..labels.labels import Labels
@@ -148,7 +148,7 @@ def detected(spectrum, radar, rules: dict, *, angles=None, paths=None, parts=Non
     noise = mean_noise(radar, spectrum.window, cells, of_noise, peaks["beam_weights"])
     gains = EchoGains(radar, peaks["range"], start_time)  # within a cell, filters of several poles change by more than half
     makers = _Makers(paths, signals, without_noise, parts, labels, beside, objects, known, floor, noise, gains,
-                     peaks["beam_weights"])
+                     peaks["beam_weights"], peaks["beam_weights"])
     if beams:
         makers = makers._replace(beams=_beams_of_echoes(radar, cells, makers, echoes))
     columns = _labels_of(spectrum, radar, cells, power, makers, echoes, progress)
@@ -172,6 +172,14 @@ class _Makers(NamedTuple):
     noise: np.ndarray   # [N] W, thermal, in the mean, of the cells
     gains: EchoGains    # at the ranges of the peaks
     beams: np.ndarray | None  # weights [N, tx, rx] that the beams which found the cells give to the transmitters' signals
+    beams_of_map: np.ndarray | None  # and to the channels of the map, as which what no path makes has come apart
+
+    def beams_of(self, names):
+        """Of parts, {name: weights}; None: no beams. What codes leave of echoes counts as these do."""
+        if self.beams is None:
+            return None
+        apart = {*BESIDE, *self.beside} - {RESIDUE}
+        return {name: self.beams_of_map if name in apart else self.beams for name in names}
 
 
 def _start_of(paths) -> float:
@@ -190,6 +198,7 @@ def _beams_of_echoes(radar, cells, makers: _Makers, echoes: EchoFields | None) -
     the map: of its mixes, in the one in which the echoes have the most power."""
     turned = in_turns(makers.beams, radar)
     maps = {"": makers.without_noise} if makers.parts is None and makers.without_noise is not None else makers.parts
+    maps = {name: part for name, part in (maps or {}).items() if name not in BESIDE} or None
     if len(turned) == 1 or (maps is None and echoes is None):
         return makers.beams
     if maps is None:
@@ -216,11 +225,12 @@ def _labels_of(spectrum, radar, cells, power, makers: _Makers, echoes: EchoField
         if makers.paths is None or beams is None:
             found.take_echoes(whole, power)
         elif beside:  # the echoes of paths in the beam are what the power in it compares with
-            found.add_echoes(labelling.part_powers(beside, cells, gains, beams)[2])
+            found.add_echoes(labelling.part_powers(beside, cells, gains, makers.beams_of(beside))[2])
     elif parts is not None:
-        found.take_parts(*labelling.part_powers(parts | beside, cells, gains, beams), power)
+        maps = parts | beside
+        found.take_parts(*labelling.part_powers(maps, cells, gains, makers.beams_of(maps)), power)
     elif beside:
-        found.take_beside(*labelling.part_powers(beside, cells, gains, beams)[:2], power)
+        found.take_beside(*labelling.part_powers(beside, cells, gains, makers.beams_of(beside))[:2], power)
     found.leave((*BESIDE, *beside))
     return found.columns()
 

@@ -18,23 +18,24 @@ def part_powers(maps: dict, cells, gains, beams=None) -> tuple:
     in beams.
 
     gains: EchoGains of the receiver, through which the parts have not gone, at the ranges of the cells; beams: weights
-        [N, tx, rx], None: none
+        [N, tx, rx], or {name: weights} of each part; None: none
     """
     velocity, distance = cells[:, 0], cells[:, 1]
-    powers, whole = [], 0.0
+    powers, whole = [], np.zeros((1, len(cells)))
     for name, part in maps.items():
         tx, rx = (np.arange(count) for count in part.values.shape[:2])
         values = part.values[:, :, velocity, distance] * gains.of(name, tx[:, None, None], rx[:, None], np.arange(len(cells)))
-        powers.append(_power_of(values, beams))
-        whole = whole + values
-    return list(maps), np.array(powers), _power_of(whole, beams)
+        fields = _fields_of(values, beams[name] if isinstance(beams, dict) else beams)
+        powers.append(np.mean(np.abs(fields) ** 2, axis=0))
+        whole = whole + fields
+    return list(maps), np.array(powers), np.mean(np.abs(whole) ** 2, axis=0)
 
 
-def _power_of(values, beams):
-    """Power [N] in W of values [tx, rx, N]: their mean over channels, or that in beams."""
+def _fields_of(values, beams):
+    """Values [tx, rx, N] as [C, N], of all channels C, or the one field [1, N] in beams."""
     if beams is None:
-        return np.mean(np.abs(values) ** 2, axis=(0, 1))
-    return np.abs(np.einsum("ntr,trn->n", beams, values)) ** 2
+        return values.reshape(values.shape[0] * values.shape[1], values.shape[2])
+    return np.einsum("ntr,trn->n", beams, values)[None]
 
 
 def maps_of(argument: str, parts: dict | None, spectrum, radar) -> dict:

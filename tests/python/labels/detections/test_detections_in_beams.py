@@ -218,3 +218,20 @@ def test_signs_come_apart_mixed_of_what_is_too_fast_and_its_beams_tell_no_noise(
     assert frame.detections.snr_db[strongest] > 40.0
     assert [found.is_noise[strongest] for found in (frame.detections, by_paths, by_parts)] == [False] * 3
     assert frame.detections.object[strongest] == by_paths.object[strongest] == "ball"
+
+
+def test_leakage_is_no_noise_in_beams_of_signs_whatever_the_mixes_of_echoes():
+    """It stands 50 dB above the noise, in a beam that phases of the transmitters turn, where nothing else is."""
+    half = 0.00193
+    radar = build_radar([(0, 4 * m * half, 0) for m in range(2)], [(0, n * half, 0) for n in range(4)], bandwidth=300e6,
+                        sampling_rate=6.4e6, num_chirps=32, chirp_interval=20e-6, transmit_power=0.01, multiplexing="bpm",
+                        receiver=ep.Receiver(leakage_db=[[-75.0] * 4] * 2, leakage_delay=40e-9, transmitter_phase=[0.0, 2.6]))
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.01), name="ball", material="metal", smooth=True, position=(14, 2, 0))
+    frame = ep.simulate(scene, radar, num_rays=100, guard=False, noise_seed=1, detections={"beams": True})
+    beside = frame.beside_spectra
+    silent = {"all": np.zeros(frame.cube.shape, complex)}
+    for found in (frame.detections, ep.detect(frame.spectrum, radar, beams=True, paths=frame.paths, beside=beside),
+                  ep.detect(frame.spectrum, radar, beams=True, parts=silent, beside=beside),
+                  ep.detect(frame.spectrum, radar, beams=True, parts=silent | beside)):
+        assert found.part[np.argmax(found.snr_db)] == "leakage" and found.snr_db.max() > 50.0

@@ -54,11 +54,16 @@ def collect(scene, shown, time: float, names, named: list) -> Drawing:
     middle = 0.5 * (transmitter + receiver)
     drawing = Drawing([], [], [], [], [], [], segments, middle, low, high, _places_of(scene, names, named, time), {}, margin)
     meshes = list(enumerate(scene.meshes))
-    counts = [len(thinned(_triangles(scene, mesh_id, mesh, time), low, high))
-              for mesh_id, mesh in meshes if not mesh.material.mirror]
-    most = most_of_each(counts, MOST_TRIANGLES)
+    dots = {mesh_id: thinned(_triangles(scene, mesh_id, mesh, time), low, high)
+            for mesh_id, mesh in meshes if not mesh.material.mirror}
+    most = most_of_each(map(len, dots.values()), MOST_TRIANGLES)
     for mesh_id, mesh in meshes:
-        _add_mesh(drawing, _triangles(scene, mesh_id, mesh, time), mesh, most)
+        triangles = _triangles(scene, mesh_id, mesh, time)
+        if mesh.material.mirror:
+            _add_mirror(drawing, triangles, mesh)
+        else:
+            shown = dots.pop(mesh_id)
+            _add_body(drawing, triangles, shown if len(shown) <= most else thinned(triangles, low, high, most))
     return drawing
 
 
@@ -117,17 +122,18 @@ def _middle_of(points) -> tuple:
     return np.append(some[:, :2].min(axis=0), low[2]), np.append(some[:, :2].max(axis=0), high[2])
 
 
-def _add_mesh(drawing: Drawing, triangles, mesh, most: float) -> None:
-    """most: triangles to be drawn of it"""
-    shown = triangles if mesh.material.mirror else thinned(triangles, drawing.low, drawing.high, most)
+def _add_mirror(drawing: Drawing, triangles, mesh) -> None:
+    polygons = clip_triangles(triangles, drawing.low, drawing.high)
+    drawing.mirrors += polygons
+    for edge in outline(polygons):
+        (drawing.mirror_cuts if is_cut(edge, drawing.low, drawing.high) else drawing.mirror_edges).append(edge)
+    if polygons:
+        _add_mirror_name(drawing.mirror_names, object_of(mesh.name), np.concatenate(polygons))
+
+
+def _add_body(drawing: Drawing, triangles, shown) -> None:
+    """triangles: of the mesh; shown: those that are drawn in their place, each [N, 3, 3]"""
     polygons = clip_triangles(shown, drawing.low, drawing.high)
-    if mesh.material.mirror:
-        drawing.mirrors += polygons
-        for edge in outline(polygons):
-            (drawing.mirror_cuts if is_cut(edge, drawing.low, drawing.high) else drawing.mirror_edges).append(edge)
-        if polygons:
-            _add_mirror_name(drawing.mirror_names, object_of(mesh.name), np.concatenate(polygons))
-        return
     if polygons:
         if _is_ground(drawing, triangles):
             drawing.grounds.append((triangles[..., 2].max(), len(drawing.bodies), len(drawing.bodies) + len(polygons)))

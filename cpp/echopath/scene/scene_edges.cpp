@@ -1,74 +1,43 @@
 #include "echopath/scene/scene_edges.h"
 
-#include <algorithm>
 #include <memory>
-#include <mutex>
-#include <utility>
+#include <vector>
 
+#include "echopath/base/memory/recent_results.h"
 #include "echopath/scene/edges/moving_groups.h"
+#include "echopath/scene/mesh/mesh_name.h"
 #include "echopath/scene/seams.h"
 
 namespace echopath {
 namespace {
 
-// Remembers the seams of the last scenes, because each stage of a frame asks for them and they take long to find: they
-// depend only on the meshes and on their places relative to each other.
-class KnownSeams {
- public:
-  std::shared_ptr<const SeamedEdges> of(const Scene& scene) {
-    Key key = key_of(scene);
-    {
-      const std::lock_guard lock(mutex_);
-      for (size_t i = 0; i < known_.size(); ++i) {
-        if (!is_same(known_[i].first, key)) continue;
-        std::rotate(known_.begin(), known_.begin() + static_cast<int64_t>(i), known_.begin() + static_cast<int64_t>(i) + 1);
-        return known_.front().second;
-      }
-    }
-    auto found = std::make_shared<const SeamedEdges>(scene);
-    const std::lock_guard lock(mutex_);
-    known_.emplace(known_.begin(), std::move(key), found);
-    if (known_.size() > kMostKnown) known_.pop_back();
-    return found;
-  }
+// Names a mesh whose edges make echoes, and where it stands among those that move alike; no mesh for another one.
+struct Place {
+  MeshName mesh;
+  int group = 0;
+  Eigen::Matrix4d place = Eigen::Matrix4d::Identity();
 
-  static KnownSeams& of_process() {
-    static KnownSeams& known = *new KnownSeams;  // never destroyed: threads may outlive what is static
-    return known;
-  }
-
- private:
-  static constexpr size_t kMostKnown = 4;
-  // Names a mesh whose edges make echoes, and where it stands; nothing for another one. What is named lives as long as the
-  // name, so that no other mesh has its address.
-  struct Place {
-    std::weak_ptr<const Mesh> mesh;
-    int group = 0;
-    Transform place = Transform::Identity();
-  };
-  using Key = std::vector<Place>;
-
-  static Key key_of(const Scene& scene) {
-    Key key(scene.meshes().size());
-    const MovingGroups groups(scene);
-    for (uint32_t id = 0; id < key.size(); ++id) {
-      if (!has_echoing_edges(scene, id)) continue;
-      const auto [group, place] = groups.place_of(id);
-      key[id] = {scene.node_of(id).mesh, group, place};
-    }
-    return key;
-  }
-
-  static bool is_same(const Key& a, const Key& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Place& one, const Place& other) {
-      const bool is_one_mesh = !one.mesh.owner_before(other.mesh) && !other.mesh.owner_before(one.mesh);
-      return is_one_mesh && one.group == other.group && one.place.matrix() == other.place.matrix();
-    });
-  }
-
-  std::mutex mutex_;
-  std::vector<std::pair<Key, std::shared_ptr<const SeamedEdges>>> known_;  // the last one first
+  bool operator==(const Place& other) const = default;
 };
+
+std::vector<Place> places_of(const Scene& scene) {
+  std::vector<Place> places(scene.meshes().size());
+  const MovingGroups groups(scene);
+  for (uint32_t id = 0; id < places.size(); ++id) {
+    if (!has_echoing_edges(scene, id)) continue;
+    const auto [group, place] = groups.place_of(id);
+    places[id] = {MeshName(scene.node_of(id).mesh), group, place.matrix()};
+  }
+  return places;
+}
+
+// Those of the last scenes are kept, because each stage of a frame asks for them and they take long to find: they depend
+// only on the meshes and on their places relative to each other.
+std::shared_ptr<const SeamedEdges> seamed_edges(const Scene& scene) {
+  using Recent = RecentResults<std::vector<Place>, std::shared_ptr<const SeamedEdges>>;
+  static Recent& known = *new Recent(4);  // never destroyed: threads may outlive what is static
+  return known.get(places_of(scene), [&] { return std::make_shared<const SeamedEdges>(scene); });
+}
 
 }  // namespace
 
@@ -79,7 +48,7 @@ bool has_echoing_edges(const Scene& scene, uint32_t mesh_id) {
 }
 
 SceneEdges::SceneEdges(const Scene& scene) : edges_(scene.meshes().size()) {
-  const std::shared_ptr<const SeamedEdges> seamed = KnownSeams::of_process().of(scene);
+  const std::shared_ptr<const SeamedEdges> seamed = seamed_edges(scene);
   own_ = seamed->edges;
   body_ = seamed->body;
   for (uint32_t id = 0; id < own_.size(); ++id) {

@@ -2,6 +2,7 @@
 
 #include "echopath/base/memory/recent_results.h"
 #include "echopath/scene/edges/planar_patches.h"
+#include "echopath/scene/mesh/mesh_name.h"
 
 namespace echopath {
 namespace {
@@ -9,14 +10,11 @@ namespace {
 constexpr size_t kManyTriangles = 1 << 15;  // of which the planes take some 50 ms to find
 constexpr size_t kMostKept = 8;
 
-// What is named lives as long as the name, so that no other mesh has its address.
 struct PlacedMesh {
-  std::weak_ptr<const Mesh> mesh;
+  MeshName mesh;
   Mat3 linear;
 
-  bool operator==(const PlacedMesh& other) const {
-    return !mesh.owner_before(other.mesh) && !other.mesh.owner_before(mesh) && linear == other.linear;
-  }
+  bool operator==(const PlacedMesh& other) const = default;
 };
 
 std::shared_ptr<const PatchSizes> measured(const Mesh& mesh, const Mat3& linear) {
@@ -53,7 +51,7 @@ std::shared_ptr<const PatchSizes> patch_sizes(const MeshPtr& mesh, const Mat3& l
   using Recent = RecentResults<PlacedMesh, std::shared_ptr<const PatchSizes>>;
   static Recent& known = *new Recent(kMostKept);  // never destroyed: threads may outlive what is static
   if (mesh->triangles().size() < kManyTriangles) return measured(*mesh, linear);
-  return known.get({mesh, linear}, [&] { return measured(*mesh, linear); });
+  return known.get({MeshName(mesh), linear}, [&] { return measured(*mesh, linear); });
 }
 
 }  // namespace echopath

@@ -20,7 +20,7 @@ struct Place {
   bool operator==(const Place& other) const = default;
 };
 
-std::vector<Place> places_of(const Scene& scene) {
+std::vector<Place> names_and_places(const Scene& scene) {
   std::vector<Place> places(scene.meshes().size());
   const MovingGroups groups(scene);
   for (uint32_t id = 0; id < places.size(); ++id) {
@@ -36,7 +36,7 @@ std::vector<Place> places_of(const Scene& scene) {
 std::shared_ptr<const SeamedEdges> seamed_edges(const Scene& scene) {
   using Recent = RecentResults<std::vector<Place>, std::shared_ptr<const SeamedEdges>>;
   static Recent& known = *new Recent(4);  // never destroyed: threads may outlive what is static
-  return known.get(places_of(scene), [&] { return std::make_shared<const SeamedEdges>(scene); });
+  return known.get(names_and_places(scene), [&] { return std::make_shared<const SeamedEdges>(scene); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import textwrap
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,11 +38,31 @@ _FROM_ABOVE = (LEFT_LABEL, AHEAD_LABEL), (Y_LABEL, X_LABEL)
 LETTER = 0.56  # width of a letter over the size of the font, more than the mean
 LONGEST_NAME = 28  # letters, about, of an object in a picture
 
+# Fonts with letters that Matplotlib's own has not, as names of objects may have in China, Japan and Korea.
+_FURTHER_FONTS = ("Noto Sans CJK SC", "Noto Sans CJK JP", "Source Han Sans SC", "WenQuanYi Zen Hei", "WenQuanYi Micro Hei",
+                  "Microsoft YaHei", "Yu Gothic", "Malgun Gothic", "PingFang SC", "Hiragino Sans", "Apple SD Gothic Neo",
+                  "Arial Unicode MS", "NanumGothic", "Droid Sans Fallback")
 _SETTINGS = {
-    "font.family": "sans-serif", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
+    "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
     "xtick.labelsize": 8, "ytick.labelsize": 8, "axes.spines.top": False, "axes.spines.right": False,
     "figure.facecolor": "white", "savefig.facecolor": "white",
 }
+
+
+@cache
+def _fonts() -> list[str]:
+    """Families in whose order letters are looked for: those that the machine has in the weight that is asked for."""
+    from matplotlib.font_manager import fontManager
+
+    installed = {font.name for font in fontManager.ttflist if font.weight == 400}
+    return ["sans-serif", *(name for name in _FURTHER_FONTS if name in installed)]
+
+
+def _house_style():
+    """Context in which pictures are made."""
+    import matplotlib
+
+    return matplotlib.rc_context(_SETTINGS | {"font.family": _fonts()})
 
 
 def is_drawable(value, *attributes: str) -> bool:
@@ -58,11 +79,10 @@ def require_drawable(argument: str, rule: str, value, *attributes: str) -> None:
 @contextmanager
 def new_figure(width: float, height: float):
     """Yields an empty figure of that size in inches that needs no window."""
-    import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(_SETTINGS):
+    with _house_style():
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure
@@ -75,14 +95,13 @@ def axes_or_new(ax, width: float, height: float, labels: tuple[str, str] | None 
     labels: of what is drawn, across and up; None: those of no other picture. Raises TypeError for what are no axes, ValueError
     for axes with another picture in them, whose places are not those of what is drawn.
     """
-    import matplotlib
     from matplotlib.axes import Axes
 
     if ax is not None and not isinstance(ax, Axes):
         raise TypeError(f"ax: must be Matplotlib axes or None, got {type(ax).__name__}")
     if ax is not None and labels is not None:
         _require_plane(ax, labels)
-    with matplotlib.rc_context(_SETTINGS):
+    with _house_style():
         if ax is None:
             from matplotlib import pyplot
 
@@ -158,10 +177,8 @@ def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *,
         are none
     Raises OSError where the file cannot be written, TypeError naming the argument.
     """
-    import matplotlib
-
     whole = _whole(figure)
-    with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary, _settled(whole):
+    with _house_style(), written_whole(path) as temporary, _settled(whole):
         whole.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))
 
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.text import Text
 import echopath as ep
 from echopath import plots
 from echopath.paths.subset import first_group, strongest_of_each
+from echopath.plots import style
 from echopath.plots.scene_view.drawing import is_cut
 from echopath.signals.measures import for_pictures
 from echopath.truth.places import true_places
@@ -260,3 +262,24 @@ def test_long_names_keep_both_ends_and_stand_within_the_map():
         frame, boxes = axes.get_window_extent(), [Text.get_window_extent(text) for text in axes.texts]
         assert all(len(text.get_text()) <= LONGEST_NAME for text in axes.texts)
         assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
+
+
+def test_letters_that_the_first_font_has_not_come_from_the_next(monkeypatch):
+    """Fonts with Chinese letters are not on every machine; mathematical ones come with Matplotlib."""
+    from matplotlib import font_manager
+    from matplotlib.ft2font import FT2Font
+
+    further = "STIXNonUnicode"
+    paths = [font_manager.findfont(font_manager.FontProperties(family=[name])) for name in (further, "sans-serif")]
+    letters = [set(FT2Font(path).get_charmap()) for path in paths]
+    letter = chr(min(letters[0] - letters[1]))
+    for fonts, is_missing in (((), True), ((further,), False)):
+        monkeypatch.setattr(style, "_FURTHER_FONTS", fonts)
+        style._fonts.cache_clear()
+        with style.new_figure(2.0, 1.0) as figure, warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            figure.suptitle(letter)
+            figure.draw_without_rendering()
+        assert any("missing from font" in str(one.message) for one in heard) == is_missing
+    monkeypatch.undo()
+    style._fonts.cache_clear()

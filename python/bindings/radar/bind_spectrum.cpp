@@ -7,6 +7,7 @@
 #include "call/define.h"
 #include "call/run_job.h"
 #include "echopath/base/text/streamed.h"
+#include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "radar/cube_array.h"
 #include "radar/map_plot.h"
@@ -79,6 +80,8 @@ ValueError naming the argument.)");
 
   m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
         py::arg("zero_pad") = 1, "What ep.range_doppler calls.");
+  m.def("check_axes", &require_axes, py::arg("spectrum"), py::arg("radar"),
+        "Raises ValueError unless the axes of a range-Doppler map are those of the radar's chirps.");
   m.def(
       "window",
       [](const std::string& name, int n, std::optional<double> sidelobe_db) {

@@ -33,6 +33,7 @@ NamedJoint named_joint(Arg<"name", Text> name, Arg<"parent", Optional<Text>> par
                        Arg<"position", Optional<Vector3>> position, Arg<"transform", Optional<Matrix>> transform,
                        Arg<"motion", Optional<Instance<std::shared_ptr<Motion>>>> motion,
                        Arg<"inverse_bind", Optional<Matrix>> inverse_bind) {
+  require(!name->empty(), "name", "must not be empty", "''");
   require(!*transform || !*position, "transform", "must not be given together with position", "both");
   NamedJoint made;
   made.joint.name = *name;

@@ -74,10 +74,11 @@ def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0,
     would have, and `detect` tells the paths of cells (`Detections.paths`).
     paths: of `trace`, P of them; spectrum: RangeDoppler, any map of the radar that traced them, for its axes
     tx, rx: indices of the channel's antennas
-    Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there. Warns
-    (RuntimeWarning) where the chirps of the transmitter differ.
+    Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there, ValueError for a map of
+    other chirps. Warns (RuntimeWarning) where the chirps of the transmitter differ.
     """
     row_of_channel(paths, tx, rx)
+    _core.check_axes(spectrum, paths.radar)
     chirp = chirp_of(paths.radar, tx)
     if chirp is None:
         steps = " and ".join(step_names(paths.radar))

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from .. import _core
-from ..arguments.checks import ArrayLike, Progress, an, array, checked, flag, one_of, optional, real
+from ..arguments.checks import ArrayLike, Progress, an, array, checked, flag, one_of, optional, real, refused
 from ..arguments.settings import Replay, SignalSettings
 
 _RADAR = optional(an(_core.Radar))
@@ -31,6 +31,8 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
     Returns a Validity. Raises TypeError or ValueError naming the argument, also for motions that do not cover the times,
     KeyboardInterrupt on Ctrl-C.
     """
+    if times is not None and not len(times):
+        raise refused(ValueError, "times", "at least one time, or None", times)
     try:
         return _core.validity(paths, radar, replay=replay, times=times, arrays=arrays, progress=progress)
     except ValueError as error:

@@ -233,3 +233,12 @@ def test_the_cells_of_a_ball_that_spins_have_the_fields_of_its_paths(spinning):
     echoes = EchoFields(spinning, spectrum)
     fields = {shift: np.abs(echoes.fields((velocity + shift, distance))[1].sum(axis=1)[0]) ** 2 for shift in (0, 2)}
     assert fields[0] == pytest.approx(power.max(), rel=0.25) and fields[2] < 1e-2 * fields[0]
+
+
+@pytest.mark.parametrize("change, words", [({"bandwidth": 4e8}, "last range"), ({"chirp_interval": 2e-4}, "velocities span")])
+def test_maps_of_other_chirps_are_refused(change, words):
+    radar = radar_of(False, 1)
+    other = with_waveform(radar, **change)
+    spectrum = ep.range_doppler(np.zeros(cube_shape(other), complex), other)
+    with pytest.raises(ValueError, match=f"^spectrum: must have been made with the chirps of this radar, .*{words}"):
+        ep.path_cells(traced(radar), spectrum)

@@ -384,3 +384,9 @@ def test_over_two_square_corners_either_bounce_may_come_first():
         assert abs(paths.amplitudes([0.0], tx, rx)[0, 0]) == pytest.approx(field, rel=1e-3)
     report = ep.validity(paths)
     assert report.ok and report.left_share == 0.0
+
+
+def test_a_check_at_no_time_is_refused():
+    mirror = Plane(MIRROR, WALL)
+    with pytest.raises(ValueError, match="^times: must be at least one time, or None"):
+        ep.validity(frozen([mirror], [mirror.axes @ [0.1, 0.0, 0.0]]), times=[])

@@ -243,6 +243,7 @@ def test_a_skin_read_back_gives_the_same_bits(tmp_path):
 @pytest.mark.parametrize("call, words", [
     (lambda: ep.Joint("a", position=(0, 0, 0), transform=np.eye(4)), ["transform", "position"]),
     (lambda: ep.Joint("a", transform=np.eye(3)), ["transform", "[4, 4]"]),
+    (lambda: ep.Joint(""), ["name", "must not be empty"]),
     (lambda: ep.Skin([[0, 0, 0]], [ep.Joint("a"), ep.Joint("b", "c")], [[1, 0]]), ["joints", "earlier one as parent", "'c'"]),
     (lambda: ep.Skin([[0, 0, 0]], [ep.Joint("a")], [[0.5, 0.5]]), ["weights", "column for each joint", "got 2"]),
     (lambda: ep.Skin([[0, 0, 0]], [ep.Joint("a")], [[0.5]]), ["weights", "add up to 1", "0.5"]),

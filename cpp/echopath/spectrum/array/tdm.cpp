@@ -17,20 +17,6 @@ constexpr double kAxisRounding = 1e-9;  // relative, of the ends of an axis
 
 bool is_alike(double a, double b) { return std::abs(a - b) <= kAxisRounding * std::max(std::abs(a), std::abs(b)); }
 
-// A map that was compensated may have its velocities shifted.
-void require_axes(const RangeDoppler& map, const Radar& radar) {
-  const ChirpSequence& waveform = radar.waveform;
-  const std::vector<double> range = range_axis(waveform, waveform.num_samples * map.zero_pad);
-  const std::vector<double> velocity = velocity_axis(waveform, radar.num_slots(), waveform.num_chirps * map.zero_pad);
-  require(map.range.size() == range.size() && is_alike(map.range.back(), range.back()), "spectrum",
-          "must have been made with the chirps of this radar, whose last range is " + std::to_string(range.back()) + " m",
-          map.range.back());
-  const double span = velocity.back() - velocity.front();
-  require(map.velocity.size() == velocity.size() && is_alike(map.velocity.back() - map.velocity.front(), span), "spectrum",
-          "must have been made with the chirps of this radar, whose velocities span " + std::to_string(span) + " m/s",
-          map.velocity.back() - map.velocity.front());
-}
-
 // Returns whether a list of steps, repeated from slot to slot, gives all chirps of a transmitter the same one.
 bool repeats_with(const std::vector<double>& steps, size_t num_tx) {
   for (size_t slot = 0; slot < steps.size(); ++slot) {
@@ -69,6 +55,20 @@ std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::ve
     }
   }
   return phasors;
+}
+
+// A map that was compensated may have its velocities shifted.
+void require_axes(const RangeDoppler& map, const Radar& radar) {
+  const ChirpSequence& waveform = radar.waveform;
+  const std::vector<double> range = range_axis(waveform, waveform.num_samples * map.zero_pad);
+  const std::vector<double> velocity = velocity_axis(waveform, radar.num_slots(), waveform.num_chirps * map.zero_pad);
+  require(map.range.size() == range.size() && is_alike(map.range.back(), range.back()), "spectrum",
+          "must have been made with the chirps of this radar, whose last range is " + std::to_string(range.back()) + " m",
+          map.range.back());
+  const double span = velocity.back() - velocity.front();
+  require(map.velocity.size() == velocity.size() && is_alike(map.velocity.back() - map.velocity.front(), span), "spectrum",
+          "must have been made with the chirps of this radar, whose velocities span " + std::to_string(span) + " m/s",
+          map.velocity.back() - map.velocity.front());
 }
 
 void require_map_of(const RangeDoppler& map, const Radar& radar) {

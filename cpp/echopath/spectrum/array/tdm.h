@@ -34,6 +34,9 @@ std::vector<std::complex<double>> carrier_phasors(const Radar& radar, const std:
 // Raises invalid_argument unless the map is the radar's, has not been compensated before, and |fold| <= 1000.
 RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fold = 0, Job* job = nullptr);
 
+// Raises invalid_argument unless the map's axes are those of the radar's chirps.
+void require_axes(const RangeDoppler& map, const Radar& radar);
+
 // Raises invalid_argument unless the map's channels and axes are the radar's and its arrays fit each other.
 void require_map_of(const RangeDoppler& map, const Radar& radar);
 

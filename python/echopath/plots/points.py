@@ -28,6 +28,7 @@ MOST_NAMES, FEW_NAMES = 14, 5  # in the legend beside the axes and within them; 
 SIZES = 10.0, 70.0      # points^2, of the weakest and the strongest
 SPAN_DB = 40.0          # of the sizes, below the strongest
 NOISE_LOOK = {"marker": "x", "color": "0.55", "linewidths": 0.8}
+RING, RIM = 1.3, 0.4    # points, width of the ring of a ghost, and on either side of what sets it off from the colours of a map
 SURROUNDINGS = "surroundings"
 REST_COLOURS = {SURROUNDINGS: "0.45", "other objects": "0.75", "other": "0.45", "noise": "0.55"}
 BESIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
@@ -59,13 +60,16 @@ def draw_detections(detections: Detections, *, view: str = "range_doppler", ax: 
 
 def draw_points(ax, detections, view="range_doppler", *, has_room: bool, **look) -> None:
     """The points and their legend; has_room: beside the axes, for a long one; look: keywords of Axes.scatter."""
+    from matplotlib.patheffects import withStroke
+
+    rim = [withStroke(linewidth=RING + 2.0 * RIM, foreground="white")]
     x, y = (detections.points[:, 1], detections.points[:, 0]) if view == "above" else (detections.range, detections.velocity)
     names, sizes = _names(detections, MOST_NAMES if has_room else FEW_NAMES), _sizes(detections.power)
     is_shown = np.isfinite(x) & np.isfinite(y)
     for name, colour in _colours(names).items():
         of_name = (names == name) & is_shown
-        filled = {"color": colour, "edgecolors": "white", "linewidths": 0.4} | look
-        ring = {"facecolors": "none", "edgecolors": [colour], "linewidths": 1.3}
+        filled = {"color": colour, "edgecolors": "white", "linewidths": RIM} | look
+        ring = {"facecolors": "none", "edgecolors": [colour], "linewidths": RING, "path_effects": rim}
         label = f"{name}: {np.count_nonzero(of_name)}"
         for is_ghost, shown in ((False, NOISE_LOOK if name == "noise" else filled), (True, ring)):
             taken = of_name & ((detections.ghost_type > 0) == is_ghost)

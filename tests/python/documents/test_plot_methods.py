@@ -183,6 +183,20 @@ def test_points_of_detections_lie_where_the_target_is(frame, ax):
         frame.detections.plot("side")
 
 
+@pytest.mark.parametrize("view", ["range_doppler", "above"])
+def test_rings_of_ghosts_stand_out_of_a_map_of_their_own_colour(frame, ax, view):
+    ghosts = dataclasses.replace(frame.detections, ghost_type=np.ones_like(frame.detections.ghost_type))
+    ghosts.plot(view, ax=ax)
+    (ring,) = [collection for collection in ax.collections if collection.get_label().startswith("plate: ")]
+    ax.set_facecolor(ring.get_edgecolor()[0])
+    ax.get_legend().remove()
+    ax.grid(False)
+    picture = painted(ax)
+    row, column = pixels(ax, ring.get_offsets())[0]
+    own = picture[row - 10:row + 10, column - 10:column + 10]
+    assert np.ptp(own) > 0.15  # of 1 between black and white
+
+
 @pytest.mark.parametrize("first", ["detections", "truth", "range_azimuth"])
 @pytest.mark.parametrize("second", ["detections", "truth"])
 def test_what_is_drawn_over_another_picture_from_above_leaves_left_on_the_left(frame, ax, first, second):

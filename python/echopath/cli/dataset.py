@@ -14,7 +14,7 @@ from .numbers import duration_words
 def lines_of(options) -> Iterator[str]:
     """Makes what the options ask for; yields a line for each scene that is made, and what came of all."""
     counts: Counter[str] = Counter()
-    unresolved: list[UnresolvedEchoes] = []
+    unresolved: dict[int, UnresolvedEchoes] = {}
     for told in make(options.template, options.out, workers=options.workers, shard=options.shard, frames=options.frames,
                      only_failed=options.only_failed, scheduler=options.scheduler):
         if isinstance(told, Forecast):
@@ -22,12 +22,12 @@ def lines_of(options) -> Iterator[str]:
             continue
         counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
         if told.unresolved is not None:
-            unresolved.append(told.unresolved)
+            unresolved[told.scene] = told.unresolved
         if not told.was_there:
             yield _line(told)
     told_counts = [f"{counted(count, 'scene')} {state}" for state, count in sorted(counts.items())]
     yield ", ".join(told_counts) or "no scene was to be made"
-    yield from summary(unresolved)
+    yield from summary(one for _, one in sorted(unresolved.items()))  # scenes are told as workers end them
     if counts["failed"]:
         yield f"{options.out}/{MANIFEST} says why; --only-failed tries again"
 

@@ -11,6 +11,7 @@ import pytest
 import echopath as ep
 from echopath import dataset
 from echopath.cli import main
+from echopath.cli.dataset import lines_of
 from echopath.cli.info import describe_file
 from echopath.dataset import making
 from echopath.dataset.classes import classes_of
@@ -373,6 +374,18 @@ def test_the_command_ends_with_what_the_rays_do_not_resolve(small_dataset, tmp_p
     for name in ("unresolved.json", "record.json"):
         (own / name).unlink()
     assert make(path, tmp_path / "new")[-1].unresolved == made[0].unresolved and bytes_of(tmp_path / "new") == bytes_of(folder)
+
+
+def test_the_end_of_the_command_does_not_depend_on_which_worker_is_first(monkeypatch):
+    """Two scenes with an object each, which are as often unresolved as each other."""
+    scenes = [making.MadeScene(number, "train", SceneRecord("done"), False, 1, 2, None, UnresolvedEchoes(400, (name,)))
+              for number, name in enumerate(("walker", "car"))]
+    ends = []
+    for order in (scenes, scenes[::-1]):
+        monkeypatch.setattr("echopath.cli.dataset.make", lambda *_, order=order, **__: iter(order))
+        ends.append(list(lines_of(SimpleNamespace(template="", out="", workers=2, shard=None, frames=None, only_failed=False,
+                                                   scheduler=None)))[2:])
+    assert ends[0] == ends[1] and "walker (1)" in ends[0][-1]
 
 
 def test_a_summary_of_what_is_resolved_is_one_line():

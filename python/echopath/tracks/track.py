@@ -43,8 +43,8 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     times: [F] s, ascending, of the frames: their middles, as `Truth` has them
     truth: of the same frames, names the object of each track, and of an object that shows in several places, as a guard rail
         does, only the track that follows it best; None: no names
-    radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar, and radial
-        velocities are not used
+    radar: whose motion carries the points into the axes of the world; None: tracks are in the x and y of the radar, a plane
+        that stands upright where it looks down from a ceiling, and radial velocities are not used
     range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight, across it upwards, too,
         where elevations or heights are known
     velocity_std: m/s, by which the radial velocity of a detection differs from that of its object, with limbs and wheels; None:

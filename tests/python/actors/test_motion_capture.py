@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -199,6 +200,36 @@ def test_units_are_guessed_by_the_size_of_a_person(tmp_path):
                  for line in head.split("\n")]
         (tmp_path / "a.bvh").write_text("\n".join(lines) + motion + rest)
         assert ep.load_model(tmp_path / "a.bvh").unit == pytest.approx(unit)
+
+
+@pytest.mark.parametrize("read", [ep.actors.captured_pedestrian, ep.load_model], ids=["actor", "model"])
+def test_who_falls_and_stays_on_the_floor_stood_before(tmp_path, read):
+    """A turn of the root about x by 90 degrees puts the body along z: in three of four frames it lies."""
+    frames = walk_frames(40)
+    frames[10:, 1], frames[10:, 5] = 15.0, 90.0
+    (tmp_path / "fall.bvh").write_text(bvh_text(frames))
+    scene = ep.Scene()
+    with pytest.warns(RuntimeWarning, match=r'^up: fall.bvh has a body along y in 25 % .*: say up="y" where it is, else up="z"$'):
+        scene.add(read(tmp_path / "fall.bvh"), name="person")
+    for time, height in ((0.1, 1.75), (1.2, 0.35)):
+        assert height_of(scene, time) == pytest.approx(height, abs=0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read(tmp_path / "fall.bvh", up="y")
+
+
+def test_a_file_with_z_up_is_known_by_who_stands_in_it(tmp_path):
+    frames = walk_frames(31)
+    frames[:, 1], frames[:, 2], frames[:, 5] = 0.0, 90.0, 90.0
+    (tmp_path / "z.bvh").write_text(bvh_text(frames))
+    scene = ep.Scene()
+    scene.add(ep.actors.captured_pedestrian(tmp_path / "z.bvh"), name="person")
+    assert height_of(scene, 0.5) == pytest.approx(1.75, abs=0.1)
+
+
+def height_of(scene, time: float) -> float:
+    """From the lowest to the highest point of a scene, in m."""
+    return float(np.ptp(np.concatenate([scene.world_vertices(mesh.id, time)[:, 2] for mesh in scene.meshes])))
 
 
 def test_a_captured_pedestrian_is_an_actor_of_any_height(walk):

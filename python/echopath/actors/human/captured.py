@@ -11,6 +11,7 @@ from ... import _core
 from ...arguments.checks import checked, choice, optional, positive, real
 from ...arguments.number_rules import unit_rule
 from ...base.numerics.rotations import about_z, quaternions
+from ...base.process.callers import warn_user
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import refuse_beside_trajectory, trajectory_rule
@@ -27,6 +28,8 @@ TYPICAL_HEIGHT = 1.75   # m
 JUMP = 0.15             # m between the first two frames, and JUMPS times as far as any later step: a pose of its own
 JUMPS = 4.0
 ON_FLOOR = 0.10         # share of the frames in which the lower foot may be below the floor
+ALONG = 0.87            # cosine of the angle from an axis within which a body is along it
+STANDS = 0.10           # share of the frames in which a body is along y from which on y is vertical, however it lies in others
 MOST_STRETCH = 10.0     # of a segment over that of a body of the same legs, up or down
 MOST_SPEED = 0.1 * _core.speed_of_light  # m/s
 TRAVEL = 0.5            # m from which on the way of the body is its direction
@@ -52,7 +55,8 @@ def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = 
     height: of the body in m, which scales the capture; None: as captured
     unit: m per unit of the file; None: that of cm, m, inches, feet, mm and the conversions of the CMU library which makes
         the body nearest to 1.75 m
-    up: vertical axis of the file, "x", "y" or "z"; None: y, unless the body is along another one most of the time
+    up: vertical axis of the file, "x", "y" or "z"; None: y, unless the body is along another one most of the time and along y in
+        less than a tenth of the frames. In more of them it may stand and then fall: a warning says that y is taken
     offset: s, time of the capture at time 0. It lasts as long as the capture; a scene can be posed at no other time
     edge, clothing, skin: as of `pedestrian`
     trajectory: a Trajectory of the origin that is followed, instead of offset: the captured cycle of steps that closes best, of
@@ -76,7 +80,7 @@ def captured_body(path: Path, *, unit: float | None, up: str | None, height: flo
         names = ", ".join(joint.name for joint in capture.joints)
         raise _core.FileError(f"{path}: must be the capture of a person, but has no joint for "
                               f"{', '.join(missing_joints(found))}; its joints are {names[:400]}")
-    vertical = up or _vertical_axis(capture.positions, found)
+    vertical = up or _vertical_axis(path, capture.positions, found)
     axis = "xyz".index(vertical)
     order = [(axis + 1) % 3, (axis + 2) % 3, axis]  # what becomes x, y and z
     positions = capture.positions[:, list(found.values())][..., order]
@@ -257,12 +261,20 @@ def _unit(vectors) -> np.ndarray:
     return np.where(length > 1e-12, vectors / np.maximum(length, 1e-12), np.array([0.0, 0.0, 1.0]))
 
 
-def _vertical_axis(positions, found: dict[str, int]) -> str:
-    """The axis from the feet to the head, on the mean over time, where it is clearly another one than y."""
-    feet = 0.5 * (positions[:, found["left_ankle"]] + positions[:, found["right_ankle"]])
-    tall = np.abs((positions[:, found["head"]] - feet).mean(axis=0))
-    axis = int(tall.argmax())
-    return "xyz"[axis] if tall[1] < 0.5 * tall[axis] else "y"
+def _vertical_axis(path: Path, positions, found: dict[str, int]) -> str:
+    """The axis from the feet to the head, on the mean over time, where it is clearly another one than y, and y where the body is
+    along it in some frames all the same, with a warning: it lies in those, or in the others."""
+    tall = positions[:, found["head"]] - 0.5 * (positions[:, found["left_ankle"]] + positions[:, found["right_ankle"]])
+    mean = np.abs(tall.mean(axis=0))
+    axis = "xyz"[int(mean.argmax())]
+    if mean[1] >= 0.5 * mean.max():
+        return "y"
+    along_y = float(np.mean(np.abs(tall[:, 1]) > ALONG * np.linalg.norm(tall, axis=1)))
+    if along_y < STANDS:
+        return axis
+    warn_user(f"up: {path.name} has a body along y in {100.0 * along_y:.0f} % of its frames and along {axis} in most "
+              f"others, as of someone who falls; y is taken for the vertical axis: say up=\"y\" where it is, else up=\"{axis}\"")
+    return "y"
 
 
 def _without_first_pose(times, joints: dict, rotations: dict, notes: list):

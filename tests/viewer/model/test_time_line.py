@@ -8,17 +8,26 @@ import weakref
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 import echopath as ep
 from echopath_viewer.model import Session, from_paths
 from echopath_viewer.model.frames.carried import session_like
-from echopath_viewer.model.frames.overview import Glance, glance_at, level_image, track_values, tracks_of
+from echopath_viewer.model.frames.overview import Glance, glance_at, level_image, track_places, track_values, tracks_of
 from echopath_viewer.model.frames.simulated_frames import SimulatedFrames
 from echopath_viewer.model.frames.time_line import time_line_of
 from echopath_viewer.model.view_state import state_of
+from echopath_viewer.scene_builder.track_layer import TrackLayer
 from support.frames_in_time import make_radar, make_scene
 
 NUM_FRAMES = 3
+
+
+@pytest.fixture
+def plotter():
+    plotter = pv.Plotter(off_screen=True, window_size=(64, 48))
+    yield plotter
+    plotter.close()
 
 
 @pytest.fixture(scope="module")
@@ -125,9 +134,9 @@ def glance_of(time: float, radar, distance: float, detections=None, velocity: fl
     return Glance(time, axis, axis, axis, axis, found, radar)
 
 
-def test_tracks_below_a_mast_have_the_ranges_and_velocities_of_the_map(stored_run):
+def test_tracks_below_a_mast_have_the_ranges_and_velocities_of_the_map(stored_run, plotter):
     """A radar 7.5 m above the ground, of what goes away 1.5 m above it at 4 m/s, 8 m away at first: ranges by Pythagoras, and
-    their rates. In the fourth frame nothing was found."""
+    their rates. In the fourth frame nothing was found. They are drawn where that goes, not as high as the radar."""
     radar, times = stored_run.radar.replace(position=(0.0, 0.0, 7.5)), 0.2 * np.arange(6)
     ways = 8.0 + 4.0 * times
     distances = np.hypot(ways, 6.0)
@@ -142,6 +151,11 @@ def test_tracks_below_a_mast_have_the_ranges_and_velocities_of_the_map(stored_ru
     assert tracks.num_tracks == 1 and len(tracks) == 6
     assert track_values(tracks, glances, "range") == pytest.approx(distances, rel=0, abs=0.1)
     assert track_values(tracks, glances, "velocity")[-1] == pytest.approx(4.0 * ways[-1] / distances[-1], rel=0, abs=0.2)
+    places = track_places(tracks, glances)
+    assert places == pytest.approx(np.column_stack([ways, np.zeros(6), np.full(6, 1.5)]), rel=0, abs=0.1)
+    layer = TrackLayer(plotter)
+    layer.show(tracks, places)
+    assert layer._actor.GetBounds() == pytest.approx([ways[0], ways[-1], 0.0, 0.0, 1.5, 1.5], rel=0, abs=0.1)
 
 
 def test_tracks_stand_still_before_a_radar_that_was_moved_between_files(stored_run):

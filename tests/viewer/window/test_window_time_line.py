@@ -95,7 +95,10 @@ def test_the_strip_has_all_frames_and_goes_to_one(qtbot, line_window):
     qtbot.waitUntil(lambda: len(strip._glances) == 3, timeout=PATIENCE_MS)
     qtbot.mouseClick(strip, LEFT, pos=strip.rect().center() + (strip.rect().topRight() - strip.rect().center()) * 0.8)
     wait_for(qtbot, window, 2)
-    assert strip.tracks.num_tracks >= 1 and window.view3d.builder.tracks._actor.GetVisibility()
+    lines = window.view3d.builder.tracks._actor
+    assert strip.tracks.num_tracks >= 1 and lines.GetVisibility()
+    levels = [strip.places[strip.tracks.track == number, 2].mean() for number in np.unique(strip.tracks.track)]
+    assert lines.GetBounds()[4:] == pytest.approx([min(levels), max(levels)], abs=1e-5)
     for number in (1, 0):
         window.frame_bar.axis_box.setCurrentIndex(number)
         assert strip._image is not None and not strip.grab().isNull()

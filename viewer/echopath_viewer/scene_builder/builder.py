@@ -91,9 +91,9 @@ class SceneBuilder:
         self.update({"meshes", "rays", "layers"})
         self._draw_antennas()
 
-    def show_tracks(self, tracks) -> None:
-        """ep.Tracks of the frames of a time line, or None."""
-        self.tracks.show(tracks, float(self.session.antennas_at(self.session.time)[0][2]))
+    def show_tracks(self, tracks, places) -> None:
+        """tracks: ep.Tracks of the frames of a time line, or None; places: [N, 3] m, of its rows in the world."""
+        self.tracks.show(tracks, places)
 
     def set_background(self, colour) -> None:
         """Behind everything; rays that are not lit and the chosen one stand out of it, dark or light."""

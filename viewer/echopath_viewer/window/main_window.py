@@ -136,7 +136,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
             part.follow_session(session, is_passing)
 
     def _show_tracks(self) -> None:
-        self.view3d.builder.show_tracks(self.frame_bar.strip.tracks)
+        strip = self.frame_bar.strip
+        self.view3d.builder.show_tracks(strip.tracks, strip.places)
         self.view3d.render_soon()
 
     def _take_live(self, session, view) -> None:

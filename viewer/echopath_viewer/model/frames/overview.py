@@ -113,7 +113,7 @@ def track_values(tracks, glances, axis: str):
     glances: those that the tracks are of
     """
     radars, times = [glances[frame].radar for frame in tracks.frame], np.asarray(tracks.time)
-    way = _places(tracks, glances) - _for_each(middle_of_antennas, radars, times)
+    way = track_places(tracks, glances) - _for_each(middle_of_antennas, radars, times)
     distance = np.linalg.norm(way, axis=1)
     if axis == "range":
         return distance
@@ -126,7 +126,7 @@ def track_values(tracks, glances, axis: str):
     return np.where(spread <= KNOWN * spans, speeds, np.nan)
 
 
-def _places(tracks, glances):
+def track_places(tracks, glances):
     """[N, 3] m, in the world, of each row: with the height of the detection that is nearest from above, between these where a
     track goes on without one. Tracks have no heights of their own."""
     heights = np.zeros(len(tracks))

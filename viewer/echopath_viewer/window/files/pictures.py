@@ -27,10 +27,10 @@ def _paint_scene(window, image, scale: int) -> None:
     """Over what the widget has in its own resolution."""
     from ...scene_builder.still import still_of
 
-    view = window.view3d
+    view, strip = window.view3d, window.frame_bar.strip
     pixels = np.ascontiguousarray(still_of(window.session, (view.width(), view.height()), scale, camera=view.camera,
                                            show_hits=view.builder.show_hits, background=view.background(),
-                                           tracks=window.frame_bar.strip.tracks))
+                                           tracks=strip.tracks, places=strip.places))
     height, width = pixels.shape[:2]
     still = QtGui.QImage(pixels.data, width, height, 3 * width, QtGui.QImage.Format.Format_RGB888)
     painter = QtGui.QPainter(image)

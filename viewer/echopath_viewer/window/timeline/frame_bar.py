@@ -6,7 +6,7 @@ import numpy as np
 from echopath.plots.style import MAP_COLOURS
 
 from ...model.colours import colour_table, levels_of
-from ...model.frames.overview import AXES, has_map, level_image, track_values, tracks_of
+from ...model.frames.overview import AXES, has_map, level_image, track_places, track_values, tracks_of
 from ...model.palette import track_colour
 from ..maps.ticks import nice_ticks, tick_text
 from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
@@ -87,12 +87,14 @@ class TimeStrip(QtWidgets.QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.setFixedHeight(HEIGHT)
-        self.axis, self.tracks, self._glances, self._place, self._image = AXES[0], None, [], 0, None
+        self.axis, self._glances, self._place, self._image = AXES[0], [], 0, None
+        self.tracks, self.places = None, None  # [N, 3] m, of the rows of tracks in the world
         self.setToolTip("All frames: click or drag to go to one. Lines are tracks of the detections.")
 
     def show_glances(self, glances: list) -> None:
         """glances: model.overview.Glance of each frame, in order; those to come are missing."""
         self._glances, self.tracks = glances, tracks_of(glances) if glances else None
+        self.places = None if self.tracks is None else track_places(self.tracks, glances)
         self._make_image()
 
     def show_axis(self, axis: str) -> None:

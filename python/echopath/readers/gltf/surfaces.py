@@ -17,6 +17,8 @@ from .nodes import Nodes
 from .primitives import Primitive, Primitives
 
 JOINT_BYTES = 2000   # of a joint in memory, about
+FLATTEST = 1e-12     # height by longest edge of a triangle, below which a Mesh leaves it out
+MOST_POSES = 32      # keys of an animation at which surfaces without area are looked at again
 
 
 @dataclass(frozen=True)
@@ -80,8 +82,27 @@ class Surfaces:
             return self._skinned(node, primitive, vertices, shape)
         if chain:
             return self._jointed(primitive, vertices, shape, chain)
-        mesh = self._mesh(primitive, vertices)
+        mesh = self._mesh(primitive, vertices if shape is None else self._opened(primitive, vertices, shape))
         return None if mesh is None else Surface(mesh, shape, primitive)
+
+    def _opened(self, primitive: Primitive, vertices: np.ndarray, deformation) -> np.ndarray:
+        """The vertices at rest, or those of the key at which the most triangles have an area.
+
+        What grows out of a point or a line has no area at rest, and a Mesh made there would lose it for all times.
+        """
+        least = _num_flat(vertices, primitive.triangles)
+        for time in self._key_times() if least else ():
+            pose = deformation.at(time)
+            flat = _num_flat(pose, primitive.triangles)
+            if flat < least:
+                vertices, least = pose, flat
+        return vertices
+
+    def _key_times(self) -> np.ndarray:
+        """Times of the scene in s of keys of the animation, some of them where there are very many."""
+        keys = np.unique(np.concatenate([curve.times for curve in self._animation.curves.values()] or [np.zeros(0)]))
+        chosen = np.linspace(0, len(keys) - 1, min(len(keys), MOST_POSES)).round().astype(int)
+        return keys[chosen] - self._animation.offset
 
     def _mesh(self, primitive: Primitive, vertices: np.ndarray):
         """The Mesh, shared by the nodes that have it as it stands in the file; None where it has no area."""
@@ -175,7 +196,7 @@ class Surfaces:
             mesh = self._mesh(primitive, skin.at(0.0))
             return None if mesh is None else Surface(mesh, None, primitive, tuple(skin.parts(mesh)))
         at_rest = _core.Skin(vertices, self._joints(self._resting, chain, bound), weights, joints)
-        mesh = self._mesh(primitive, at_rest.at(0.0))
+        mesh = self._mesh(primitive, self._opened(primitive, at_rest.at(0.0), skin))
         return None if mesh is None else Surface(mesh, skin, primitive)
 
     def _joints(self, motions: Motions, chain: list[int], bound: dict) -> list:
@@ -218,6 +239,14 @@ class Surfaces:
         if len(matrices) < count:
             reference.fail(f"must have a matrix for each of {count} joints, has {len(matrices)}")
         return self._nodes.inverse_bind(matrices[:count], reference)
+
+
+def _num_flat(vertices: np.ndarray, triangles: np.ndarray) -> int:
+    """How many triangles a Mesh of these vertices leaves out."""
+    corners = vertices[triangles]
+    sides = corners[:, [1, 2, 2]] - corners[:, [0, 0, 1]]
+    longest = (sides**2).sum(axis=2).max(axis=1)
+    return int((np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) <= FLATTEST * longest).sum())
 
 
 def _columns(curve, columns: list[int]):

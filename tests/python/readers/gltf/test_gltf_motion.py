@@ -181,6 +181,17 @@ def test_a_scale_that_moves_scales_what_is_below_it(tmp_path):
         assert np.abs(vertices_at(scene, time)["box"] - (BOX * scale + [0, 1, 0])[:, TO_SCENE]).max() < SINGLE
 
 
+@pytest.mark.parametrize("rest", [[0, 0, 0], [1, 0, 1], [0, 2, 0]])
+@pytest.mark.parametrize("options", [{}, {"loop": True, "offset": 0.25}])
+def test_what_rests_scaled_to_nothing_has_all_faces_once_it_grows(tmp_path, rest, options):
+    file = box_file(scale=rest)
+    file.animation((0, "scale", [0, 1, 2], [rest, [1, 1, 1], [2, 3, 4]], "LINEAR"))
+    scene = scene_of(loaded(tmp_path, file, **options))
+    assert scene.num_triangles == len(BOX_SIDES)
+    wanted = (BOX * [1.5, 2, 2.5])[:, TO_SCENE]
+    assert np.abs(vertices_at(scene, 1.5 - options.get("offset", 0.0))["box"] - wanted).max() < SINGLE
+
+
 def test_a_motion_that_scales_is_refused_on_nodes():
     scale = ep.CurveMotion(scale=ep.Curve([0, 1], [[1, 1, 1], [2, 2, 2]]))
     with pytest.raises(ValueError, match="motion: must keep lengths: scales move joints of a Skin alone; node"):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.files.gltf_files import BOX, loaded, rig_file, tube
+from support.files.gltf_files import BOX, BOX_SIDES, loaded, rig_file, tube
 from support.files.gltf_loaded import TO_SCENE, morph_file, rotated, scene_of, vertices_at
 
 SINGLE = 2e-6
@@ -99,6 +99,15 @@ def test_morph_targets_follow_their_weights(tmp_path, interpolation):
     scene = scene_of(loaded(tmp_path, file))
     t = {"STEP": 0.0, "LINEAR": 0.25, "CUBICSPLINE": 3 * 0.25**2 - 2 * 0.25**3}[interpolation]
     assert np.abs(vertices_at(scene, 0.25)["box"] - (BOX * [1 + 0.5 * t, 1, 1] + [0, t, 0])[:, TO_SCENE]).max() < SINGLE
+
+
+def test_faces_that_morph_targets_open_are_kept(tmp_path):
+    file = morph_file()
+    file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = file.accessor(BOX * [0, 1, 1])  # folded flat
+    file.animation((0, "weights", [0, 1], [0, 0, 0, 0, 0, 1], "LINEAR"))
+    scene = scene_of(loaded(tmp_path, file))
+    assert scene.num_triangles == len(BOX_SIDES)
+    assert np.abs(vertices_at(scene, 0.5)["box"] - (BOX * [0.5, 1, 1])[:, TO_SCENE]).max() < SINGLE
 
 
 def test_a_node_moves_while_morph_targets_shape_its_mesh(tmp_path):

@@ -113,6 +113,21 @@ def test_what_changes_its_visibility_stays_as_at_first_and_that_is_told(tmp_path
         loaded(tmp_path, mesh.replace('0: "inherited", 5: "invisible"', '0: "invisible", 5: "inherited"'))
 
 
+@pytest.mark.parametrize("opens", [True, False])
+def test_faces_that_are_shut_in_the_first_frame_are_left_out_and_that_is_told(tmp_path, opens):
+    first = "(1, 0, 0)" if opens else "(0, 0, 1)"  # of the fourth point: on the second, or where it makes a face with an area
+    model, _ = loaded(tmp_path, f"""def Mesh "leaf"
+{{
+    int[] faceVertexCounts = [3, 3]
+    int[] faceVertexIndices = [0, 1, 2, 0, 1, 3]
+    point3f[] points.timeSamples = {{ 0: [(0, 0, 0), (1, 0, 0), (0, 1, 0), {first}],
+                                      5: [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)] }}
+}}
+""")
+    assert model.num_triangles == (1 if opens else 2)
+    assert any("without area in the first frame" in note for note in model.notes) == opens
+
+
 @pytest.mark.parametrize("kind, size", [("Sphere", "radius"), ("Cube", "size"), ("Cylinder", "height")])
 def test_a_solid_that_changes_its_size_stays_as_at_first_and_that_is_told(tmp_path, kind, size):
     text = solid(kind, **{size: 2.0})

@@ -114,6 +114,8 @@ class Content:
         if prim.GetTypeName() in SOLIDS and changes_size(prim):
             self._tree.count("the size of a solid changes over time: it stays as it is at first")
         deformation = self._deformation(prim, surface)
+        if deformation is not None and surface.num_flat:
+            self._tree.count("faces without area in the first frame are left out of all frames")
         if len(surface.parts) == 1 and deformation is None:
             _, material, mesh = surface.parts[0]
             return self._tree.add(name, parent, placement=placement, motion=motion, mesh=mesh, foreign_material=material,

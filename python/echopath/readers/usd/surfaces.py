@@ -22,12 +22,14 @@ class Surface:
     """points [V, 3] in units of the file; parts: (name, name of the material, Mesh in m); smooth as of ModelNode.
 
     kept: [W] points of which the meshes have their vertices, some of them twice, where normals say that there is an edge
+    num_flat: triangles without area, which are in none of the parts
     """
 
     points: np.ndarray
     kept: np.ndarray
     parts: list = field(default_factory=list)
     smooth: bool = False
+    num_flat: int = 0
 
     def of(self, instance, pxr) -> Surface:
         """That of an instance of the prim, whose materials may be bound above it, outside of what the instances share."""
@@ -151,6 +153,7 @@ def _with_parts(surface: Surface, axes: Axes, triangles, face, subsets, pxr) -> 
         surface.parts.append((name, material_name(prim, pxr), mesh))
     if not surface.parts:
         raise BadMesh("has no face with an area")
+    surface.num_flat = len(triangles) - sum(len(mesh.triangles) for _, _, mesh in surface.parts)
     return surface
 
 

@@ -79,7 +79,7 @@ class _Body:
         """One row of Boxes."""
         frame = self._frame(time)
         rotation, origin = frame[:3, :3], frame[:3, 3]
-        own = (np.concatenate([self._scene.world_vertices(mesh.id, time) for mesh in self._meshes]) - origin) @ rotation
+        own = (self._vertices(time) - origin) @ rotation
         low, high = own.min(axis=0), own.max(axis=0)
         centre = 0.5 * (low + high)
         rate = rate_of(self._frame, time, step)
@@ -118,9 +118,16 @@ class _Body:
         return not np.allclose(before.T @ before, after.T @ after, rtol=0.0, atol=_SCALE * np.sum(before**2))
 
     def _own_centroid(self, time: float):
-        """Centroid of the surface, [3] in m, in the axes of the box."""
+        """Centroid of the surface, [3] in m, in the axes of the box; of one scaled to nothing the mean of its vertices."""
         frame = self._frame(time)
-        return (_core.surface_centroid(self._scene, self._mesh_ids, time) - frame[:3, 3]) @ frame[:3, :3]
+        centroid = _core.surface_centroid(self._scene, self._mesh_ids, time)
+        if not np.isfinite(centroid).all():
+            centroid = self._vertices(time).mean(axis=0)
+        return (centroid - frame[:3, 3]) @ frame[:3, :3]
+
+    def _vertices(self, time: float) -> np.ndarray:
+        """[V, 3] in m, world."""
+        return np.concatenate([self._scene.world_vertices(mesh.id, time) for mesh in self._meshes])
 
     def _reference_time(self) -> float:
         """Time 0, or the nearest at which all that moves and deforms the meshes is defined, s."""

@@ -280,6 +280,21 @@ def test_what_moves_from_a_later_time_on_has_a_truth():
     assert found.origin[0] == pytest.approx((8.0 + moved, 0.0, 0.0), abs=1e-9)
 
 
+def test_what_grows_out_of_a_point_has_a_truth(tmp_path):
+    """A plate that grows by 1 m a second about its middle, which goes aside at 1 m/s: its origin goes with the middle."""
+    mesh, times = ep.actors.plate(1.0, 1.0), [0.0, 1.0, 2.0]
+    frames = [time * (mesh.vertices + [0.0, 1.0, 0.0]) for time in times]
+    scene = ep.Scene()
+    scene.add(mesh, name="cloud", material="metal", position=(9, 0, 0),
+              motion=ep.VertexSequence(times=times, vertices=frames, interpolation="linear"))
+    for start in (0.0, 0.5):
+        frame = ep.simulate(scene, build_radar(num_chirps=16), num_rays=200, start_time=start, guard=False, truth=True)
+        frame.save(tmp_path / "frame.h5")
+        found = ep.load_frame(tmp_path / "frame.h5").truth
+        assert found.origin[0] == pytest.approx((9.0, found.time[0], 0.0))
+        assert found.velocity[0] == pytest.approx((0.0, 1.0, 0.0), abs=RATE_ERROR)
+
+
 def test_a_walking_person_goes_at_their_speed_in_the_mean():
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(speed=1.4, duration=3.0), name="walker", position=(8, 0, 0), yaw=np.pi)

@@ -6,10 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "call/argument.h"
 #include "call/leaving.h"
 #include "call/run_job.h"
 #include "echopath/label/cells/cell_errors.h"
 #include "echopath/label/cells/cells.h"
+#include "echopath/label/cells/echo_histories.h"
 #include "echopath/signal/noise.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "radar/window_name.h"
@@ -121,6 +123,30 @@ py::tuple errors_of(const py::object& cross, const py::object& coherent, const p
                         as_mask(made.certain, shape_of(labels)));
 }
 
+py::tuple histories_of(const Paths& paths, Arg<"index", VectorOf<int64_t>> index, Arg<"times", VectorOf<double>> times,
+                       Arg<"middle", Real> middle) {
+  for (const int64_t path : *index) {
+    require(path >= 0 && path < paths.num_paths(), "index", "must lie in 0 to the number of paths", path);
+  }
+  EchoHistories found =
+      run_job("histories", py::none(), [&](Job& job) { return echo_histories(paths, *index, *times, *middle, &job); });
+  const Shape shape{std::ssize(*index), std::ssize(*times)};
+  return py::make_tuple(numpy_take(std::move(found.field), shape), numpy_take(std::move(found.farther), shape),
+                        numpy_take(std::move(found.largest)));
+}
+
+using ComplexTable = py::array_t<std::complex<float>, py::array::c_style>;
+
+py::array row_sums_of(const ComplexTable& table, const py::array_t<int32_t, py::array::c_style>& rows,
+                      const ComplexTable& weights) {
+  require(table.ndim() == 2 && weights.ndim() == 2 && table.shape(1) == weights.shape(1), "weights",
+          "must be [W, T] for a table [N, T]", weights.ndim());
+  for (const int32_t row : view(rows)) require(row >= 0 && row < table.shape(0), "rows", "must be of the table", row);
+  const auto num_times = static_cast<size_t>(table.shape(1));
+  return numpy_take(without_gil([&] { return weighted_row_sums(view(table), view(rows), view(weights), num_times); }),
+                    {weights.shape(0), rows.size()});
+}
+
 }  // namespace
 
 void bind_cells(py::module_& m) {
@@ -134,6 +160,12 @@ void bind_cells(py::module_& m) {
         "Index of the largest of [K, V, R], -1 outside.");
   m.def("label_regions", &regions_of, py::arg("label"), py::arg("power"), py::arg("num_labels"), py::arg("rows_wrap"),
         "Cells, peak and box of each label: list of dict or None.");
+  m.def("echo_histories", &histories_of, py::arg("paths"), py::arg("index"), py::arg("times"), py::arg("middle"),
+        "(fields over the largest c64 [N, T], m farther away than at `middle` f32 [N, T], largest [N] in sqrt(W)) of the "
+        "paths of "
+        "an index [N] at times [T] in s, between the first antennas.");
+  m.def("weighted_row_sums", &row_sums_of, py::arg("table"), py::arg("rows"), py::arg("weights"),
+        "Sums over rows [K] of a table c64 [N, T] with each of some weights c64 [W, T]: c64 [W, K].");
   m.def("share_errors", &errors_of, py::arg("cross"), py::arg("coherent"), py::arg("diffuse"), py::arg("dominant"),
         "(power, its error, share, its error [K, V, R], certain [V, R]) from sums of batches [K, B, V, R].");
 }

@@ -16,12 +16,8 @@ from ..transmit.signals import synthesize_slots
 from .channels import Channels, by_channel
 from .courses import courses_of
 from .histories import Histories, length_and_field, phase_of
-from .response import MAX_SWEEP, Response
+from .response import MAX_SWEEP, Envelope, Response, responses_of, segments_of
 
-SEGMENTS_PER_BIN = 8   # of range that echoes go on by in the frame, straight lines between: 60 dB below the peak
-MIN_SEGMENTS = 5       # where any does
-MAX_SEGMENTS = 64
-STAYING = 1e-3         # bins, up to which an echo stays in its bin of range
 BYTES_PER_FIELD = 12   # place and field of a path in a channel
 BYTES_TOGETHER = 48    # of these, while fields in a cell are made of them
 HELD = 0.9999          # of the power of single paths, by the paths that are named
@@ -154,23 +150,36 @@ class EchoFields:
 
     def _gain(self, echoes: dict, some, cell):
         """Function of a shift in range, in bins: what a cell has of the fields of some echoes so far away, complex64 [N]."""
-        (velocity, distance), pad = _key(cell), self._spectrum.zero_pad
-        along = self._velocity_response((velocity - echoes["velocity"][some]) / pad, echoes["sweep"][some])
-        onward = np.outer(self._velocity_response.centres, echoes["travel"][some])
+        segments = echoes["segments"][some]
+        places = {number: np.flatnonzero(segments == number) for number in self._velocity_responses}
+        parts = [(place, self._gain_in(number, echoes, some[place], cell)) for number, place in places.items()]
+
+        def gain(shift):
+            gains, shifts = np.empty(len(some), np.complex64), np.broadcast_to(shift, len(some))
+            for place, of_part in parts:
+                gains[place] = of_part(shifts[place])
+            return gains
+        return gain
+
+    def _gain_in(self, segments: int, echoes: dict, some, cell):
+        """As `_gain`, of echoes that go on by so many segments in the frame."""
+        (velocity, distance), pad, response = _key(cell), self._spectrum.zero_pad, self._velocity_responses[segments]
+        along = np.empty((len(response.nodes), len(some)), np.complex64)
+        onward = np.empty(along.shape)
         rows = self._histories.rows(echoes["index"][some])
-        followed = np.flatnonzero(rows >= 0)
-        along[:, followed], onward[:, followed] = self._along_histories(rows[followed], velocity)
+        followed, others = np.flatnonzero(rows >= 0), np.flatnonzero(rows < 0)
+        along[:, followed], onward[:, followed] = self._along_histories(rows[followed], velocity, response)
+        apart, sweep, travel = ((echoes[name][some[others]]) for name in ("velocity", "sweep", "travel"))
+        along[:, others], onward[:, others] = response((velocity - apart) / pad, sweep), np.outer(response.centres, travel)
         place = (distance - echoes["range"][some]) / pad - onward
         return lambda shift: np.sum(along * self._range_response(place - shift), axis=0)
 
-    def _along_histories(self, rows, velocity: int) -> tuple:
+    def _along_histories(self, rows, velocity: int, response: Response) -> tuple:
         """What a cell of velocity has of echoes that are followed from chirp to chirp, and bins of range by which they are
         farther away than in the middle of the frame, at the nodes of the response, [nodes, N] each."""
-        response = self._velocity_response
         tone = self._chirp_weights * np.exp(-2j * np.pi * self._cell_turns(velocity))
-        terms = self._histories.fields(rows) * tone.astype(np.complex64)
-        along = np.stack([_weighted_sums(terms, share) for share in response.shares.astype(np.float32)])
-        farther = self._histories.farther(rows)[:, np.rint(response.nodes).astype(int)]
+        along = self._histories.sums(rows, (response.shares * tone).astype(np.complex64))
+        farther = self._histories.farther(rows, np.rint(response.nodes).astype(int))
         return along, 0.5 * farther.T / self._paths.radar.waveform.range_resolution
 
     def _cell_turns(self, velocity: int) -> np.ndarray:
@@ -218,7 +227,7 @@ class EchoFields:
     @cached_property
     def _far(self) -> float:
         """Cells of range beyond which an echo gives nothing."""
-        reach = self._range_response.reach + 0.5 * self._largest("travel") + self._all.largest_shift
+        reach = self._range_envelope.reach() + 0.5 * self._largest("travel") + self._all.largest_shift
         return reach * self._spectrum.zero_pad
 
     @cached_property
@@ -243,11 +252,11 @@ class EchoFields:
         is_strong = courses.strongest > FAINT * _largest_beside(cells.range_index[index], courses.strongest)
         flashes = (courses.swing > FLASHING) & is_strong
         unsteady = ~courses.is_parabola | (np.abs(sweep) > MAX_SWEEP) | flashes
-        farther = np.copysign(courses.away / waveform.range_resolution, travel)
+        travel = np.where(unsteady, np.copysign(courses.away / waveform.range_resolution, travel), travel)
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2, "sweep": sweep, "first": courses.field,
                 "strongest": courses.strongest, "length": cells.length[index], "unsteady": unsteady,
-                "travel": np.where(unsteady, farther, travel)}
+                "travel": travel, "segments": segments_of(travel)}
 
     @cached_property
     def _power(self) -> np.ndarray:
@@ -277,9 +286,9 @@ class EchoFields:
         (velocity, distance), pad = cell, self._spectrum.zero_pad
         echoes = {name: self._echoes[name][some] for name in ("velocity", "range", "sweep", "travel", "unsteady")}
         travel, sweep = np.abs(echoes["travel"]), np.minimum(np.abs(echoes["sweep"]), MAX_SWEEP)
-        along = self._velocity_response.bound((velocity - echoes["velocity"]) / pad, travel + sweep)
+        along = self._velocity_envelope.bound((velocity - echoes["velocity"]) / pad, travel + sweep)
         along = np.where(echoes["unsteady"], 1.0, along)
-        across = self._range_response.bound((distance - echoes["range"]) / pad, travel + 2.0 * self._all.largest_shift)
+        across = self._range_envelope.bound((distance - echoes["range"]) / pad, travel + 2.0 * self._all.largest_shift)
         return self._power[some] * (along * across) ** 2
 
     def _in_channels(self, echoes: dict, channels: Channels) -> dict:
@@ -315,12 +324,19 @@ class EchoFields:
         return self._all.largest_shift < SAME_BIN and all(look == some[0] for some in looks for look in some)
 
     @cached_property
-    def _velocity_response(self) -> Response:
-        num_chirps = self._paths.radar.waveform.num_chirps
-        travel = self._largest("travel")
-        wanted = np.clip(np.ceil(SEGMENTS_PER_BIN * travel), MIN_SEGMENTS, MAX_SEGMENTS) if travel > STAYING else 1
-        segments = max(min(int(wanted), num_chirps - 1), 1)
-        return Response(of_velocity(self._spectrum.window), num_chirps, self._largest("sweep"), segments)
+    def _velocity_responses(self) -> dict:
+        """{segments: Response} of the echoes that go on by so many."""
+        window, num_chirps = of_velocity(self._spectrum.window), self._paths.radar.waveform.num_chirps
+        reach = self._velocity_envelope.reach(self._largest("sweep"))
+        return responses_of(window, num_chirps, self._echoes["segments"], self._echoes["sweep"], reach)
+
+    @cached_property
+    def _velocity_envelope(self) -> Envelope:
+        return Envelope(of_velocity(self._spectrum.window), self._paths.radar.waveform.num_chirps)
+
+    @cached_property
+    def _range_envelope(self) -> Envelope:
+        return Envelope(of_range(self._spectrum.window), self._paths.radar.waveform.num_samples)
 
     @cached_property
     def _range_response(self) -> Response:
@@ -332,7 +348,7 @@ class EchoFields:
     def _candidates(self, number, velocity: int, distance: int):
         """Places in echoes, in the order of the `number` of their nearest cells, of those within reach of a cell."""
         num_velocities, num_ranges = len(self._spectrum.velocity), len(self._spectrum.range)
-        slow = min(int(self._velocity_response.reach * self._spectrum.zero_pad), num_velocities // 2)
+        slow = min(int(self._velocity_envelope.reach(self._largest("sweep")) * self._spectrum.zero_pad), num_velocities // 2)
         rows = np.unique(np.arange(velocity - slow, velocity + slow + 1) % num_velocities) * num_ranges
         first, last = (np.add.outer(rows, ends).ravel() for ends in zip(*self._spans_about(distance)))
         near = [np.arange(*pair) for pair in zip(np.searchsorted(number, first), np.searchsorted(number, last, side="right"))]
@@ -362,18 +378,13 @@ def _all_of(lists, count: int) -> np.ndarray:
     return np.flatnonzero(marked)
 
 
-def _weighted_sums(terms, share) -> np.ndarray:
-    """Sums of terms [N, C] with shares [C] that are 0 but in a row: the same for any N and threads, as products are not."""
-    some = np.flatnonzero(share)
-    row = slice(some[0], some[-1] + 1)
-    return np.sum(terms[:, row] * share[row], axis=1)
-
-
 def _without_weakest(power, least: float) -> np.ndarray:
     """bool [N], all of some powers [N] in W but the weakest that together have no more than `least` W."""
-    ascending = np.sort(power)
-    held = np.cumsum(ascending)
-    return power >= ascending[np.searchsorted(held, min(least, held[-1]))] if len(held) else np.zeros(0, bool)
+    is_weak = power <= least
+    faintest = power <= least / max(len(power), 1)  # all of them may go: sorting those between takes most of the time
+    ascending = np.sort(power[is_weak & ~faintest])
+    go = np.searchsorted(power[faintest].sum() + np.cumsum(ascending), least, side="right")
+    return ~is_weak if go == len(ascending) else power >= ascending[go]
 
 
 def _largest_beside(cells, field) -> np.ndarray:

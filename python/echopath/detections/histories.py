@@ -4,8 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..paths.cells import chirp_times, echoes_at
-from ..paths.subset import subset
+from ..paths.cells import chirp_times
 
 BYTES = 12            # of an echo in a chirp
 MAX_MEMORY = 2 ** 28  # bytes, of all echoes that are followed
@@ -32,10 +31,10 @@ class Histories:
         if not len(new):
             return
         self._row_of_path[new] = len(self._fields) + np.arange(len(new))
-        fields, farther, largest = self._evaluated(subset(self._paths, new))
-        self._largest = np.concatenate([self._largest, largest])
-        self._fields = np.concatenate([self._fields, fields])
-        self._farther = np.concatenate([self._farther, farther])
+        fields, farther, largest = _core.echo_histories(self._paths, new, self._times, chirp_times(self._paths)[1])
+        self._largest = _joined(self._largest, largest)
+        self._fields = _joined(self._fields, fields)
+        self._farther = _joined(self._farther, farther)
 
     def rows(self, index) -> np.ndarray:
         """Rows [N] in `fields` and `farther` of the paths of an index [N], -1: not followed."""
@@ -49,20 +48,18 @@ class Histories:
         """complex64 [N, C], over the largest of each, with their own phases."""
         return self._fields[rows]
 
-    def farther(self, rows) -> np.ndarray:
-        """f32 [N, C], m, by which the length is larger than that in the middle of the frame."""
-        return self._farther[rows]
+    def farther(self, rows, chirps=slice(None)) -> np.ndarray:
+        """f32 [N, C], m, by which the length is larger than that in the middle of the frame; chirps: which of them."""
+        return self._farther[rows[:, None], chirps] if np.ndim(chirps) else self._farther[rows]
 
-    def _evaluated(self, paths) -> tuple:
-        (middle,) = paths.lengths([chirp_times(paths)[1]], 0, 0)
-        shape, waveform = (paths.num_paths, len(self._times)), paths.radar.waveform
-        fields, farther = np.zeros(shape, np.complex64), np.zeros(shape, np.float32)
-        largest = np.zeros(paths.num_paths)
-        for some, lengths, amplitudes in echoes_at(paths, self._times):
-            largest[some] = np.abs(amplitudes).max(axis=0)
-            over_largest = np.conj(amplitudes) / np.maximum(largest[some], np.finfo(float).tiny)
-            fields[some], farther[some] = (over_largest * phase_of(lengths, waveform)).T, (lengths - middle[some]).T
-        return fields, farther, largest
+    def sums(self, rows, weights) -> np.ndarray:
+        """Sums of `fields` with weights [W, C] of the chirps, complex64 [W, N]."""
+        return _core.weighted_row_sums(self._fields, rows, weights)
+
+
+def _joined(first, second) -> np.ndarray:
+    """One after the other; nothing is copied where there is no first."""
+    return np.concatenate([first, second]) if len(first) else second
 
 
 def length_and_field(paths, time: float, tx: int, receivers: list) -> tuple:

@@ -9,28 +9,53 @@ FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
 SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; with segments, of each part
 MAX_SWEEP = 32.0       # bins
+SEGMENTS_PER_BIN = 8   # of range that an echo goes on by in the frame, straight lines between: 60 dB below the peak
+SEGMENTS = np.array([1, 5, 12, 28, 64])  # numbers of them that echoes have: one if they stay, at most the last
+STAYING = 1e-3         # bins, up to which an echo stays in its bin of range
+
+
+class Envelope:
+    """How large the response of a windowed transform of n samples to single tones may be."""
+
+    def __init__(self, window, n: int):
+        self._n, self._levels = n, _envelope(samples_of(window, n))
+
+    def reach(self, sweep: float = 0.0) -> float:
+        """Bins from a tone beyond which the response stays FLOOR_DB below its peak; sweep: bins, the largest, of the tone."""
+        within = np.flatnonzero(self._levels > 10.0 ** (-FLOOR_DB / 20.0))[-1]
+        return min(int(np.ceil(within / STEPS_PER_BIN)) + 1 + 0.5 * min(sweep, MAX_SWEEP), 0.5 * self._n)
+
+    def bound(self, y, spread):
+        """The largest that the response may be, [N], for a tone y [N] bins away that passes over `spread` [N] bins.
+
+        Model: that of the tone's nearest bin, and no less than FLOOR_DB below the peak. Single tones may exceed it where
+        they move, twice at most for windows without flat sidelobes; the power of many does not.
+        """
+        far = np.abs(y - np.rint(y / self._n) * self._n) - 0.5 * spread
+        step = np.clip((far * STEPS_PER_BIN).astype(int), 0, len(self._levels) - 1)
+        return np.maximum(self._levels.take(step), 10.0 ** (-FLOOR_DB / 20.0))
 
 
 class Response:
     """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
 
     In parts, one for each node between S segments of the samples, S + 1 (one without segments), whose weights fall linearly to
-    the next nodes: what is known at the nodes is a line between them. reach: bins, within which it is known
+    the next nodes: what is known at the nodes is a line between them. reach: bins, within which it is known; None: as far as
+    sweeps up to the largest take it
     Model: p^2 = 2 c p - c^2 + (p - c)^2 about a node c: it sees a tone c sweep bins nearer, whose sweep bends it by the square of
     the length of its part less. So S segments need steps (S / 2)^2 as wide for the same error.
     Memory: the table has 8 bytes for each node, sweep (257 / (S / 2)^2) and sixteenth of a bin: 33 kB a sample at most without
     segments or with 5 and more, 58 kB with the few that frames of 3 to 5 chirps have.
     """
 
-    def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
+    def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1, reach: float | None = None):
         samples = samples_of(window, n)
         self._n = n
         self._step = SWEEP_STEP * (1.0 if segments == 1 else 0.5 * segments) ** 2
         self._largest = min(largest_sweep, MAX_SWEEP)
         self._middle = int(np.ceil(self._largest / self._step - 0.5))
-        self._envelope = _envelope(samples)
-        self.reach = min(_reach(self._envelope) + 0.5 * self._largest, 0.5 * n)
-        self._half = int((min(self.reach + 0.5 * self._largest, 0.5 * n) + 1.0) * STEPS_PER_BIN)
+        reach = Envelope(window, n).reach(self._largest) if reach is None else reach
+        self._half = int((min(reach + 0.5 * self._largest, 0.5 * n) + 1.0) * STEPS_PER_BIN)
         place = (np.arange(n) - 0.5 * (n - 1)) / n
         self.nodes = np.array([0.5 * (n - 1)]) if segments == 1 else np.linspace(0.0, n - 1.0, segments + 1)  # in samples
         self.centres = (self.nodes - 0.5 * (n - 1)) / n  # [nodes], -1/2 to 1/2
@@ -58,16 +83,6 @@ class Response:
         bend = (np.pi * sweep * centre ** 2).astype(np.float32)
         return (np.cos(bend) - 1j * np.sin(bend)) * between
 
-    def bound(self, y, spread):
-        """The largest that the response may be, [N], for a tone y [N] bins away that passes over `spread` [N] bins.
-
-        Model: that of the tone's nearest bin, and no less than FLOOR_DB below the peak. Single tones may exceed it where
-        they move, twice at most for windows without flat sidelobes; the power of many does not.
-        """
-        far = np.abs(y - np.rint(y / self._n) * self._n) - 0.5 * spread
-        step = np.clip((far * STEPS_PER_BIN).astype(int), 0, len(self._envelope) - 1)
-        return np.maximum(self._envelope.take(step), 10.0 ** (-FLOOR_DB / 20.0))
-
     def _transform(self, samples, place):
         """Of the samples of a node, places counted from it, at the steps of the table, [sweeps, steps]."""
         sweeps = self._step * np.arange(-self._middle, self._middle + 1)
@@ -77,12 +92,19 @@ class Response:
         return (values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)).astype(np.complex64)
 
 
+def segments_of(travel) -> np.ndarray:
+    """Of SEGMENTS, those that echoes need that go on by so many bins of range in the frame, [N]."""
+    wanted = np.where(np.abs(travel) > STAYING, np.ceil(SEGMENTS_PER_BIN * np.abs(travel)), 0.0)
+    return SEGMENTS[np.clip(np.searchsorted(SEGMENTS, wanted), wanted > 0.0, len(SEGMENTS) - 1)]
+
+
+def responses_of(window, n: int, segments, sweep, reach: float) -> dict:
+    """{segments: Response} of echoes that go on by so many of `segments_of`, [N], with a sweep in bins, [N]."""
+    return {number: Response(window, n, np.abs(sweep[segments == number]).max(), min(number, max(n - 1, 1)), reach)
+            for number in np.unique(segments).tolist()}
+
+
 def _envelope(samples) -> np.ndarray:
     """The largest response to a tone that is so many steps of the table away or farther, up to half the axis."""
     response = np.abs(np.fft.rfft(samples, STEPS_PER_BIN * len(samples))) / samples.sum()
     return np.maximum.accumulate(response[::-1])[::-1]
-
-
-def _reach(envelope) -> int:
-    """Bins beyond which the response stays FLOOR_DB below its peak."""
-    return int(np.ceil(np.flatnonzero(envelope > 10.0 ** (-FLOOR_DB / 20.0))[-1] / STEPS_PER_BIN)) + 1

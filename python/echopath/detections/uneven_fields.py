@@ -73,14 +73,14 @@ class UnevenEchoFields(EchoFields):
     def _candidates(self, number, velocity: int, distance: int):
         """As of EchoFields, those of all velocities."""
         pad, ranges = self._spectrum.zero_pad, self._echoes["range"]
-        far = (self._range_response.reach + 0.5 * self._largest("travel") + self._all.largest_shift + 1.0) * pad
+        far = (self._range_envelope.reach() + 0.5 * self._largest("travel") + self._all.largest_shift + 1.0) * pad
         return np.flatnonzero(self._away(ranges, distance) <= far + self._most_wider * ranges)
 
     def _bounds(self, some, cell) -> np.ndarray:
         pad = self._spectrum.zero_pad
         echoes = {name: self._echoes[name][some] for name in ("range", "travel")}
         spread = np.abs(echoes["travel"]) + 2.0 * (self._all.largest_shift + self._most_wider * echoes["range"] / pad)
-        return self._power[some] * self._range_response.bound((cell[1] - echoes["range"]) / pad, spread) ** 2
+        return self._power[some] * self._range_envelope.bound((cell[1] - echoes["range"]) / pad, spread) ** 2
 
     def _gain(self, echoes: dict, some, cell):
         return self._gain_of(self._chirps[0], echoes, some, cell)

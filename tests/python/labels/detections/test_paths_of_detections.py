@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath import _core
 from echopath.detections import echo_fields
 from echopath.detections.echo_fields import EchoFields
-from echopath.detections.response import Response
+from echopath.detections.response import Envelope, Response
 from echopath.detections.uneven_fields import echo_fields as fields_of
 from echopath.spectra.windows import samples_of
 from support.radars import with_waveform
@@ -25,6 +26,7 @@ LEFT_OUT = 1e-5  # of the power of single paths in a cell; ten times what the bo
 FAR_AWAY = 1e-3  # of the peak: what responses follow, 60 dB
 LINE = 0.02    # of the peak: two tables, and straight lines between channels
 BEYOND = 2.0   # times its bound may be the field of a single tone that moves, where responses have deep gaps
+SINGLE = 2e-7  # relative: rounding of single precision
 
 
 def synthesised_power(paths, chosen, radar, spectrum, cell):
@@ -206,8 +208,8 @@ def test_no_path_gives_more_to_a_cell_than_its_bound(window, travel, sweep):
     across = np.exp(-2j * np.pi * (far[:, None] - travel * place)[..., None] * place) @ samples  # [tones, chirps]
     along = np.exp(-2j * np.pi * np.outer(slow, place) + 1j * np.pi * sweep * place ** 2)
     field = np.abs((along * across) @ samples)
-    response = Response(window, n, largest_sweep=sweep)
-    bound = response.bound(slow, travel + sweep) * response.bound(far, travel)
+    envelope = Envelope(window, n)
+    bound = envelope.bound(slow, travel + sweep) * envelope.bound(far, travel)
     assert np.all(field <= BEYOND * bound) and np.sum(field ** 2) < np.sum(bound ** 2)
     assert bound.max() <= 1.0
 
@@ -408,3 +410,39 @@ def test_how_strong_echoes_are_takes_few_bytes_where_channels_have_them_in_other
         alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == index[place]), radar)
         assert power[place] == pytest.approx(np.max(np.abs(alone[:, :, 32, 64]) ** 2), rel=1e-4, abs=0)
     assert peak < 200 * paths.num_paths  # bytes; with places and phases 350
+
+
+def test_histories_are_the_signals_of_single_paths_in_the_chirps(movers):
+    """Beside lengths and amplitudes one by one, and the phase of an echo half-way through the samples."""
+    _, paths, _ = movers
+    waveform, times = paths.radar.waveform, [0.0, 3e-4, 9e-4]
+    index = np.array([5, 2, paths.num_paths - 1])
+    fields, farther, largest = _core.echo_histories(paths, index, times, 5e-4)
+    length, (middle,) = (paths.lengths(at, 0, 0)[:, index] for at in (times, [5e-4]))
+    delay = length / ep.speed_of_light
+    late = 0.5 * (waveform.num_samples - 1) / waveform.sampling_rate
+    turns = (waveform.start_frequency + waveform.slope * late) * delay - 0.5 * waveform.slope * delay ** 2
+    expected = np.conj(paths.amplitudes(times, 0, 0)[:, index]) * np.exp(2j * np.pi * turns)
+    np.testing.assert_allclose(largest, np.abs(expected).max(axis=0), rtol=1e-12)
+    np.testing.assert_allclose(fields * largest[:, None], expected.T, rtol=0, atol=SINGLE * largest.max())
+    np.testing.assert_allclose(farther, (length - middle).T, rtol=SINGLE, atol=0)
+    with pytest.raises(ValueError, match="^index: must lie in 0 to the number of paths"):
+        _core.echo_histories(paths, [paths.num_paths], times, 5e-4)
+
+
+@pytest.mark.parametrize("count", [1, 7, 8, 200])
+def test_sums_over_rows_are_those_of_their_products(count):
+    """Whatever other rows are asked for, also with weights that are 0 at either end or all over."""
+    rng = np.random.default_rng(4)
+    table, weights = (np.asarray(rng.normal(size=(n, count, 2)), np.float32).view(np.complex64)[..., 0] for n in (90, 3))
+    weights[0, :count // 3] = weights[0, count - count // 4:] = weights[1] = 0.0
+    rows = rng.integers(0, 90, 150).astype(np.int32)
+    sums = _core.weighted_row_sums(table, rows, weights)
+    off = np.abs(sums - weights.astype(complex) @ table[rows].T.astype(complex))
+    assert np.all(off <= SINGLE * np.abs(weights) @ np.abs(table[rows]).T)
+    np.testing.assert_array_equal(_core.weighted_row_sums(table, rows[7:8], weights), sums[:, 7:8])
+    for wrong, words in ((np.array([90], np.int32), "^rows: "), (np.array([-1], np.int32), "^rows: ")):
+        with pytest.raises(ValueError, match=words):
+            _core.weighted_row_sums(table, wrong, weights)
+    with pytest.raises(ValueError, match="^weights: "):
+        _core.weighted_row_sums(table, rows, weights[:, :0])

@@ -154,6 +154,17 @@ def test_a_camera_with_y_upwards_says_the_vertical_axis(tmp_path):
     assert mitsuba(tmp_path, camera + rectangle(""), up="z").up == "z"
 
 
+def test_parameters_of_the_picture_need_no_value(tmp_path):
+    """Mitsuba asks for them on its command line, as `-Dspp=64`; those that place a sensor tell which way is up."""
+    sensor = ('<integrator type="path"><integer name="max_depth" value="$depth"/></integrator><sensor type="perspective">'
+              '<float name="fov" value="$fov"/><sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>')
+    upright = '<transform name="to_world"><lookat origin="0 0 5" target="0 0 0" up="0 $up 0"/></transform></sensor>'
+    with pytest.raises(ep.FileError, match="the parameter '[$]up' has no default"):
+        mitsuba(tmp_path, sensor + upright + rectangle(""))
+    model = mitsuba(tmp_path, '<default name="up" value="1"/>' + sensor + upright + rectangle(""))
+    assert model.up == "y" and len(model.nodes) == 1
+
+
 @pytest.mark.parametrize("body, message", [
     ('<shape type="ply"><string name="filename" value="gone.ply"/></shape>', "line 2: <shape>: the file 'gone.ply' is not there"),
     ('<shape type="ply"/>', "names no file"),

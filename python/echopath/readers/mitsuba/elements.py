@@ -13,6 +13,7 @@ from ...base.storage.markup import parse
 
 MAX_INCLUDES = 15    # files within files
 MAX_ELEMENTS = 10_000_000
+_OF_PICTURES = {"sensor", "film", "sampler", "rfilter", "integrator", "emitter"}  # where a sensor stands tells which way is up
 
 
 @dataclass(eq=False)
@@ -92,26 +93,30 @@ class _Reader:
         self._including.pop()
         return root
 
-    def _filled(self, element: Element) -> Iterator[Element]:
-        """The children of an element, with parameters, and included files instead of what includes them."""
+    def _filled(self, element: Element, is_read: bool = True) -> Iterator[Element]:
+        """The children of an element, with parameters, and included files instead of what includes them.
+
+        is_read: whether anything but transforms of the element is looked at; else parameters may be unknown
+        """
         for child in element.children:
-            child.attributes = {name: self._text(child, value) for name, value in child.attributes.items()}
+            of_scene = child.tag == "transform" or is_read and child.tag not in _OF_PICTURES
+            child.attributes = {name: self._text(child, value, of_scene) for name, value in child.attributes.items()}
             if child.tag == "default":
                 self._parameters.setdefault(child.get("name"), child.get("value"))
             elif child.tag == "include":
                 yield from self._included(child)
             else:
-                child.children = list(self._filled(child))
+                child.children = list(self._filled(child, of_scene))
                 yield child
 
-    def _text(self, element: Element, text: str) -> str:
+    def _text(self, element: Element, text: str, must_be_known: bool) -> str:
         if "$" not in text:
             return text
 
         def value(match) -> str:
-            if match[1] not in self._parameters:
+            if must_be_known and match[1] not in self._parameters:
                 element.refuse(f"the parameter '${match[1]}' has no default")
-            return self._parameters[match[1]]
+            return self._parameters.get(match[1], match[0])
 
         filled = re.sub(r"\$(\w+)", value, text)
         if len(filled) > 100_000:

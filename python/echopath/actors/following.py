@@ -10,11 +10,12 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, optional, refused
 from ..trajectories.knots import curve_through
-from ..trajectories.profile import Profile
+from ..trajectories.profile import Profile, summed
 from ..trajectories.trajectory import Trajectory
 
 WHEEL_TOLERANCE = 5e-6      # of quaternions: a tread 0.33 m from the axle errs by 3 micrometres
 STEERING_WAY = 1.5          # m before and behind, over which the curvature that a wheel steers by is averaged
+WAY_STEP = 2.0**-6          # s, between times at which the way of a wheel that steers is summed up
 MOST_STEERING = np.radians(45.0)
 
 trajectory_rule = optional(an(Trajectory))
@@ -29,14 +30,19 @@ def refuse_beside_trajectory(trajectory, **given) -> None:
 
 @dataclass(frozen=True)
 class Rolling:
-    """How what carries wheels goes: `rolled`, the Profile of its way ahead in m; `yaw`, times [N] in s -> its yaw in rad and the
-    rate; `turn`, the same of its yaw relative to the trajectory, None: it has that of the trajectory; `ahead`: m, of the point
-    that stays on the path before the one that follows the trajectory."""
+    """How what carries wheels goes: `rolled`, the Profile of its way ahead in m; `moved`, times [N] in s -> (places of its
+    origin, velocities [N, 3] in m/s, yaws in rad, their rates); `turn`, times -> its yaw relative to the trajectory and the rate,
+    None: it has that of the trajectory; `ahead`: m, of the point that stays on the path before the one that follows the
+    trajectory."""
 
     rolled: Profile
-    yaw: Callable
+    moved: Callable
     turn: Callable | None = None
     ahead: float = 0.0
+
+    def yaw(self, times):
+        """(yaw [N] in rad, its rate in rad/s)."""
+        return self.moved(times)[2:]
 
 
 class Wheels:
@@ -47,37 +53,72 @@ class Wheels:
 
     def __init__(self, trajectory: Trajectory, rolling: Rolling, junctions):
         self._trajectory, self._track, self._rolling, self._junctions = trajectory, trajectory._track, rolling, junctions
-        self._ways: dict[float | None, tuple] = {}
+        self._ways: dict[tuple | None, tuple] = {}
         self._yaw_at_begin = rolling.yaw(np.array([rolling.rolled.begin]))[0][0]
 
-    def curve(self, radius: float, *, y: float = 0.0, wheelbase: float | None = None) -> _core.Curve:
+    def curve(self, radius: float, center=(0.0, 0.0, 0.0), wheelbase: float | None = None) -> _core.Curve:
         """The Curve of the rotations of a wheel of a `radius` in m that rolls about its own place.
 
-        y: m, of the wheel to the left of the vehicle's middle, by which its way differs in curves; wheelbase: m, of a wheel
-        that steers, None: it does not
+        center: [3] m, of the wheel in the vehicle: what is to the left of its middle goes another way in curves; wheelbase: m, of
+        a wheel that steers, None: it does not
         """
-        if wheelbase not in self._ways:
-            self._ways[wheelbase] = (Repeated(lambda times: self._way(times, wheelbase)),
-                                     self._trajectory._within_details(self._junctions_of(wheelbase)))
-        repeated, junctions = self._ways[wheelbase]
+        x, y = float(center[0]), float(center[1])
+        steers = None if wheelbase is None else (x, wheelbase)
+        if steers not in self._ways:
+            self._ways[steers] = Repeated(self._way_of(steers)), self._trajectory._within_details(self._junctions_of(wheelbase))
+        repeated, junctions = self._ways[steers]
         ways = repeated.anew()
 
         def rotation(times):
-            way, speed, yaw, yaw_rate, steer, steer_rate = ways(times)
-            return turned(steer, steer_rate, (way - y * (yaw - self._yaw_at_begin)) / radius, (speed - y * yaw_rate) / radius)
+            way, speed, swing, swing_rate, angle, angle_rate = ways(times)
+            return turned(angle, angle_rate, (way - y * swing) / radius, (speed - y * swing_rate) / radius)
         return curve_through(rotation, junctions, WHEEL_TOLERANCE)
 
-    def _way(self, times, wheelbase: float | None):
-        """[6, N]: way in m, yaw and angle of a wheel that steers in rad at times [N] in s, and the rate of each behind it."""
+    def _way_of(self, steers: tuple | None) -> Callable:
+        """times [N] in s -> [6, N]: the way in m that a wheel rolls in the middle of its axle, by how much less it does for each
+        m to the left, its direction in rad in the axes of the trajectory, and the rate of each behind it.
+
+        steers: (m, of its axle ahead of the vehicle's origin, wheelbase in m), None: it does not
+        """
         rolling = self._rolling
-        way, speed, _ = rolling.rolled.at(times)
-        steer, steer_rate = np.zeros((2, len(way)))
-        if wheelbase is not None:
-            steer, steer_rate = _steering(self._track, times, wheelbase, rolling.ahead)
-        if rolling.turn is not None:
-            turn, turn_rate = rolling.turn(times)
-            steer, steer_rate = steer + turn, steer_rate + turn_rate
-        return np.stack([way, speed, *rolling.yaw(times), steer, steer_rate])
+        way, swing = (lambda times: rolling.rolled.at(times)[:2]), self._turned_since_begin
+        if steers is not None:
+            way, swing = self._steered_ways(*steers)
+
+        def moved(times):
+            angle, rate = np.zeros((2, len(times))) if steers is None else self._steering(times, steers[1])
+            if rolling.turn is not None:
+                turn, turn_rate = rolling.turn(times)
+                angle, rate = angle + turn, rate + turn_rate
+            return np.stack([*way(times), *swing(times), angle, rate])
+        return moved
+
+    def _turned_since_begin(self, times):
+        yaw, rate = self._rolling.yaw(times)
+        return yaw - self._yaw_at_begin, rate
+
+    def _steering(self, times, wheelbase: float):
+        return _steering(self._track, times, wheelbase, self._rolling.ahead)
+
+    def _steered_ways(self, x: float, wheelbase: float):
+        """(times -> (way [N] in m, its rate), times -> (by how much less for each m to the left, its rate)) of wheels that steer.
+
+        Such a wheel rolls by what its velocity has along its own direction, which is not that of the vehicle.
+        """
+        rolling = self._rolling
+
+        def speed(times):
+            _, velocity, yaw, yaw_rate = rolling.moved(times)
+            steer, _ = self._steering(times, wheelbase)
+            aside = velocity[:, 1] * np.cos(yaw) - velocity[:, 0] * np.sin(yaw) + x * yaw_rate
+            return rolling.rolled.at(times)[1] * np.cos(steer) + aside * np.sin(steer)
+
+        def swing_rate(times):
+            return rolling.yaw(times)[1] * np.cos(self._steering(times, wheelbase)[0])
+
+        times = np.unique(np.concatenate([self._track.fine_times(WAY_STEP), self._junctions_of(wheelbase)]))
+        ways = [summed(times, rate) for rate in (speed, swing_rate)]
+        return [lambda at, one=one: one.at(at)[:2] for one in ways]
 
     def _junctions_of(self, wheelbase: float | None):
         """Times in s at which wheels do not turn smoothly."""
@@ -123,7 +164,7 @@ class Repeated:
 def wheels_along(trajectory: Trajectory) -> Wheels:
     """The Wheels of a vehicle that is carried by its trajectory."""
     track = trajectory._track
-    return Wheels(trajectory, Rolling(track.rolled, track.yaws), track.junctions())
+    return Wheels(trajectory, Rolling(track.rolled, lambda times: (*track.places(times), *track.yaws(times))), track.junctions())
 
 
 def turned(yaw, yaw_rate, angle=0.0, rate=0.0):

@@ -5,6 +5,7 @@ import numpy as np
 
 GRID = 0.25            # m, between places at which limits of the speed are held against each other
 MOST_PLACES = 200_000
+SIDE = 1e-6            # of a step: rates on this side of its ends
 
 
 class Profile:
@@ -92,6 +93,17 @@ def through(times, distances, speeds=None) -> Profile:
     most = 3.0 * np.minimum(np.append(secants, np.inf), np.insert(secants, 0, np.inf))
     rates = np.clip(rates, 0.0, most)        # within three secants a cubic does not turn back
     return Profile(times, hermite_coefficients(steps, distances, rates))
+
+
+def summed(times, rate) -> Profile:
+    """What a rate adds up to from times[0] on, by Simpson's rule between times [K] in s, where it may jump.
+
+    rate: times [N] in s -> in 1/s [N]
+    """
+    steps = np.diff(times)
+    first, middle, last = (rate(at) for at in (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps))
+    values = np.concatenate([[0.0], np.cumsum(steps / 6.0 * (first + 4.0 * middle + last))])
+    return Profile(times, hermite_pieces(steps, values, first, last))
 
 
 def slopes_of(knots, values):

@@ -15,13 +15,12 @@ import numpy as np
 from ... import _core
 from ...base.process.callers import warn_user
 from ...trajectories.knots import curve_through
-from ...trajectories.profile import Profile, hermite_pieces
+from ...trajectories.profile import SIDE, Profile, hermite_pieces, summed
 from ...trajectories.track import shifted
 from ...trajectories.trajectory import TOLERANCE
 from ..following import WHEEL_TOLERANCE, Rolling, Wheels, turned
 
 STEP = 2.0**-6         # s, of the trailer's angle
-SIDE = 1e-6            # of a step: rates on this side of its ends
 MOST_BEND = np.radians(90.0)
 
 
@@ -106,25 +105,20 @@ class Unit:
 
     def wheel(self, radius: float, *, center, wheelbase: float | None = None) -> Any:
         """The motion of a wheel of a `radius` at `center` [3] in m; wheelbase: m, of one that steers, or None."""
-        return _core.CurveMotion(self._translation(center), self._wheels.curve(radius, y=float(center[1]), wheelbase=wheelbase))
+        return _core.CurveMotion(self._translation(center), self._wheels.curve(radius, center, wheelbase))
 
     @cached_property
     def _wheels(self) -> Wheels:
         _, turn = self._relative()
         has_headings = self._towing.trajectory._track.headings is not None
         ahead = 0.0 if has_headings else self._towing.coupling.drive_axle
-        rolling = Rolling(self._rolled, lambda times: self._moved(times)[2:], turn, ahead)
+        rolling = Rolling(self._rolled, self._moved, turn, ahead)
         return Wheels(self._towing.trajectory, rolling, self._towing.junctions)
 
     @cached_property
     def _rolled(self) -> Profile:
         """The way in m that its wheels roll: that of the point of its middle between axles that do not slip."""
-        times = self._towing._steps()
-        steps = np.diff(times)
-        first, middle, last = (self._speed(at) for at in
-                               (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps))
-        ways = np.concatenate([[0.0], np.cumsum(steps / 6.0 * (first + 4.0 * middle + last))])
-        return Profile(times, hermite_pieces(steps, ways, first, last))
+        return summed(self._towing._steps(), self._speed)
 
     def _speed(self, times):
         """m/s ahead [N] over the ground, up and down its slopes: the same for all points along the middle."""

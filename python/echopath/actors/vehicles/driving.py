@@ -39,7 +39,7 @@ class Driving:
         wheelbase: m, of a wheel that steers along a trajectory, or None
         """
         if self.trajectory is not None:
-            return _core.CurveMotion(rotation=self._wheels.curve(radius, y=float(center[1]), wheelbase=wheelbase))
+            return _core.CurveMotion(rotation=self._wheels.curve(radius, center, wheelbase))
         if self.speed == 0.0:
             return None
         return _core.LinearMotion(velocity=(self.ahead, 0.0, 0.0), angular_velocity=(0.0, self.speed / radius, 0.0))

@@ -50,14 +50,50 @@ def test_wheels_of_the_outer_side_go_farther(car):
     assert_same_angle(angle_about_y(wheel.motion.at(DRIVE.end)[:3, :3]), way / (0.632 / 2))
 
 
-def test_all_four_wheels_roll_their_own_arcs_all_along(car):
+def test_wheels_that_do_not_steer_roll_their_own_arcs_all_along(car):
     """Left and right share what is worked out of their vehicle: turned by the way less y times the yaw, at any time."""
     times = np.linspace(DRIVE.begin, DRIVE.end, 397)
     for part in car.parts:
-        if part.name.endswith("/tyre"):
-            steer = np.array([part.motion.at(time)[:3, :3] for time in times])
-            spin = np.array([about_z(-math.atan2(-one[0, 1], one[1, 1])) @ one for one in steer])
+        if part.name.startswith("wheel/rear") and part.name.endswith("/tyre"):
+            spin = np.array([part.motion.at(time)[:3, :3] for time in times])
             assert_same_angle(angle_about_y(spin), (DRIVE.distance(times) - part.position[1] * DRIVE.yaw(times)) / (0.632 / 2))
+
+
+def rolling_of(scene, name, time):
+    """(m/s by which the middle of a wheel goes where the wheel points, m/s of its tread about its axle), by its vertices."""
+    mesh, step = next(mesh.id for mesh in scene.meshes if mesh.name == name), 1e-3
+    before, now, after = (scene.world_vertices(mesh, time + shift) for shift in (-step, 0.0, step))
+    away = now - now.mean(axis=0)
+    axle = np.linalg.svd(away)[2][2]
+    axle *= np.sign(axle[1] * math.cos(DRIVE.yaw(time)) - axle[0] * math.sin(DRIVE.yaw(time)))   # to the left
+    speed = (after.mean(axis=0) - before.mean(axis=0)) / (2.0 * step)
+    turning = np.cross(away, (after - before) / (2.0 * step) - speed).sum(axis=0)
+    across = away - np.outer(away @ axle, axle)
+    radii = np.linalg.norm(across, axis=1)
+    return speed @ np.cross(axle, [0.0, 0.0, 1.0]), turning @ axle / np.sum(radii**2) * radii.max()
+
+
+@pytest.mark.parametrize("make", [ep.actors.car, ep.actors.van, ep.actors.truck])
+def test_front_wheels_roll_where_they_point(make):
+    """Into a bend, in it and out of it: a truck's go 5 % farther than its drive axle."""
+    scene = ep.Scene()
+    scene.add(make(trajectory=DRIVE), name="a")
+    for time in DRIVE.time_at(np.array([10.0, 14.0, 16.0, 21.0, 26.0, 30.0])):
+        for side in ("left", "right"):
+            ahead, turning = rolling_of(scene, f"a/wheel/front_{side}/tyre", float(time) + 0.01)
+            assert turning == pytest.approx(ahead, rel=1e-3, abs=1e-3)
+
+
+def test_front_wheels_of_what_slides_sideways_roll_where_they_point():
+    """A table of a circle whose yaw lags by 0.1 rad, so that all wheels slide outwards."""
+    angles = np.linspace(0.0, math.pi, 49)
+    circle = RADIUS * np.stack([np.sin(angles), 1.0 - np.cos(angles)], axis=-1)
+    slides = ep.Trajectory(circle, times=2.0 * angles, yaw=angles - 0.1)
+    wheel = next(part for part in ep.actors.car(trajectory=slides).parts if part.name == "wheel/front_right/rim")
+    x, y, steer, speed, turn = *wheel.position[:2], math.atan(2.637 / RADIUS), 0.5 * RADIUS, 0.5    # m, rad, m/s, rad/s
+    ahead = (speed * math.cos(0.1) - y * turn) * math.cos(steer) + (speed * math.sin(0.1) + x * turn) * math.sin(steer)
+    spins = [angle_about_y(about_z(-steer) @ wheel.motion.at(time)[:3, :3]) for time in (3.0, 3.1)]
+    assert np.angle(np.exp(1j * (spins[1] - spins[0]))) / 0.1 == pytest.approx(ahead / (0.632 / 2), rel=2e-3)
 
 
 def test_cars_of_a_kind_share_their_meshes(car):

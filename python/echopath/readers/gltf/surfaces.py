@@ -18,7 +18,7 @@ from .primitives import Primitive, Primitives
 
 JOINT_BYTES = 2000   # of a joint in memory, about
 FLATTEST = 1e-12     # height by longest edge of a triangle, below which a Mesh leaves it out
-MOST_POSES = 32      # keys of an animation at which surfaces without area are looked at again
+MOST_POSES = 32      # times of an animation at which surfaces without area are looked at again
 
 
 @dataclass(frozen=True)
@@ -86,23 +86,27 @@ class Surfaces:
         return None if mesh is None else Surface(mesh, shape, primitive)
 
     def _opened(self, primitive: Primitive, vertices: np.ndarray, deformation) -> np.ndarray:
-        """The vertices at rest, or those of the key at which the most triangles have an area.
+        """The vertices at rest, or those of a time of the animation at which the most triangles have an area.
 
         What grows out of a point or a line has no area at rest, and a Mesh made there would lose it for all times.
         """
         least = _num_flat(vertices, primitive.triangles)
-        for time in self._key_times() if least else ():
+        for time in self._times_of_poses() if least else ():
             pose = deformation.at(time)
             flat = _num_flat(pose, primitive.triangles)
             if flat < least:
                 vertices, least = pose, flat
         return vertices
 
-    def _key_times(self) -> np.ndarray:
-        """Times of the scene in s of keys of the animation, some of them where there are very many."""
+    def _times_of_poses(self) -> np.ndarray:
+        """Times of the scene in s of keys of the animation and half-way between these, some of them where there are very many.
+
+        The pose of the last key of a loop is never seen: at its time the loop begins anew.
+        """
         keys = np.unique(np.concatenate([curve.times for curve in self._animation.curves.values()] or [np.zeros(0)]))
-        chosen = np.linspace(0, len(keys) - 1, min(len(keys), MOST_POSES)).round().astype(int)
-        return keys[chosen] - self._animation.offset
+        times = np.sort(np.append(keys, 0.5 * (keys[1:] + keys[:-1])))
+        chosen = np.linspace(0, len(times) - 1, min(len(times), MOST_POSES)).round().astype(int)
+        return times[chosen] - self._animation.offset
 
     def _mesh(self, primitive: Primitive, vertices: np.ndarray):
         """The Mesh, shared by the nodes that have it as it stands in the file; None where it has no area."""

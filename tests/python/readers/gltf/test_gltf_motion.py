@@ -192,6 +192,18 @@ def test_what_rests_scaled_to_nothing_has_all_faces_once_it_grows(tmp_path, rest
     assert np.abs(vertices_at(scene, 1.5 - options.get("offset", 0.0))["box"] - wanted).max() < SINGLE
 
 
+@pytest.mark.parametrize("values, interpolation, size", [([[0, 0, 0], [2, 2, 2]], "LINEAR", 1.0),
+                                                         ([[0, 0, 0], [0, 0, 0], [4, 4, 4],
+                                                           [-4, -4, -4], [0, 0, 0], [0, 0, 0]], "CUBICSPLINE", 2.0)])
+def test_what_has_an_area_between_two_keys_of_a_loop_alone_is_kept(tmp_path, values, interpolation, size):
+    """Half-way between two keys, 2 s apart; that of the spline is an eighth of 2 s (4 + 4) / s."""
+    file = box_file(scale=[0, 0, 0])
+    file.animation((0, "scale", [0, 2], values, interpolation))
+    scene = scene_of(loaded(tmp_path, file, loop=True))
+    assert scene.num_triangles == len(BOX_SIDES)
+    assert np.abs(vertices_at(scene, 1.0)["box"] - size * BOX[:, TO_SCENE]).max() < SINGLE
+
+
 def test_a_motion_that_scales_is_refused_on_nodes():
     scale = ep.CurveMotion(scale=ep.Curve([0, 1], [[1, 1, 1], [2, 2, 2]]))
     with pytest.raises(ValueError, match="motion: must keep lengths: scales move joints of a Skin alone; node"):

@@ -89,7 +89,8 @@ class Response:
         rows = samples * np.exp(1j * np.pi * np.outer(sweeps, place ** 2))
         steps = np.arange(-self._half, self._half + 1)
         values = np.fft.fft(rows, self._n * STEPS_PER_BIN)[:, steps % (self._n * STEPS_PER_BIN)]
-        return (values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)).astype(np.complex64)
+        turned = values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)
+        return turned.astype(np.complex64, order="C")  # a look-up would copy the whole of a table in another order
 
 
 def segments_of(travel) -> np.ndarray:

@@ -30,8 +30,8 @@ class Histories:
         new = np.sort(index[self._row_of_path[index] < 0][:max(room, 0)])
         if not len(new):
             return
-        self._row_of_path[new] = len(self._fields) + np.arange(len(new))
         fields, farther, largest = _core.echo_histories(self._paths, new, self._times, chirp_times(self._paths)[1])
+        self._row_of_path[new] = len(self._fields) + np.arange(len(new))
         self._largest = _joined(self._largest, largest)
         self._fields = _joined(self._fields, fields)
         self._farther = _joined(self._farther, farther)

@@ -458,3 +458,23 @@ def test_sums_over_rows_are_those_of_their_products(count):
             _core.weighted_row_sums(table, wrong, weights)
     with pytest.raises(ValueError, match="^weights: "):
         _core.weighted_row_sums(table, rows, weights[:, :0])
+
+
+def test_paths_of_cells_can_be_asked_for_again_after_an_interruption(movers, monkeypatch):
+    """Ctrl-C while echoes are followed from chirp to chirp, as in a notebook, where the Detections go on."""
+    radar, paths, cube = movers
+    spectrum = ep.range_doppler(cube, radar)
+    cell = np.unravel_index(_core.mean_power(spectrum).argmax(), spectrum.values.shape[2:])
+    index, field = EchoFields(paths, spectrum).fields(cell)
+    again = EchoFields(paths, spectrum)
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(_core, "echo_histories", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            again.fields(cell)
+    found, made = again.fields(cell)
+    np.testing.assert_array_equal(found, index)
+    np.testing.assert_array_equal(made, field)

@@ -128,6 +128,42 @@ def test_faces_that_are_shut_in_the_first_frame_are_left_out_and_that_is_told(tm
     assert any("without area in the first frame" in note for note in model.notes) == opens
 
 
+@pytest.mark.parametrize("is_shut", [True, False])
+def test_faces_of_a_skin_that_are_shut_at_rest_are_left_out_and_that_is_told(tmp_path, is_shut):
+    """A mouth: its lower lip is a point that moves with a joint of its own, at rest on the upper one, or below it."""
+    unit = "((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))"
+    lip = "(0, 0, 0)" if is_shut else "(0, 0, -1)"
+    model, scene = loaded(tmp_path, f"""def SkelRoot "person"
+{{
+    def Skeleton "bones" ( prepend apiSchemas = ["SkelBindingAPI"] )
+    {{
+        uniform token[] joints = ["head", "jaw"]
+        uniform matrix4d[] bindTransforms = [{unit}, {unit}]
+        uniform matrix4d[] restTransforms = [{unit}, {unit}]
+        rel skel:animationSource = </person/talk>
+    }}
+    def SkelAnimation "talk"
+    {{
+        uniform token[] joints = ["head", "jaw"]
+        float3[] translations.timeSamples = {{ 0: [(0, 0, 0), (0, 0, 0)], 10: [(0, 0, 0), (0, 0, -1)] }}
+        quatf[] rotations = [(1, 0, 0, 0), (1, 0, 0, 0)]
+        half3[] scales = [(1, 1, 1), (1, 1, 1)]
+    }}
+    def Mesh "skin" ( prepend apiSchemas = ["SkelBindingAPI"] )
+    {{
+        int[] faceVertexCounts = [3, 3]
+        int[] faceVertexIndices = [0, 1, 2, 0, 1, 3]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 0, 1), {lip}]
+        int[] primvars:skel:jointIndices = [0, 0, 0, 1] ( elementSize = 1; interpolation = "vertex" )
+        float[] primvars:skel:jointWeights = [1, 1, 1, 1] ( elementSize = 1; interpolation = "vertex" )
+        rel skel:skeleton = </person/bones>
+    }}
+}}
+""")
+    assert scene.num_triangles == (1 if is_shut else 2)
+    assert any("skinned meshes without area at rest" in note for note in model.notes) == is_shut
+
+
 @pytest.mark.parametrize("kind, size", [("Sphere", "radius"), ("Cube", "size"), ("Cylinder", "height")])
 def test_a_solid_that_changes_its_size_stays_as_at_first_and_that_is_told(tmp_path, kind, size):
     text = solid(kind, **{size: 2.0})

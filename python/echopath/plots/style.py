@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import textwrap
+import unicodedata
 from contextlib import contextmanager
 from functools import cache
 from typing import TYPE_CHECKING
@@ -127,10 +128,13 @@ def to_one_scale(ax) -> None:
 
 
 def short_name(name: str) -> str:
-    """The name of an object as pictures write it: of a long one both ends, by which those of foreign files differ."""
-    if len(name) <= LONGEST_NAME:
+    """The name of an object as pictures write it: of a long one both ends, by which those of foreign files differ. Where letters
+    are twice as wide, as Chinese ones, half as many are long."""
+    is_wide = any(unicodedata.east_asian_width(letter) in "WF" for letter in name)
+    longest = LONGEST_NAME // 2 if is_wide else LONGEST_NAME
+    if len(name) <= longest:
         return name
-    return f"{name[:LONGEST_NAME // 2].rstrip()}\N{HORIZONTAL ELLIPSIS}{name[1 - LONGEST_NAME // 2:].lstrip()}"
+    return f"{name[:longest // 2].rstrip()}\N{HORIZONTAL ELLIPSIS}{name[1 - longest // 2:].lstrip()}"
 
 
 def part_colours(names) -> list:

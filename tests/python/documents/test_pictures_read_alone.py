@@ -264,6 +264,16 @@ def test_long_names_keep_both_ends_and_stand_within_the_map():
         assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
 
 
+def test_long_names_of_wide_letters_stand_within_the_map_too():
+    """A letter of Chinese is as wide as high in fonts that have it; 28 Latin ones of 0.56 of that on the mean have room."""
+    from echopath.plots.style import short_name
+
+    names = [chr(0x4e00) * 27 + ending for ending in "\u5357\u5317"]
+    assert len({short_name(name) for name in names}) == 2
+    assert all(len(short_name(name)) < 28 * 0.56 for name in names)
+    assert short_name("\u884c\u4eba") == "\u884c\u4eba"
+
+
 def test_letters_that_the_first_font_has_not_come_from_the_next(monkeypatch):
     """Fonts with Chinese letters are not on every machine; mathematical ones come with Matplotlib."""
     from matplotlib import font_manager

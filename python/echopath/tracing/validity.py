@@ -25,7 +25,7 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
     paths: of a trace, all or a selection of them, which asks about these alone
     radar: another waveform, array or motion than that of the trace, or None
     replay: of the replay that is to be certified, as in `synthesize`
-    times: [T] s, of the check, or None: as above
+    times: [T] s, of the check, one at least, or None: as above
     arrays: keep what is found of each path, [P] each; then all are looked at
     progress: callable (stage, fraction), True for bars, or None
     Returns a Validity. Raises TypeError or ValueError naming the argument, also for motions that do not cover the times,

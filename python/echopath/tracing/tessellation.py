@@ -140,10 +140,10 @@ def _measured(mesh, linear: np.ndarray | None = None) -> Tessellation | None:
 _scales_of_skins = _core.MeshTable()  # of the meshes that have one
 
 
-def _scale_of_skin(scene_mesh, nodes, moved: dict[int, np.ndarray]) -> float:
+def _scale_of_skin(scene_mesh, nodes, moved: dict[int, tuple]) -> float:
     """By how much a Skin makes a mesh larger, as in files of figures in cm; 1 without one.
 
-    moved: {id of a Skin: its vertices [V, 3]}, of those that were asked before
+    moved: {id of a Skin: (itself, so that no other one gets its id, and its vertices [V, 3])}, of those that were asked before
     """
     mesh, skin = scene_mesh.mesh, nodes[scene_mesh.node].deformation
     if not isinstance(skin, _core.Skin):
@@ -151,8 +151,8 @@ def _scale_of_skin(scene_mesh, nodes, moved: dict[int, np.ndarray]) -> float:
     scale = _scales_of_skins.get(mesh, None)
     if scale is None:
         if id(skin) not in moved:
-            moved[id(skin)] = skin.at(float(np.clip(0.0, *skin.span)))
-        corners = moved[id(skin)][mesh.original_vertex][mesh.triangles]
+            moved[id(skin)] = skin, skin.at(float(np.clip(0.0, *skin.span)))
+        corners = moved[id(skin)][1][mesh.original_vertex][mesh.triangles]
         scale = math.sqrt(areas_of(corners).sum() / mesh.area)
         _scales_of_skins.set(mesh, scale)
     return scale

@@ -76,6 +76,22 @@ def test_figures_whose_skins_scale_them_are_told_as_they_stand():
     assert told[0] == told[1] != []
 
 
+def test_each_figure_of_a_scene_has_its_own_skin():
+    """Nobody keeps the skins while they are asked, one after the other: what stands where another one stood is not that one."""
+    def figure(num_sides, scale):
+        mesh = as_mesh(icosphere(num_sides))
+        joint = ep.Joint("hip", transform=np.eye(4), inverse_bind=np.diag([1.0 / scale] * 3 + [1.0]))
+        return {"mesh_or_actor": mesh, "material": "metal", "motion": ep.Skin(mesh.vertices, [joint], np.ones((len(mesh.vertices), 1)))}
+
+    scene, alone = ep.Scene(), []
+    for k, (num_sides, scale) in enumerate([(12, 1.0), (6, 2.0), (10, 0.5), (4, 3.0), (8, 1.5)]):
+        one = ep.Scene()
+        one.add(name=f"figure {k}", **figure(num_sides, scale))
+        alone += [found.fault for found in tessellation.coarse_meshes(one, 77e9)]
+        scene.add(name=f"figure {k}", **figure(num_sides, scale))
+    assert [found.fault for found in tessellation.coarse_meshes(scene, 77e9)] == alone != []
+
+
 def with_road(mesh, side=40.0):
     """One mesh of a body and a square below it, as foreign files have them."""
     vertices = np.array([(x, y, -1.0) for x in (-side, side) for y in (-side, side)])

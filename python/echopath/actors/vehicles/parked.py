@@ -49,7 +49,7 @@ def _placed(parts, group, place, rotation):
         key = id(whole), tuple(part.position)
         if key not in wholes:
             vertices = (np.asarray(whole.vertices) + part.position) @ rotation.T + place
-            wholes[key] = _core.Mesh(vertices, whole.triangles)
-        mesh = wholes[key] if part.mesh.whole is None else wholes[key].part(part.mesh.whole_triangle)
+            wholes[key] = _core.Mesh(vertices, whole.triangles), whole  # which keeps its identity
+        mesh = wholes[key][0] if part.mesh.whole is None else wholes[key][0].part(part.mesh.whole_triangle)
         moved.append(replace(part, name=f"{group}/{part.name}", mesh=mesh, position=(0.0, 0.0, 0.0)))
     return moved

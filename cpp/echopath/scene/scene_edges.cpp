@@ -31,11 +31,13 @@ std::vector<Place> names_and_places(const Scene& scene) {
   return places;
 }
 
-// Those of the last scenes are kept, because each stage of a frame asks for them and they take long to find: they depend
+constexpr size_t kMostScenes = 4;
+
+// Seams of the last scenes are kept, because each stage of a frame asks for them and they take long to find: they depend
 // only on the meshes and on their places relative to each other.
 std::shared_ptr<const SeamedEdges> seamed_edges(const Scene& scene) {
   using Recent = RecentResults<std::vector<Place>, std::shared_ptr<const SeamedEdges>>;
-  static Recent& known = *new Recent(4);  // never destroyed: threads may outlive what is static
+  static Recent& known = *new Recent(kMostScenes);  // never destroyed: threads may outlive what is static
   return known.get(names_and_places(scene), [&] { return std::make_shared<const SeamedEdges>(scene); });
 }
 

@@ -139,8 +139,9 @@ using ComplexTable = py::array_t<std::complex<float>, py::array::c_style>;
 
 py::array row_sums_of(const ComplexTable& table, const py::array_t<int32_t, py::array::c_style>& rows,
                       const ComplexTable& weights) {
-  require(table.ndim() == 2 && weights.ndim() == 2 && table.shape(1) == weights.shape(1), "weights",
-          "must be [W, T] for a table [N, T]", weights.ndim());
+  require(table.ndim() == 2, "table", "must be [N, T]", table.ndim());
+  require(weights.ndim() == 2 && table.shape(1) == weights.shape(1), "weights", "must be [W, T] for a table [N, T]",
+          weights.ndim());
   for (const int32_t row : view(rows)) require(row >= 0 && row < table.shape(0), "rows", "must be of the table", row);
   const auto num_times = static_cast<size_t>(table.shape(1));
   return numpy_take(without_gil([&] { return weighted_row_sums(view(table), view(rows), view(weights), num_times); }),
@@ -162,8 +163,7 @@ void bind_cells(py::module_& m) {
         "Cells, peak and box of each label: list of dict or None.");
   m.def("echo_histories", &histories_of, py::arg("paths"), py::arg("index"), py::arg("times"), py::arg("middle"),
         "(fields over the largest c64 [N, T], m farther away than at `middle` f32 [N, T], largest [N] in sqrt(W)) of the "
-        "paths of "
-        "an index [N] at times [T] in s, between the first antennas.");
+        "paths of an index [N] at times [T] in s, between the first antennas.");
   m.def("weighted_row_sums", &row_sums_of, py::arg("table"), py::arg("rows"), py::arg("weights"),
         "Sums over rows [K] of a table c64 [N, T] with each of some weights c64 [W, T]: c64 [W, K].");
   m.def("share_errors", &errors_of, py::arg("cross"), py::arg("coherent"), py::arg("diffuse"), py::arg("dominant"),

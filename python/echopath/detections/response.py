@@ -10,7 +10,7 @@ STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % o
 SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; with segments, of each part
 MAX_SWEEP = 32.0       # bins
 SEGMENTS_PER_BIN = 8   # of range that an echo goes on by in the frame, straight lines between: 60 dB below the peak
-SEGMENTS = np.array([1, 5, 12, 28, 64])  # numbers of them that echoes have: one if they stay, at most the last
+MIN_SEGMENTS, MAX_SEGMENTS = 5, 64  # of echoes that do not stay
 STAYING = 1e-3         # bins, up to which an echo stays in its bin of range
 
 
@@ -94,13 +94,16 @@ class Response:
 
 
 def segments_of(travel) -> np.ndarray:
-    """Of SEGMENTS, those that echoes need that go on by so many bins of range in the frame, [N]."""
-    wanted = np.where(np.abs(travel) > STAYING, np.ceil(SEGMENTS_PER_BIN * np.abs(travel)), 0.0)
-    return SEGMENTS[np.clip(np.searchsorted(SEGMENTS, wanted), wanted > 0.0, len(SEGMENTS) - 1)]
+    """Numbers of segments, [N], of echoes that go on by so many bins of range in the frame: one of those that stay, else what
+    the fastest one needs, halved as often as leaves enough."""
+    wanted = np.clip(np.ceil(SEGMENTS_PER_BIN * np.abs(travel)), MIN_SEGMENTS, MAX_SEGMENTS)
+    most = wanted.max(initial=MIN_SEGMENTS)
+    enough = np.ceil(most / 2.0 ** np.floor(np.log2(most / wanted)))
+    return np.where(np.abs(travel) > STAYING, enough, 1.0).astype(int)
 
 
 def responses_of(window, n: int, segments, sweep, reach: float) -> dict:
-    """{segments: Response} of echoes that go on by so many of `segments_of`, [N], with a sweep in bins, [N]."""
+    """{segments: Response} of echoes that have so many (`segments_of`), [N], with a sweep in bins, [N]."""
     return {number: Response(window, n, np.abs(sweep[segments == number]).max(), min(number, max(n - 1, 1)), reach)
             for number in np.unique(segments).tolist()}
 

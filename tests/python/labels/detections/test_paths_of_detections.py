@@ -11,7 +11,7 @@ import echopath as ep
 from echopath import _core
 from echopath.detections import echo_fields
 from echopath.detections.echo_fields import EchoFields
-from echopath.detections.response import Envelope, Response
+from echopath.detections.response import Envelope, Response, segments_of
 from echopath.detections.uneven_fields import echo_fields as fields_of
 from echopath.spectra.windows import samples_of
 from support.radars import with_waveform
@@ -288,6 +288,16 @@ def test_responses_of_any_sweep_come_from_a_small_table(segments):
     assert response._table.nbytes < 20 * 2 ** 20
     error = np.abs(response(y, sweep).sum(axis=0) - terms.sum(axis=1))
     assert error.max() < NEAREST_SWEEP + TABLE
+
+
+def test_echoes_have_as_many_segments_as_their_ways_ask_for():
+    """Eight a bin, one if they stay; those of the fastest one are no more than that, of others less than twice that."""
+    travel = np.array([0.0, 5e-4, -2e-3, 0.6, -0.7, 1.3, 3.1, 5.1])
+    wanted = np.array([1, 1, 5, 5, 6, 11, 25, 41])
+    segments = segments_of(travel)
+    assert np.all(segments >= wanted) and np.all(segments <= 2 * wanted) and segments[-1] == 41
+    assert segments[:2].tolist() == [1, 1] and len(set(segments.tolist())) <= 5
+    assert segments_of(np.array([1e3, 0.0])).tolist() == [64, 1] and segments_of(np.zeros(0)).tolist() == []
 
 
 def test_detections_do_not_depend_on_the_number_of_threads(movers):

@@ -35,6 +35,13 @@ def test_no_two_meshes_share_a_colour_and_those_of_an_object_share_its_hue():
     assert np.abs(turn).max() < HUE_STEP
 
 
+def test_objects_of_one_mesh_each_have_colours_of_their_own_that_are_neither_black_nor_white_however_many_there_are():
+    colours = mesh_palette(scene_of([f"thing_{number}" for number in range(400)]))
+    assert len(np.unique(colours, axis=0)) == 400
+    lightness = np.array([colorsys.rgb_to_hls(*rgb / 255.0)[1] for rgb in colours])
+    assert 0.1 < lightness.min() and lightness.max() < 0.9
+
+
 def test_a_legend_of_many_objects_says_how_many_it_leaves_out(frame):
     session = Session(from_frame(frame))
     session.set_color_by("mesh")

@@ -56,7 +56,8 @@ def _base_colour(palette: tuple, number: int) -> tuple:
     """(hue, lightness, saturation): of the palette, turned a little for each time that it is used up."""
     hue, lightness, saturation = colorsys.rgb_to_hls(*(value / 255.0 for value in rgb_of(palette[number % len(palette)])))
     turn = number // len(palette)
-    return (hue + _ROUND_TURN * turn) % 1.0, lightness + 0.06 * (-1) ** turn * min(turn, 3), saturation
+    lightness = np.clip(lightness + 0.06 * (-1) ** turn * min(turn, 3), _DARKEST, _LIGHTEST)
+    return (hue + _ROUND_TURN * turn) % 1.0, lightness, saturation
 
 
 def _shades(base: tuple, count: int):

@@ -62,8 +62,8 @@ class Tracks:
             not there.
         """
         number = count(0)("number", number)
-        chosen = self.track == number
-        if not chosen.any():
+        chosen = np.flatnonzero(self.track == number)
+        if not len(chosen):
             raise KeyError(f"number: must be that of one of {self.num_tracks} tracks, got {number}")
         return Tracks(**{field.name: getattr(self, field.name)[chosen] for field in dataclasses.fields(self)})
 

@@ -185,7 +185,8 @@ class Truth:
         return centres[:, None] + np.einsum("nij,nkj->nki", rotations, _SIGNS * self.size[:, None])
 
     def _where(self, chosen) -> Truth:
-        return Truth(**{field: getattr(self, field)[chosen] for field in _fields()})
+        rows = np.flatnonzero(chosen)  # few of many as a rule: a mask would be gone through for each field
+        return Truth(**{field: getattr(self, field)[rows] for field in _fields()})
 
     def _columns(self) -> dict:
         """{column: values [N]} of the table."""

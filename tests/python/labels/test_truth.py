@@ -4,6 +4,7 @@ import csv
 import pickle
 import warnings
 from pathlib import Path
+from time import process_time
 
 import numpy as np
 import pytest
@@ -307,6 +308,18 @@ def test_a_walking_person_goes_at_their_speed_in_the_mean():
         found.of_object("runner")
     with pytest.raises(TypeError, match="^name: must be text"):
         found.of_object(["walker", "walker"])
+
+
+def test_a_loop_over_the_frames_of_a_long_truth_takes_a_few_times_what_their_numbers_take_to_compare():
+    records = np.repeat(ep.truth(trace(box_scene(position=(10.0, 0.0, 0.0)))).to_records(), 100_000)
+    records["frame"] = np.arange(100_000) // 50
+    long = ep.Truth.from_records(records)
+    begin = process_time()
+    compared = [np.count_nonzero(long.frame == number) for number in range(100)]
+    middle = process_time()
+    found = [len(long.of_frame(number)) for number in range(100)]
+    assert found == compared == [50] * 100
+    assert process_time() - middle < 25.0 * max(middle - begin, 1e-3)
 
 
 # --- what the radar sees ---

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <span>
 
 #include "echopath/base/errors.h"
@@ -41,6 +40,7 @@ class ValidityCheck {
     for (size_t first = 0; first < report_.times.size(); first += check_.times_at_once()) check_times_from(first);
     sum_findings();
     seen_ = find_seen_powers(paths_, radar_, check_, at_times_, job_);
+    for (const auto& [node, looks] : seen_) all_seen_ += looks.seen;
     make_objects();
     return std::move(report_);
   }
@@ -219,9 +219,7 @@ class ValidityCheck {
     const SeenPower& looks = seen_[node];
     const double fresh = std::min(looks.fresh, looks.seen);  // a part of an echo may have more power than the whole
     object.new_surface = looks.seen > 0 ? fresh / looks.seen : 0.0;
-    const double all_seen =
-        std::accumulate(seen_.begin(), seen_.end(), 0.0, [](double sum, const auto& one) { return sum + one.second.seen; });
-    report_.shares.new_surface += all_seen > 0 ? fresh / all_seen : 0.0;
+    report_.shares.new_surface += all_seen_ > 0 ? fresh / all_seen_ : 0.0;
     double replayed = 0.0, kept = 0.0, truth = 0.0;
     for (const ObjectAtTime& at : at_times_[node]) {
       BandSum left = at.replayed;
@@ -247,6 +245,7 @@ class ValidityCheck {
   std::vector<KindSums> of_object_{paths_.scene->nodes().size()};  // by node index
   ObjectsAtTimes at_times_;                                        // at the base times, for the first antennas
   std::map<size_t, SeenPower> seen_;                               // by node index
+  double all_seen_ = 0.0;                                          // W, of all of them
   Validity report_;
 };
 

@@ -169,7 +169,7 @@ class EchoFields:
         rows = self._histories.rows(echoes["index"][some])
         followed, others = np.flatnonzero(rows >= 0), np.flatnonzero(rows < 0)
         along[:, followed], onward[:, followed] = self._along_histories(rows[followed], velocity, response)
-        apart, sweep, travel = ((echoes[name][some[others]]) for name in ("velocity", "sweep", "travel"))
+        apart, sweep, travel = (echoes[name][some[others]] for name in ("velocity", "sweep", "travel"))
         along[:, others], onward[:, others] = response((velocity - apart) / pad, sweep), np.outer(response.centres, travel)
         place = (distance - echoes["range"][some]) / pad - onward
         return lambda shift: np.sum(along * self._range_response(place - shift), axis=0)

@@ -81,7 +81,8 @@ def test_each_figure_of_a_scene_has_its_own_skin():
     def figure(num_sides, scale):
         mesh = as_mesh(icosphere(num_sides))
         joint = ep.Joint("hip", transform=np.eye(4), inverse_bind=np.diag([1.0 / scale] * 3 + [1.0]))
-        return {"mesh_or_actor": mesh, "material": "metal", "motion": ep.Skin(mesh.vertices, [joint], np.ones((len(mesh.vertices), 1)))}
+        skin = ep.Skin(mesh.vertices, [joint], np.ones((len(mesh.vertices), 1)))
+        return {"mesh_or_actor": mesh, "material": "metal", "motion": skin}
 
     scene, alone = ep.Scene(), []
     for k, (num_sides, scale) in enumerate([(12, 1.0), (6, 2.0), (10, 0.5), (4, 3.0), (8, 1.5)]):

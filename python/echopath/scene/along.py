@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
+from ..base.classes.made_once import MadeOnce
 from ..readers.loops import JUMPS, all_moving, poses_of_loop
 from ..readers.model import Model
 from ..readers.played import PlayedCurve
@@ -65,18 +66,13 @@ class _Player:
 
     def __init__(self, trajectory, period: float, way: float):
         self._trajectory, self._period, self._way = trajectory, period, way
-        self._made: dict[int, tuple] = {}
+        self._made = MadeOnce()
 
     def motion(self, motion):
-        return None if motion is None else self._once(motion, self._motion)
+        return None if motion is None else self._made.of(motion, self._motion)
 
     def deformation(self, deformation):
-        return None if deformation is None else self._once(deformation, self._deformation)
-
-    def _once(self, given, make):
-        if id(given) not in self._made:
-            self._made[id(given)] = given, make(given)
-        return self._made[id(given)][1]
+        return None if deformation is None else self._made.of(deformation, self._deformation)
 
     def _motion(self, motion):
         return _core.CurveMotion(self._curve(motion.translation), self._curve(motion.rotation, True), self._curve(motion.scale))

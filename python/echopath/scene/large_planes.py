@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import an, checked, real
+from ..base.classes.made_once import MadeOnce
 from ..base.text.node_names import unique
 from .scene import Scene, changed_scene
 
@@ -42,7 +43,7 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     with scene._edit():
         found = _found(scene, radar, time)
         names = tuple(_core.mesh_names(scene, [mesh_id for mesh_id, _ in found]))
-        cuts, taken = {}, dict.fromkeys(scene, 1)
+        cuts, taken = MadeOnce(), dict.fromkeys(scene, 1)
         for name, (_, small) in zip(names, found):
             if small:
                 _cut(scene, name, np.array(small), cuts, taken)
@@ -51,19 +52,20 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     return names
 
 
-def _cut(scene, name: str, small: np.ndarray, cuts: dict, taken: dict[str, int]) -> None:
+def _cut(scene, name: str, small: np.ndarray, cuts: MadeOnce, taken: dict[str, int]) -> None:
     """Moves triangles of a node's mesh into a mesh below it.
 
     cuts: the two parts of each mesh that was cut before; taken: full names, of `unique`
     """
+    def parts_of(mesh):
+        is_small = np.isin(np.arange(len(mesh.triangles)), small)
+        return mesh.part(~is_small), mesh.part(is_small)
+
     node = scene[name]._node
-    key = (id(node.mesh), small.tobytes())
-    if key not in cuts:
-        is_small = np.isin(np.arange(len(node.mesh.triangles)), small)
-        cuts[key] = node.mesh.part(~is_small), node.mesh.part(is_small), node.mesh  # the last keeps its identity
-    scene[name]._change(mesh=cuts[key][0])
+    large_part, small_part = cuts.of(node.mesh, parts_of, small.tobytes())
+    scene[name]._change(mesh=large_part)
     own_name = unique(f"{name}/{SMALL_PLANES}", taken).rpartition("/")[2]
-    below = scene.add(cuts[key][1], name=own_name, parent=name, material=node.material)
+    below = scene.add(small_part, name=own_name, parent=name, material=node.material)
     scene[below]._change(material_name=node.material_name)
 
 

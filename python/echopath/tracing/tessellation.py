@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from .. import _core
+from ..base.classes.made_once import MadeOnce
 from ..base.numerics.triangles import areas_of
 from ..base.process.callers import warn_user
 from ..base.text.lengths import length_text
@@ -105,7 +106,7 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
     asked = _core.coherent_meshes(scene, wavelength, COHERENT_SHARE, without_planes=True)
     if not asked:
         return []
-    nodes, meshes, found, moved = scene.nodes, scene.meshes, [], {}
+    nodes, meshes, found, moved = scene.nodes, scene.meshes, [], MadeOnce()
     world_from_node = linear_maps(nodes)[[meshes[mesh_id].node for mesh_id in asked]]
     stretches = np.linalg.svd(world_from_node, compute_uv=False)
     for mesh_id, linear, stretch in zip(asked, world_from_node, stretches):
@@ -140,19 +141,18 @@ def _measured(mesh, linear: np.ndarray | None = None) -> Tessellation | None:
 _scales_of_skins = _core.MeshTable()  # of the meshes that have one
 
 
-def _scale_of_skin(scene_mesh, nodes, moved: dict[int, tuple]) -> float:
+def _scale_of_skin(scene_mesh, nodes, moved: MadeOnce) -> float:
     """By how much a Skin makes a mesh larger, as in files of figures in cm; 1 without one.
 
-    moved: {id of a Skin: (itself, so that no other one gets its id, and its vertices [V, 3])}, of those that were asked before
+    moved: keeps the vertices [V, 3] of the skins that were asked before
     """
     mesh, skin = scene_mesh.mesh, nodes[scene_mesh.node].deformation
     if not isinstance(skin, _core.Skin):
         return 1.0
     scale = _scales_of_skins.get(mesh, None)
     if scale is None:
-        if id(skin) not in moved:
-            moved[id(skin)] = skin, skin.at(float(np.clip(0.0, *skin.span)))
-        corners = moved[id(skin)][1][mesh.original_vertex][mesh.triangles]
+        vertices = moved.of(skin, lambda skin: skin.at(float(np.clip(0.0, *skin.span))))
+        corners = vertices[mesh.original_vertex][mesh.triangles]
         scale = math.sqrt(areas_of(corners).sum() / mesh.area)
         _scales_of_skins.set(mesh, scale)
     return scale

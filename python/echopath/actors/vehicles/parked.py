@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from ... import _core
 from ...arguments.checks import checked, count, real, seed as seed_rule
+from ...base.classes.made_once import MadeOnce
 from ..actor import Actor
 from ..limits import LONGEST_ROW
 from .cars import CARS, car
@@ -43,13 +45,13 @@ def _about_z(angle, sign):
 
 def _placed(parts, group, place, rotation):
     """Parts at rest at another place; those of one surface stay parts of one."""
-    wholes, moved = {}, []
+    def placed(mesh, position):
+        return _core.Mesh((np.asarray(mesh.vertices) + position) @ rotation.T + place, mesh.triangles)
+
+    wholes, moved = MadeOnce(), []
     for part in parts:
-        whole = part.mesh.whole or part.mesh
-        key = id(whole), tuple(part.position)
-        if key not in wholes:
-            vertices = (np.asarray(whole.vertices) + part.position) @ rotation.T + place
-            wholes[key] = _core.Mesh(vertices, whole.triangles), whole  # which keeps its identity
-        mesh = wholes[key][0] if part.mesh.whole is None else wholes[key][0].part(part.mesh.whole_triangle)
+        mesh = wholes.of(part.mesh.whole or part.mesh, partial(placed, position=part.position), tuple(part.position))
+        if part.mesh.whole is not None:
+            mesh = mesh.part(part.mesh.whole_triangle)
         moved.append(replace(part, name=f"{group}/{part.name}", mesh=mesh, position=(0.0, 0.0, 0.0)))
     return moved

@@ -7,7 +7,8 @@ import signal
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
@@ -61,18 +62,20 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
     """
     context = multiprocessing.get_context("spawn")
     threads = max(1, (os.cpu_count() or 1) // count)
-    sayings = context.SimpleQueue()  # warnings, and the ep.FileError of a file that cannot be written
+    listener = _Listener()
 
     def start(index: int) -> Any:
-        args = (str(path), str(folder), turned(scenes, index, count), run, threads, sayings, os.getpid())
+        said, saying = context.Pipe(duplex=False)
+        args = (str(path), str(folder), turned(scenes, index, count), run, threads, saying, os.getpid())
         process = context.Process(target=_work, args=args, daemon=True)
-        with _libraries_take(threads):
+        with saying, _libraries_take(threads):
             process.start()
+        listener.hear(said)
         return process
 
     processes = [start(index) for index in range(count)]
     try:
-        yield from _watched(folder, scenes, processes, start, _Listener(sayings))
+        yield from _watched(folder, scenes, processes, start, listener)
     finally:
         for process in processes:
             process.terminate()
@@ -94,25 +97,42 @@ def _libraries_take(threads: int) -> Iterator[None]:
 
 
 class _Listener:
-    """Repeats what workers say: warnings once for each text, and errors. have_begun: whether any has said (None) that it works"""
+    """Repeats what workers say: warnings once for each text, and errors. have_begun: whether any has said (None) that it works
 
-    def __init__(self, sayings: Any):
-        self._sayings = sayings
+    Each worker has a pipe of its own. One queue for all has locks: a worker that is killed while it speaks would hold them for
+    ever, and named semaphores of killed processes stay in the system.
+    """
+
+    def __init__(self) -> None:
+        self._pipes: list[Connection] = []
         self._heard: set[str] = set()
         self.have_begun = False
 
+    def hear(self, pipe: Connection) -> None:
+        """Repeats from now on what comes through the pipe, too."""
+        self._pipes.append(pipe)
+
     def repeat(self) -> None:
         """Repeats all that has been said since."""
-        while not self._sayings.empty():
-            said = self._sayings.get()
-            self.have_begun = True
-            if said is None:
-                continue
-            if not isinstance(said, Warning):
-                raise said
-            if str(said) not in self._heard:
-                self._heard.add(str(said))
-                warn_user(str(said), type(said))
+        while ready := wait(self._pipes, timeout=0):
+            for pipe in ready:
+                self._repeat_next(pipe)
+
+    def _repeat_next(self, pipe: Any) -> None:
+        try:
+            said = pipe.recv()
+        except (EOFError, OSError):  # its worker has ended, or was killed within a word
+            self._pipes.remove(pipe)
+            pipe.close()
+            return
+        self.have_begun = True
+        if said is None:
+            return
+        if not isinstance(said, Warning):
+            raise said
+        if str(said) not in self._heard:
+            self._heard.add(str(said))
+            warn_user(str(said), type(said))
 
 
 def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: Callable[[int], Any],
@@ -141,19 +161,24 @@ def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: C
     listener.repeat()
 
 
-def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, sayings: Any,
+def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, saying: Connection,
           parent: int) -> None:
+    def say(what: Warning | _core.FileError | None) -> None:
+        """What stands here: a warning, the error of a file that cannot be written, or None, that it works."""
+        with suppress(BrokenPipeError):  # the command was killed
+            saying.send(what)
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     set_num_threads(threads)
-    sayings.put(None)
-    warnings.showwarning = lambda message, *place: sayings.put(message)
+    say(None)
+    warnings.showwarning = lambda message, *place: say(message)
     try:
         for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):
             if os.getppid() != parent:  # the command was killed
                 return
     except _core.FileError as error:
-        sayings.put(error)
+        say(error)
 
 
 def forget(folder: Path, scenes: Sequence[int]) -> None:

@@ -15,7 +15,7 @@ from support.files.small_dataset import bytes_of, make
 
 def command(path: Path, folder: Path, *options: str) -> subprocess.Popen:
     return subprocess.Popen([sys.executable, "-m", "echopath", "dataset", path, "--out", folder, *options],
-                            stdout=subprocess.PIPE, text=True, start_new_session=True)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])
@@ -30,6 +30,16 @@ def test_a_killed_command_is_gone_on_with(small_dataset, tmp_path, capsys, worke
     assert main(["dataset", str(path), "--out", str(tmp_path), "--workers", "1"]) == 0
     assert "6 scenes" in capsys.readouterr().out
     assert bytes_of(tmp_path) == bytes_of(folder)
+
+
+def test_workers_of_a_killed_command_end_in_silence(small_dataset, tmp_path):
+    """With a word neither of a pipe that nobody reads nor of semaphores that nobody removes."""
+    killed = command(small_dataset[0], tmp_path, "--workers", "2")
+    killed.stdout.readline()
+    while killed.poll() is None and not any(tmp_path.rglob(".begun")):
+        time.sleep(0.01)
+    killed.kill()
+    assert killed.communicate(timeout=120)[1] == ""
 
 
 def test_a_worker_that_is_killed_is_replaced(small_dataset, monkeypatch, tmp_path):
@@ -120,4 +130,4 @@ def test_a_script_that_each_worker_would_run_anew_is_told_so_at_once(small_datas
     script.write_text("import sys\nfrom echopath import dataset\nlist(dataset.make(sys.argv[1], sys.argv[2], workers=2))\n")
     done = subprocess.run([sys.executable, script, small_dataset[0], tmp_path / "out"], capture_output=True, text=True)
     assert done.stderr.splitlines()[-1].startswith("ChildProcessError: workers: end before they begin, as each reads the script")
-    assert done.stderr.count("Traceback") <= 3
+    assert done.stderr.count("Traceback") <= 3 and "semaphore" not in done.stderr

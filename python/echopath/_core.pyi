@@ -1080,11 +1080,11 @@ class Skin(Deformation):
         """
 class ChirpSequence:
     """
-    A frame of linear up-chirps.
+    A frame of linear chirps, which rise or fall.
 
     start_frequency: Hz, at the first sample
-    bandwidth: Hz, swept by the samples of a chirp
-    num_samples: of a chirp; 1: a radar that tells no ranges apart, whose one cell, c / (2 bandwidth), is as far as it hears
+    bandwidth: Hz, swept by the samples of a chirp; negative where chirps fall, from start_frequency down
+    num_samples: of a chirp; 1: a radar that tells no ranges apart, whose one cell, c / (2 |bandwidth|), is as far as it hears
     sampling_rate: Hz
     num_chirps: per transmitter
     chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
@@ -1092,7 +1092,8 @@ class ChirpSequence:
     extra_idle: s, 0 or more, by which the slot after this one begins later: slot i takes entry i modulo their number (staggered
         pulse repetition); () for none
     frequency_steps: Hz added to the start frequency of a slot, likewise (frequency hopping)
-    bandwidth_steps: Hz added to the bandwidth of a slot, likewise; maps keep the axes of the waveform without steps
+    bandwidth_steps: Hz added to the bandwidth of a slot, likewise; all rise or all fall, and maps keep the axes of the waveform
+        without steps
     Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
     bandwidth above start_frequency or below 5 kHz and of a chirp_interval above 1 s, which look like other units.
     """
@@ -1140,7 +1141,7 @@ class ChirpSequence:
     @property
     def bandwidth(self) -> float:
         """
-        Hz, sampled
+        Hz, sampled, negative where chirps fall
         """
     @property
     def bandwidth_steps(self) -> tuple[float, ...]:
@@ -1166,6 +1167,11 @@ class ChirpSequence:
     def extra_idle(self) -> tuple[float, ...]:
         """
         s, after each slot, repeated
+        """
+    @property
+    def falls(self) -> bool:
+        """
+        whether chirps fall, with a negative bandwidth
         """
     @property
     def frequency_steps(self) -> tuple[float, ...]:
@@ -1195,7 +1201,7 @@ class ChirpSequence:
     @property
     def range_resolution(self) -> float:
         """
-        m, c / (2 bandwidth)
+        m, c / (2 |bandwidth|)
         """
     @property
     def real(self) -> bool:
@@ -1210,7 +1216,7 @@ class ChirpSequence:
     @property
     def slope(self) -> float:
         """
-        Hz/s
+        Hz/s, negative where chirps fall
         """
     @property
     def start_frequency(self) -> float:

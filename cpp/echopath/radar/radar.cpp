@@ -94,8 +94,9 @@ double power_of(double base, double exponent) {
 
 void ChirpSequence::validate() const {
   require_positive(start_frequency, "start_frequency");
-  require(std::isfinite(bandwidth) && bandwidth > 0.0, "bandwidth", "must be finite and positive, for chirps go up",
+  require(std::isfinite(bandwidth) && bandwidth != 0.0, "bandwidth", "must be finite and not 0, negative where chirps fall",
           bandwidth);
+  require(start_frequency + bandwidth > 0.0, "bandwidth", "must leave positive frequencies where chirps fall", bandwidth);
   require(num_samples >= 1, "num_samples", "must be at least 1", num_samples);
   require_positive(sampling_rate, "sampling_rate");
   require(num_chirps >= 1, "num_chirps", "must be at least 1", num_chirps);
@@ -106,8 +107,11 @@ void ChirpSequence::validate() const {
           chirp_interval);
   validate_list(extra_idle, "extra_idle", -std::numeric_limits<double>::min(), "must be finite and not negative");
   validate_list(frequency_steps, "frequency_steps", -start_frequency, "must be finite and leave a positive start_frequency");
-  validate_list(bandwidth_steps, "bandwidth_steps", -bandwidth,
-                "must be finite and leave a positive bandwidth, for chirps go up");
+  for (const double step : bandwidth_steps) {
+    require(std::isfinite(step) && (bandwidth + step) * bandwidth > 0.0, "bandwidth_steps",
+            "must be finite and leave chirps that all rise or all fall", step);
+  }
+  require(band().lowest > 0.0, "bandwidth", "must leave positive frequencies where chirps fall", bandwidth);
 }
 
 double ChirpSequence::wavelength() const { return kSpeedOfLight / centre_frequency(); }
@@ -118,15 +122,17 @@ FrequencyBand ChirpSequence::band() const {
   const std::vector<double>& widths = bandwidth_steps.empty() ? no_steps : bandwidth_steps;
   // Of two lists that repeat, those steps meet in a chirp whose places agree modulo the lengths' greatest common divisor.
   const size_t stride = std::gcd(starts.size(), widths.size());
-  const auto largest = [stride](const std::vector<double>& steps, size_t first) {
-    double out = steps[first];
-    for (size_t i = first; i < steps.size(); i += stride) out = std::max(out, steps[i]);
+  const double upward = falls() ? -1.0 : 1.0;
+  const auto farthest = [&](const std::vector<double>& steps, size_t first) {
+    double out = upward * steps[first];
+    for (size_t i = first; i < steps.size(); i += stride) out = std::max(out, upward * steps[i]);
     return out;
   };
-  double highest = largest(starts, 0) + largest(widths, 0);
-  for (size_t first = 1; first < stride; ++first)
-    highest = std::max(highest, largest(starts, first) + largest(widths, first));
-  return {start_frequency + std::ranges::min(starts), start_frequency + bandwidth + highest};
+  double last = farthest(starts, 0) + farthest(widths, 0);
+  for (size_t first = 1; first < stride; ++first) last = std::max(last, farthest(starts, first) + farthest(widths, first));
+  const double end = start_frequency + bandwidth + upward * last;
+  if (falls()) return {end, start_frequency + std::ranges::max(starts)};
+  return {start_frequency + std::ranges::min(starts), end};
 }
 
 double ChirpSequence::mean_interval() const {
@@ -144,7 +150,7 @@ double ChirpSequence::slot_start(int64_t slot) const {
          sum_of(extra_idle, static_cast<size_t>(slot % length));
 }
 
-double ChirpSequence::range_resolution() const { return kSpeedOfLight / (2.0 * bandwidth); }
+double ChirpSequence::range_resolution() const { return kSpeedOfLight / (2.0 * std::abs(bandwidth)); }
 
 double ChirpSequence::max_range() const { return (real ? 0.5 : 1.0) * num_samples * range_resolution(); }
 

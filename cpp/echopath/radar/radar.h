@@ -11,12 +11,12 @@
 
 namespace echopath {
 
-// Describes a frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep. The slots of a frame, one chirp
-// each, may differ: slot i takes entry i modulo the length of each of the three last lists, which are empty where all are
-// alike.
+// Describes a frame of linear chirps, which rise or fall. `bandwidth` is what the num_samples samples sweep, below 0 where
+// chirps fall. The slots of a frame, one chirp each, may differ: slot i takes entry i modulo the length of each of the three
+// last lists, which are empty where all are alike.
 struct ChirpSequence {
   double start_frequency = 77e9;             // Hz, at the first sample
-  double bandwidth = 1e9;                    // Hz, sampled
+  double bandwidth = 1e9;                    // Hz, sampled, < 0 of chirps that fall
   int num_samples = 512;                     // per chirp
   double sampling_rate = 20e6;               // Hz
   int num_chirps = 128;                      // per transmitter
@@ -27,7 +27,8 @@ struct ChirpSequence {
   std::vector<double> bandwidth_steps = {};  // Hz, added to the bandwidth
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
-  double slope() const { return bandwidth * sampling_rate / num_samples; }          // Hz/s
+  bool falls() const { return bandwidth < 0.0; }
+  double slope() const { return bandwidth * sampling_rate / num_samples; }          // Hz/s, < 0 of chirps that fall
   double chirp_duration() const { return num_samples / sampling_rate; }             // s, sampled
   double window_centre() const { return 0.5 * (num_samples - 1) / sampling_rate; }  // s after the first sample
   double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }     // Hz
@@ -35,8 +36,8 @@ struct ChirpSequence {
   double wavelength() const;                                                        // m, at the centre frequency
   double mean_interval() const;                                                     // s, between neighbouring slots
   double slot_start(int64_t slot) const;                                            // s after the first slot's
-  double range_resolution() const;                                                  // m, c / 2B
-  double max_range() const;                                                         // m, c fs / (2 slope), half if real
+  double range_resolution() const;                                                  // m, c / 2 |B|
+  double max_range() const;                                                         // m, c fs / (2 |slope|), half if real
   double velocity_resolution(int num_slots) const;                                  // m/s
   double max_velocity(int num_slots) const;                                         // m/s, unambiguous within +-
 };

@@ -1,5 +1,6 @@
 // The part of the synthesizer that adds echoes to the rows of their channels.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "echopath/base/threads/parallel.h"
@@ -161,7 +162,7 @@ void Synthesizer::add_to_bands(const TimeSampling& sampling, int channel, Range 
 }
 
 // Returns the delay of the last cell.
-double Synthesizer::longest_delay() const { return waveform_.sampling_rate / waveform_.slope(); }
+double Synthesizer::longest_delay() const { return waveform_.sampling_rate / std::abs(waveform_.slope()); }
 
 void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const {
   const int64_t stride = row_size(true);

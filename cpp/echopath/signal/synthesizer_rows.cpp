@@ -155,6 +155,9 @@ void Synthesizer::write_channel(int channel, int group, std::complex<double>* ou
 
 void Synthesizer::write_row(const double* row, bool moving, std::complex<double>* out) const {
   (moving && sample_rows_ ? sample_rows_ : tones_)->samples(row, out);
+  if (waveform_.falls()) {
+    for (int n = 0; n < waveform_.num_samples; ++n) out[n] = std::conj(out[n]);
+  }
   if (!waveform_.real) return;
   for (int n = 0; n < waveform_.num_samples; ++n) out[n] = {std::numbers::sqrt2 * out[n].real(), 0.0};
 }

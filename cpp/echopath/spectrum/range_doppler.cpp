@@ -1,6 +1,7 @@
 #include "echopath/spectrum/range_doppler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -28,13 +29,12 @@ void transform_row(const Fft& fft, const Taper& taper, const std::complex<double
 
 // Transforms [rows, samples] to [rows, range].
 std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows, const Taper& taper,
-                                                  int fft_size, int64_t num_ranges, Job* job) {
-  const Fft fft(fft_size, FftDirection::kForward);
+                                                  const Fft& fft, int64_t num_ranges, Job* job) {
   const int64_t num_samples = std::ssize(taper);
   std::vector<std::complex<double>> profiles(num_rows * num_ranges);
   parallel_for(num_rows, [&](int64_t row) {
     if (job) job->throw_if_cancelled();
-    FftBuffer buffer(fft_size);
+    FftBuffer buffer(fft.size());
     transform_row(fft, taper, cube + row * num_samples, num_ranges, buffer, profiles.data() + row * num_ranges);
   });
   return profiles;
@@ -80,7 +80,7 @@ std::vector<std::complex<double>> doppler_transform(const std::vector<std::compl
 
 std::vector<double> range_axis(const ChirpSequence& waveform, int num_bins) {
   require(num_bins >= 1, "num_bins", "must be at least 1", num_bins);
-  const double step = kSpeedOfLight * waveform.sampling_rate / (2.0 * waveform.slope() * num_bins);
+  const double step = kSpeedOfLight * waveform.sampling_rate / (2.0 * std::abs(waveform.slope()) * num_bins);
   std::vector<double> range(waveform.real ? (num_bins + 1) / 2 : num_bins);
   for (size_t i = 0; i < range.size(); ++i) range[i] = static_cast<double>(i) * step;
   return range;
@@ -105,6 +105,11 @@ void check_map(const Radar& radar, int zero_pad) {
           longest);
 }
 
+// Echoes of chirps that fall have negative beat frequencies, -n / N in cell n.
+Fft range_fft_of(const ChirpSequence& waveform, int size) {
+  return Fft(size, waveform.falls() ? FftDirection::kBackward : FftDirection::kForward);
+}
+
 // A real sample sqrt(2) Re s carries s / sqrt(2) at the positive frequencies.
 Taper range_taper_of(const ChirpSequence& waveform, const Window& window) {
   return unit_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
@@ -125,7 +130,7 @@ MapTransform::MapTransform(const Radar& radar, const MapWindows& window, int zer
   const int range_size = waveform.num_samples * zero_pad;
   Plan plan{range_taper_of(waveform, window.range),
             unit_taper(window.velocity, waveform.num_chirps),
-            Fft(range_size, FftDirection::kForward),
+            range_fft_of(waveform, range_size),
             Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
             static_cast<int64_t>(range_axis(waveform, range_size).size()),
             {}};
@@ -192,7 +197,8 @@ RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const 
   const int64_t num_ranges = std::ssize(map.range);
   const Taper range_taper = range_taper_of(waveform, window.range);
   const Taper doppler_taper = unit_taper(window.velocity, waveform.num_chirps);
-  const auto profiles = range_transform(cube.data(), num_rows, range_taper, range_size, num_ranges, job);
+  const Fft range_fft = range_fft_of(waveform, range_size);
+  const auto profiles = range_transform(cube.data(), num_rows, range_taper, range_fft, num_ranges, job);
   map.values = doppler_transform(profiles, num_maps, doppler_taper, doppler_size, num_ranges, job);
   return map;
 }

@@ -1,5 +1,6 @@
 #include "call/plausible.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "call/warn.h"
@@ -24,7 +25,7 @@ void warn(const Words&... words) {
 }
 
 void require_below_infrared(const ChirpSequence& waveform, double step, const char* argument, double value) {
-  require(waveform.start_frequency + waveform.bandwidth + step <= kHighestFrequency, argument,
+  require(waveform.start_frequency + std::max(waveform.bandwidth, 0.0) + step <= kHighestFrequency, argument,
           "must leave frequencies up to 1e14 Hz (1 GHz is 1e9)", value);
 }
 
@@ -36,7 +37,9 @@ void require_plausible(const ChirpSequence& waveform) {
   require(waveform.start_frequency <= kHighestFrequency, "start_frequency", "must be at most 1e14 Hz (77 GHz are 77e9)",
           waveform.start_frequency);
   require_below_infrared(waveform, 0.0, "bandwidth", waveform.bandwidth);
-  require(waveform.bandwidth >= kLeastBandwidth, "bandwidth", "must be at least 1e-3 Hz (1 GHz is 1e9)", waveform.bandwidth);
+  const double width = std::abs(waveform.bandwidth);
+  require(width >= kLeastBandwidth, "bandwidth",
+          "must be at least 1e-3 Hz (1 GHz is 1e9), or at most -1e-3 Hz of chirps that fall", waveform.bandwidth);
   require(waveform.sampling_rate <= kHighestFrequency, "sampling_rate", "must be at most 1e14 Hz (20 MHz are 20e6)",
           waveform.sampling_rate);
   require(waveform.chirp_interval <= kLargestInterval, "chirp_interval", "must be at most 1e6 s (60 us are 60e-6)",
@@ -50,11 +53,13 @@ void require_plausible(const ChirpSequence& waveform) {
     require_below_infrared(waveform, step, "frequency_steps", step);
   }
   for (const double step : waveform.bandwidth_steps) require_below_infrared(waveform, step, "bandwidth_steps", step);
-  if (waveform.bandwidth > waveform.start_frequency) {
+  require(waveform.band().lowest >= kLowestFrequency, "bandwidth", "must leave frequencies from 1e6 Hz on where chirps fall",
+          waveform.bandwidth);
+  if (width > waveform.start_frequency) {
     warn("bandwidth: ", waveform.bandwidth, " Hz is more than start_frequency, ", waveform.start_frequency,
          " Hz; are both in Hz?");
   }
-  if (waveform.bandwidth < kNarrowest) {
+  if (width < kNarrowest) {
     warn("bandwidth: ", waveform.bandwidth, " Hz makes range cells of ", waveform.range_resolution() * 1e-3,
          " km; is it in Hz (1 GHz is 1e9)?");
   }

@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <string>
 
 #include "call/argument.h"
@@ -16,7 +17,7 @@ namespace {
 
 using WaveformKeywords = ListOfKeywords<
     ChirpSequence, Keyword<"start_frequency", &ChirpSequence::start_frequency, Real, "Hz, at the first sample">,
-    Keyword<"bandwidth", &ChirpSequence::bandwidth, Real, "Hz, sampled">,
+    Keyword<"bandwidth", &ChirpSequence::bandwidth, Real, "Hz, sampled, negative where chirps fall">,
     Keyword<"num_samples", &ChirpSequence::num_samples, Positive, "of a chirp">,
     Keyword<"sampling_rate", &ChirpSequence::sampling_rate, Real, "Hz">,
     Keyword<"num_chirps", &ChirpSequence::num_chirps, Positive, "per transmitter">,
@@ -39,7 +40,8 @@ double max_velocity(const ChirpSequence& self, Arg<"num_slots", Positive> num_sl
 
 std::string text_of(const ChirpSequence& w) {
   return streamed(
-      "ChirpSequence(", w.start_frequency * 1e-9, " GHz + ", w.bandwidth * 1e-9, " GHz, ", w.num_samples,
+      "ChirpSequence(", w.start_frequency * 1e-9, w.falls() ? " GHz - " : " GHz + ", std::abs(w.bandwidth) * 1e-9, " GHz, ",
+      w.num_samples,
       (w.real ? " real" : " complex"), " samples at ", w.sampling_rate * 1e-6, " MHz, ", counted(w.num_chirps, "chirp"),
       " every ", w.chirp_interval * 1e6, " us",
       (w.extra_idle.empty() && w.frequency_steps.empty() && w.bandwidth_steps.empty() ? ")" : ", slots differ)"));
@@ -48,11 +50,11 @@ std::string text_of(const ChirpSequence& w) {
 }  // namespace
 
 void bind_waveform(py::module_& m) {
-  py::class_<ChirpSequence> type(m, "ChirpSequence", R"(A frame of linear up-chirps.
+  py::class_<ChirpSequence> type(m, "ChirpSequence", R"(A frame of linear chirps, which rise or fall.
 
 start_frequency: Hz, at the first sample
-bandwidth: Hz, swept by the samples of a chirp
-num_samples: of a chirp; 1: a radar that tells no ranges apart, whose one cell, c / (2 bandwidth), is as far as it hears
+bandwidth: Hz, swept by the samples of a chirp; negative where chirps fall, from start_frequency down
+num_samples: of a chirp; 1: a radar that tells no ranges apart, whose one cell, c / (2 |bandwidth|), is as far as it hears
 sampling_rate: Hz
 num_chirps: per transmitter
 chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
@@ -60,7 +62,8 @@ real: real IF samples instead of complex ones
 extra_idle: s, 0 or more, by which the slot after this one begins later: slot i takes entry i modulo their number (staggered
     pulse repetition); () for none
 frequency_steps: Hz added to the start frequency of a slot, likewise (frequency hopping)
-bandwidth_steps: Hz added to the bandwidth of a slot, likewise; maps keep the axes of the waveform without steps
+bandwidth_steps: Hz added to the bandwidth of a slot, likewise; all rise or all fall, and maps keep the axes of the waveform
+    without steps
 Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
 bandwidth above start_frequency or below 5 kHz and of a chirp_interval above 1 s, which look like other units.)");
   define_members(type, WaveformKeywords{}, [](const ChirpSequence& made) {
@@ -68,7 +71,8 @@ bandwidth above start_frequency or below 5 kHz and of a chirp_interval above 1 s
     require_plausible(made);
   });
   type.def_property_readonly("mean_interval", &ChirpSequence::mean_interval, "s, between neighbouring slots in the mean")
-      .def_property_readonly("slope", &ChirpSequence::slope, "Hz/s")
+      .def_property_readonly("falls", &ChirpSequence::falls, "whether chirps fall, with a negative bandwidth")
+      .def_property_readonly("slope", &ChirpSequence::slope, "Hz/s, negative where chirps fall")
       .def_property_readonly("chirp_duration", &ChirpSequence::chirp_duration, "s, sampled")
       .def_property_readonly("window_centre", &ChirpSequence::window_centre, "s from the first sample to the middle")
       .def_property_readonly("centre_frequency", &ChirpSequence::centre_frequency, "Hz")
@@ -80,7 +84,7 @@ bandwidth above start_frequency or below 5 kHz and of a chirp_interval above 1 s
           },
           "(lowest, highest) Hz, of all chirps with their steps")
       .def_property_readonly("wavelength", &ChirpSequence::wavelength, "m, at the centre frequency")
-      .def_property_readonly("range_resolution", &ChirpSequence::range_resolution, "m, c / (2 bandwidth)")
+      .def_property_readonly("range_resolution", &ChirpSequence::range_resolution, "m, c / (2 |bandwidth|)")
       .def_property_readonly("max_range", &ChirpSequence::max_range, "m, unambiguous")
       .def("__repr__", [](const ChirpSequence& self) { return text_of(self); });
   define(type, "slot_start", &slot_start, py::arg("slot"), R"(When a slot begins.

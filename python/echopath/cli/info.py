@@ -11,6 +11,7 @@ import echopath as ep
 from .. import dataset
 from ..arguments.names import first_names
 from ..base.numerics.decibels import in_dbm
+from ..base.radar.sweep import sweep_text
 from ..base.text.counts import counted
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
@@ -214,7 +215,7 @@ def _describe_radar(radar, start_time: float) -> list[str]:
             report.line("multiplexing", radar.multiplexing), report.line("receiver", receiver_text(radar)),
             *_describe_converter(radar), *_describe_array(ep.virtual_array(radar)),
             report.line("place", _place(radar, radar.middle_of_frame(start_time))),
-            report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
+            report.line("frequency", sweep_text(waveform)),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
                         f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
             report.line("range", f"to {waveform.max_range:.2f} m, resolution {waveform.range_resolution:.3f} m"),
@@ -236,9 +237,9 @@ def _describe_interferers(scene, radar, start_time: float) -> list[str]:
         longest = min(waveform.chirp_duration, radar.waveform.chirp_duration)
         crossing = min(longest, radar.waveform.sampling_rate / difference) if difference > 0.0 else longest
         pause = "" if one.interval is None else f", a frame each {one.interval * 1e3:g} ms"
-        found += report.wrapped(f"interferers[{index}]", f"{place}; {waveform.start_frequency / 1e9:g} GHz + "
-                                f"{waveform.bandwidth / 1e9:g} GHz in {waveform.chirp_duration * 1e6:.4g} us, every "
-                                f"{waveform.chirp_interval * 1e6:g} us{pause}: crossings of at most {crossing * 1e6:.3g} us")
+        found += report.wrapped(f"interferers[{index}]", f"{place}; {sweep_text(waveform)} in "
+                                f"{waveform.chirp_duration * 1e6:.4g} us, every {waveform.chirp_interval * 1e6:g} us{pause}: "
+                                f"crossings of at most {crossing * 1e6:.3g} us")
     return found
 
 

@@ -156,7 +156,7 @@ def _change_over_band(case: Case, materials) -> str:
 def _changes_db(material, waveform) -> tuple[float, float]:
     """Largest change in dB of the power that a sheet passes and of that which it reflects, at normal incidence."""
     ways = sum(layer.thickness * abs(layer.permittivity) ** 0.5 for layer in material.layers)  # m, of light
-    ripples = 2.0 * ways * waveform.bandwidth / speed_of_light
+    ripples = 2.0 * ways * abs(waveform.bandwidth) / speed_of_light
     count = int(min(MOST_FREQUENCIES, 9.0 + 8.0 * ripples))
     # Too few for all ripples are laid at irrational places, which no ripple repeats with.
     places = np.linspace(0.0, 1.0, count) if count < MOST_FREQUENCIES else np.arange(count) * GOLDEN_RATIO % 1.0

@@ -29,9 +29,9 @@ def _arriving(frame, partition: str, parts: dict) -> dict:
         return parts
     if frame.cube.shape[2] != num_frame_slots(frame.radar):
         parts = _in_every_slot(frame, partition)
-    code, real = transmitted_code(frame.radar), frame.radar.waveform.real
-    whole = sum(parts.values()) if real else None
-    return {name: code_signal(cube, code, real, whole) for name, cube in parts.items()}
+    code, waveform = transmitted_code(frame.radar), frame.radar.waveform
+    whole = sum(parts.values()) if waveform.real else None
+    return {name: code_signal(cube, code, waveform, whole) for name, cube in parts.items()}
 
 
 def _in_every_slot(frame, partition: str) -> dict:

@@ -161,7 +161,8 @@ def _range_index(beat, waveform, axis):
     if not waveform.real:
         index[index == len(axis)] = 0  # the last half cell below the sampling rate
     highest = waveform.sampling_rate * (0.5 if waveform.real else 1.0)
-    index[(beat < 0.0) | (beat >= highest) | (index >= len(axis))] = OUTSIDE
+    passes = (beat <= 0.0) & (beat > -highest) if waveform.falls else (beat >= 0.0) & (beat < highest)
+    index[~passes | (index >= len(axis))] = OUTSIDE
     return index
 
 

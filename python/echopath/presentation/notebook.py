@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.numerics.decibels import SMALLEST_POWER, in_dbm
 from ..base.numerics.triangles import areas_of
+from ..base.radar.sweep import sweep_text
 from ..base.text.counts import counted
 from ..receiver.settings import receiver_text
 from ..scene.interferers import interferers_of, interferers_text
@@ -53,7 +54,7 @@ def radar_html(radar) -> str:
     num_transmitters = len(radar.transmitters)
     steps = ", slots differ" if any(getattr(waveform, name) for name in WAVEFORM_LISTS) else ""
     return _pairs("Radar", {
-        "band": f"{1e-9 * waveform.start_frequency:.6g} GHz + {1e-6 * waveform.bandwidth:.6g} MHz",
+        "band": sweep_text(waveform),
         "chirps": f"{waveform.num_chirps} of {counted(waveform.num_samples, 'sample')} at "
                   f"{1e-6 * waveform.sampling_rate:.6g} MHz, every {1e6 * waveform.chirp_interval:.6g} µs{steps}",
         "antennas": f"{counted(num_transmitters, 'transmitter')}, {counted(len(radar.receivers), 'receiver')}, "

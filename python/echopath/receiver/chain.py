@@ -12,7 +12,7 @@ from ..arguments.checks import COMMON, ArrayLike, checked, optional, real, refus
 from ..base.numerics.analytic import as_samples, turned
 from ..base.numerics.past import models_of
 from ..transmit import code_of, is_coded, radar_of_noise, signal_shape
-from .channels import coupled, receiver_factors, require_channels, transmitter_factors
+from .channels import coupled, coupled_leakage, receiver_factors, require_channels, transmitter_factors
 from .converter import converted, jittered, noise_of_branch, warn_of_levels
 from .filters import filtered, has_filters
 from .imbalance import compressed, compression, unbalanced, with_offset
@@ -133,13 +133,13 @@ class Chain:
         leaked = leakage(self._radar, self._receiver, self._slots, self._oscillator)
         if leaked is None:
             return None
-        leaked = coupled(leaked, self._radar, self._receiver, self._slots, real=False)
+        leaked = coupled_leakage(leaked, self._radar, self._receiver, self._slots)
         factors = self._receiver_factors()
         return leaked if factors is None else leaked * factors
 
     def coupled(self, cube, whole=None):
         """With what couples from receiver to receiver; whole: as in `turned`."""
-        return coupled(cube, self._radar, self._receiver, self._slots, self._radar.waveform.real, whole)
+        return coupled(cube, self._radar, self._receiver, self._slots, whole)
 
     def amplified(self, cube, whole=None):
         """With the errors of the receivers; whole: as in `turned`."""
@@ -167,7 +167,7 @@ class Chain:
         return receiver_factors(self._receiver, self._radar, self._slots)
 
     def _turned(self, cube, factors, whole):
-        return turned(cube, factors, self._radar.waveform.real, whole)
+        return turned(cube, factors, self._radar.waveform, whole)
 
 
 def _noise(cube, radar, seed: int, start_time: float):

@@ -64,16 +64,32 @@ def _factors(gain_db, phase, count: int) -> np.ndarray | None:
     return np.exp(_log_factors(gain_db, phase, count)) if gain_db or phase else None
 
 
-def coupled(cube: np.ndarray, radar, receiver: Receiver, slots, real: bool, whole: np.ndarray | None = None) -> np.ndarray:
+def coupled(cube: np.ndarray, radar, receiver: Receiver, slots, whole: np.ndarray | None = None) -> np.ndarray:
     """What each receiver has with what couples in from the others: later by the delay, so that every echo turns by
-    2 pi (f0 + slope t) delay. slots: SlotTimes; real, whole: as in `turned`"""
+    2 pi (f0 + slope t) delay. slots: SlotTimes; whole: as in `turned`"""
     if not receiver.coupling_db:
         return cube
+    others, of_whole = (None if one is None else _of_others(one, receiver) for one in (cube, whole))
+    return cube + turned(others, _late(radar, receiver, slots), radar.waveform, of_whole)
+
+
+def coupled_leakage(leaked: np.ndarray, radar, receiver: Receiver, slots) -> np.ndarray:
+    """Likewise of leakage, which is complex even where samples are real."""
+    if not receiver.coupling_db:
+        return leaked
+    return leaked + _of_others(leaked, receiver) * _late(radar, receiver, slots)
+
+
+def _of_others(cube, receiver: Receiver):
+    """The sum of what couples into each receiver, without its delay."""
     share = 10.0 ** (np.array(receiver.coupling_db) / 20.0)
     np.fill_diagonal(share, 0.0)
+    return np.einsum("ab,tacs->tbcs", share, cube, optimize=True)
+
+
+def _late(radar, receiver: Receiver, slots):
+    """What the delay of the coupling turns each sample by, as a cube takes it."""
     waveform = radar.waveform
     time = np.arange(waveform.num_samples) / waveform.sampling_rate
     frequency = slots.start_frequency[..., None] + slots.slope[..., None] * time
-    turn = np.exp(2j * np.pi * frequency * receiver.coupling_delay)[:, None]
-    others, of_whole = (None if one is None else np.einsum("ab,tacs->tbcs", share, one, optimize=True) for one in (cube, whole))
-    return cube + turned(others, turn, real, of_whole)
+    return np.exp(2j * np.pi * frequency * receiver.coupling_delay)[:, None]

@@ -7,7 +7,7 @@ from ..arguments.checks import refused
 from ..base.numerics.past import CHIRPS_AT_ONCE, with_pasts
 from .settings import Receiver
 
-# Beat frequencies from -1/16 of the sampling rate on: below 0 stand the sidelobes of what is near.
+# Beat frequencies from -1/16 of the sampling rate on, or up to 1/16 where chirps fall: there stand the sidelobes of what is near.
 NEGATIVE_SHARE = 1 / 16
 _TIME_CONSTANTS = 28   # of the slowest pole: the past fades in half of them, in the other half filters settle to 1e-6
 _PAST_STEP = 128       # samples, the shortest past, of which all are multiples
@@ -20,7 +20,10 @@ def beat_frequencies(waveform, count: int | None = None) -> np.ndarray:
     cells = np.arange(count)
     if waveform.real:
         return np.fft.fftfreq(count, 1.0 / waveform.sampling_rate)
-    return np.where(cells < count - int(count * NEGATIVE_SHARE), cells, cells - count) * waveform.sampling_rate / count
+    signed = np.where(cells < count - int(count * NEGATIVE_SHARE), cells, cells - count)
+    if waveform.falls:
+        signed = -signed[-cells]
+    return signed * waveform.sampling_rate / count
 
 
 def response(receiver: Receiver, frequency) -> np.ndarray:

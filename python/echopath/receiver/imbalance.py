@@ -19,15 +19,15 @@ def compression(cube: np.ndarray, radar, receiver: Receiver, leaked: np.ndarray 
     if receiver.compression_dbm is None:
         return None
     saturation = 1e-3 * 10.0 ** (receiver.compression_dbm / 10.0) / _ONE_DB
-    real = radar.waveform.real
-    shows_all = leaked is None or not real
-    signal = analytic(cube, real) if shows_all else analytic(cube - as_samples(leaked, real), real) + leaked
+    waveform = radar.waveform
+    shows_all = leaked is None or not waveform.real
+    signal = analytic(cube, waveform) if shows_all else analytic(cube - as_samples(leaked, True), waveform) + leaked
     return 1.0 / np.sqrt(1.0 + np.abs(signal) ** 2 / saturation)
 
 
 def compressed(cube: np.ndarray, gain: np.ndarray, radar) -> np.ndarray:
     """A cube, or a part of one, behind an amplifier of a gain for each sample (`compression`)."""
-    return as_samples(analytic(cube, radar.waveform.real) * gain, radar.waveform.real)
+    return as_samples(analytic(cube, radar.waveform) * gain, radar.waveform.real)
 
 
 def weights_of_imbalance(receiver: Receiver) -> tuple[complex, complex]:

@@ -39,5 +39,5 @@ def leaked_tone(waveform, slots, delay: float, time: np.ndarray) -> np.ndarray:
     chirps are alike: exp(j 2 pi (f0 d + slope t d - slope d^2 / 2)), and 0 where its beat frequency lies beyond the band, as
     the filter before the converter leaves it. slots: SlotTimes"""
     start, slope = slots.start_frequency[..., None], slots.slope[..., None]
-    passes = slope * delay < waveform.sampling_rate * (0.5 if waveform.real else 1.0)
+    passes = np.abs(slope) * delay < waveform.sampling_rate * (0.5 if waveform.real else 1.0)
     return passes * np.exp(2j * np.pi * (start * delay + slope * delay * (time - 0.5 * delay)))

@@ -9,6 +9,8 @@ m(t - f / slope) times the tone, exactly. All delays cost a few transforms of a 
 A chirp of N samples is worked on at P times its sampling rate, over two of its durations: the signal repeats, and the
 oscillator has its past in the first half, which is bent so that it goes on from the end of the second. P is 2, and more where
 frequency errors are large: what they make of the band must not fold, or its delays were others.
+
+The signal of chirps that fall is worked on as its conjugate: that of chirps that rise and of an oscillator of phase -phi.
 """
 from __future__ import annotations
 
@@ -37,6 +39,8 @@ class Oscillator:
 
     def __init__(self, radar, receiver: Receiver, slots, generator):
         self._waveform, self._slots = radar.waveform, slots
+        sense = -1.0 if radar.waveform.falls else 1.0
+        self._slope = sense * slots.slope
         self._noise = None if generator is None else receiver.phase_noise
         self._error = receiver.frequency_error
         self.is_ideal = self._noise is None and not self._error
@@ -44,7 +48,7 @@ class Oscillator:
         if not self.is_ideal:
             self._rate = self._times_sampling_rate()
             self._size = 2 * self._rate * self._count
-            self._phase = self._phases(generator)  # [T, C or 1, 2 P N], rad
+            self._phase = sense * self._phases(generator)  # [T, C or 1, 2 P N], rad
 
     def mixed(self, cube: np.ndarray) -> np.ndarray:
         """The cube [T, rx, C, sample] with what the oscillator does to the echoes in it, by their beat frequencies."""
@@ -60,8 +64,8 @@ class Oscillator:
         frequency = self._line_distance * _lines(self._size)
         past = np.fft.ifft(np.fft.fft(np.exp(-1j * self._phase)) * np.exp(-2j * np.pi * frequency * delay))
         # The tone does not repeat as the oscillator does: a filter would make a line at the edge of the band of its step.
-        beat = self._slots.slope[..., None] * delay
-        turn = self._passed(np.exp(1j * self._phase) * past, beat)
+        beat = self._slope[..., None] * delay
+        turn = self._rising(self._passed(np.exp(1j * self._phase) * past, beat))
         time = np.arange(self._count) / self._waveform.sampling_rate
         return (leaked_tone(self._waveform, self._slots, delay, time) * turn)[:, None]
 
@@ -72,16 +76,21 @@ class Oscillator:
         for tx in range(cube.shape[0]):
             for begin in range(0, cube.shape[2], SLOTS_AT_ONCE):
                 piece = slice(begin, begin + SLOTS_AT_ONCE)
-                phase, slope = (_of_chirps(one, tx, piece) for one in (self._phase, self._slots.slope))
-                signal = work(self._spectrum(cube[tx, :, piece]), phase, slope[..., None])
-                made[tx, :, piece] = as_samples(self._passed(signal), self._waveform.real)
+                phase, slope = (_of_chirps(one, tx, piece) for one in (self._phase, self._slope))
+                signal = self._passed(work(self._spectrum(cube[tx, :, piece]), phase, slope[..., None]))
+                made[tx, :, piece] = as_samples(self._rising(signal), self._waveform.real)
         return made
+
+    def _rising(self, signal):
+        """A signal as that of chirps that rise, or back."""
+        return np.conj(signal) if self._waveform.falls else signal
 
     def _spectrum(self, chirps):
         """Of chirps [rx, C, N], sent twice, at P times the sampling rate, [rx, C, 2 P N]."""
         cells, signed = _cells(self._count, self._waveform.real)
         spectrum = np.zeros((*chirps.shape[:-1], self._size), np.complex128)
-        spectrum[..., 2 * signed] = 2.0 * self._rate * np.fft.fft(analytic(chirps, self._waveform.real))[..., cells]
+        signal = self._rising(analytic(chirps, self._waveform))
+        spectrum[..., 2 * signed] = 2.0 * self._rate * np.fft.fft(signal)[..., cells]
         return spectrum
 
     def _mixed_chirps(self, spectrum, phase, slope):
@@ -143,7 +152,7 @@ class Oscillator:
     @property
     def _longest_past(self) -> float:
         """s, a quarter more than the longest delay of an echo in the band."""
-        return 1.25 * self._waveform.sampling_rate / np.min(self._slots.slope)
+        return 1.25 * self._waveform.sampling_rate / np.min(self._slope)
 
     @property
     def _line_distance(self) -> float:

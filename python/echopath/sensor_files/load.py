@@ -139,10 +139,10 @@ def _radar(lines: Lines, board: Board, plan: FramePlan, ideal: bool) -> _core.Ra
 
 def _warn_of_other_band(board: Board, waveform: _core.ChirpSequence) -> None:
     low, high = board.band
-    first, last = waveform.start_frequency, waveform.start_frequency + waveform.bandwidth
-    if first < low or last > high:
+    ends = waveform.start_frequency, waveform.start_frequency + waveform.bandwidth
+    if min(ends) < low or max(ends) > high:
         warn_user(f"board: {board.name} sends from {1e-9 * low:g} to {1e-9 * high:g} GHz, the chirps of the file go from "
-                  f"{1e-9 * first:.2f} to {1e-9 * last:.2f} GHz: is it that of another board?")
+                  f"{1e-9 * ends[0]:.2f} to {1e-9 * ends[1]:.2f} GHz: is it that of another board?")
 
 
 def _antennas_of(lines: Lines, board: Board) -> list:

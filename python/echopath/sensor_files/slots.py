@@ -128,9 +128,11 @@ def _profile_of(lines: Lines, chirp: Command, plan: FramePlan) -> Command:
 
 
 def _check_profile(profile: Command, chirp: Command) -> None:
-    for name in ("start_ghz", "ramp_end_us", "slope_mhz_us", "num_samples", "rate_ksps"):
+    for name in ("start_ghz", "ramp_end_us", "num_samples", "rate_ksps"):
         if not profile[name] > 0:
             raise profile.error(f"{name}: must be positive, got {profile[name]:g}")
+    if profile["slope_mhz_us"] == 0:
+        raise profile.error("slope_mhz_us: must not be 0, negative where chirps fall, got 0")
     for name in ("idle_us", "adc_start_us", "gain_db"):
         if profile[name] < 0:
             raise profile.error(f"{name}: must be at least 0, got {profile[name]:g}")

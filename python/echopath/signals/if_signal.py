@@ -59,7 +59,7 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
                    retrace=retrace, keyframes=keyframes, progress=progress)
     separate = synthesize_slots(paths, slots_radar(radar) if is_coded(radar) else radar, **made_by, probe=probe)
     warn_of_silence(paths, radar, separate)
-    return code_signal(separate, transmitted_code(radar), radar.waveform.real) if is_coded(radar) else separate
+    return code_signal(separate, transmitted_code(radar), radar.waveform) if is_coded(radar) else separate
 
 
 @checked(of=one_of(NoiseOf))

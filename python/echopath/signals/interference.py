@@ -134,6 +134,8 @@ def _filtered(fine, waveform):
     samples = slice(FINE * EDGE, -FINE * EDGE, FINE)
     if not fine.any():
         return fine[:, samples]
+    if waveform.falls:  # with the conjugate of the band of chirps that rise
+        fine = np.conj(fine)
     half = FINE * EDGE // 2
     fade = np.sin(0.5 * np.pi * (np.arange(half) + 0.5) / half) ** 2
     fine[:, :half] *= fade
@@ -141,4 +143,5 @@ def _filtered(fine, waveform):
     spectrum, count = np.fft.fft(fine), waveform.num_samples + 2 * EDGE
     removed = slice((count + 1) // 2, fine.shape[1] - (count - 1) // 2) if waveform.real else slice(count, None)
     spectrum[:, removed] = 0.0
-    return np.fft.ifft(spectrum)[:, samples]
+    passed = np.fft.ifft(spectrum)[:, samples]
+    return np.conj(passed) if waveform.falls else passed

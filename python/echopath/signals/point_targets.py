@@ -59,7 +59,7 @@ def point_targets(radar: _core.Radar, positions: ArrayLike | Callable[[float], A
     targets = _Targets(_as_many(places, count), *_levels(count, rcs, phases), start_time)
     if not is_coded(radar):
         return targets.separate(radar)
-    return code_signal(targets.separate(slots_radar(radar)), transmitted_code(radar), radar.waveform.real)
+    return code_signal(targets.separate(slots_radar(radar)), transmitted_code(radar), radar.waveform)
 
 
 def _places(positions, velocities) -> Places:

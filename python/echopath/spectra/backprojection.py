@@ -15,6 +15,7 @@ from ..base.process.callers import warn_user
 from ..base.process.progress import with_progress
 from ..transmit import is_coded, signal_shape
 from ..transmit.signals import has_steps
+from .range_transform import range_transform
 from .windows import of_range, of_velocity, samples_of
 
 CLEAR_ECHO = 100.0  # times the noise: 20 dB
@@ -156,16 +157,17 @@ class _Profiles:
         self._taper = self._taper * ((np.sqrt(2.0) if waveform.real else 1.0) / self._taper.sum())  # as a map's
         bins = FINER * waveform.num_samples
         self._end = bins // 2 if waveform.real else bins
-        self._from_middle = np.exp(1j * np.pi * (waveform.num_samples - 1) / bins * np.arange(bins))
+        self._sense = -1.0 if waveform.falls else 1.0
+        self._from_middle = np.exp(self._sense * 1j * np.pi * (waveform.num_samples - 1) / bins * np.arange(bins))
 
     def at(self, samples, legs: _Legs) -> NDArray[np.complex128]:
         """What the profile of a chirp [sample] has at some _Legs, turned back by the phase that an echo has over them."""
         waveform, delay = self._waveform, legs.length / _core.speed_of_light
         middle_frequency = waveform.start_frequency + waveform.slope * waveform.window_centre
         beat = waveform.slope * delay + middle_frequency * legs.rate / _core.speed_of_light
-        place = np.clip(beat / waveform.sampling_rate, 0.0, 1.0) * FINER * waveform.num_samples
+        place = np.clip(self._sense * beat / waveform.sampling_rate, 0.0, 1.0) * FINER * waveform.num_samples
         below = np.minimum(place.astype(np.int64), self._end - 2)
-        profile = np.fft.fft(samples * self._taper, n=len(self._from_middle)) * self._from_middle
+        profile = range_transform(samples * self._taper, waveform, len(self._from_middle)) * self._from_middle
         value = profile[below] + (place - below) * (profile[below + 1] - profile[below])
         phase = 2.0 * np.pi * (middle_frequency * delay - 0.5 * waveform.slope * delay**2)
         return np.where(place < self._end - 1, value * np.exp(-1j * phase), 0.0)

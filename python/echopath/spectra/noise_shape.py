@@ -56,6 +56,8 @@ def _filtered_power(receiver, waveform, window, zero_pad: int) -> np.ndarray:
     folded = np.zeros(count * zero_pad, complex)
     np.add.at(folded, lags % len(folded), correlation[lags])
     shape = np.fft.fft(folded).real
+    if waveform.falls:
+        shape = shape[-np.arange(len(shape))]  # ranges stand in cells of negative frequencies
     return np.maximum(shape, _ROUNDING * shape.max())
 
 

@@ -58,16 +58,16 @@ def slots_radar(radar: _core.Radar) -> _core.Radar:
     return radar.replace(waveform=waveform, multiplexing="cdm", code_phases=np.zeros((len(radar.transmitters), 1)))
 
 
-def code_signal(separate: np.ndarray, code: np.ndarray, real: bool, whole: np.ndarray | None = None) -> np.ndarray:
+def code_signal(separate: np.ndarray, code: np.ndarray, waveform, whole: np.ndarray | None = None) -> np.ndarray:
     """What the receivers have of transmitters that send at once.
 
-    separate: [tx, rx, slots, sample] in sqrt(W), each transmitter alone; code: complex [tx, slots]; real: whether samples are,
-        which phases of the code turn as `turned` says; whole: of which `separate` is a part, None: itself
+    separate: [tx, rx, slots, sample] in sqrt(W), each transmitter alone; code: complex [tx, slots]; waveform: of the
+        samples; phases of the code turn real ones as `turned` says; whole: of which `separate` is a part, None: itself
     Returns [1, rx, slots, sample] in sqrt(W).
     """
-    turns = real and np.any(code.imag)
-    sent = _summed(continued(separate, whole) if turns else separate, code)[None]
-    return as_samples(sent, real) if turns else sent
+    turns = waveform.real and np.any(code.imag)
+    sent = _summed(continued(separate, waveform, whole) if turns else separate, code)[None]
+    return as_samples(sent, waveform.real) if turns else sent
 
 
 def _summed(separate: np.ndarray, code: np.ndarray) -> np.ndarray:

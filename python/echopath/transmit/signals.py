@@ -91,4 +91,4 @@ def coded_cube(paths: _core.Paths, radar: _core.Radar, separate: np.ndarray | No
     code = code_of(radar) if code is None else code
     if separate is None or separate.shape[2] != num_frame_slots(radar):
         separate = synthesize_slots(paths, slots_radar(radar), **settings)
-    return code_signal(separate, code, radar.waveform.real)
+    return code_signal(separate, code, radar.waveform)

@@ -65,15 +65,18 @@ TEST(ChirpSequence, TheBandIsThatOfAllChirps) {
   const std::vector<double> up = {-0.1e9, 0.3e9, -0.4e9, 0.2e9, 0.5e9, 0.1e9};
   const std::vector<double> wider = {0.1e9, -0.2e9, 0.3e9, 0.4e9, -0.3e9, 0.2e9};
   ChirpSequence w = reference_waveform();
-  for (size_t starts = 0; starts <= up.size(); ++starts) {
+  for (size_t half = 0; half <= 2 * up.size() + 1; ++half) {
+    const size_t starts = half / 2;
+    w.bandwidth = half % 2 == 0 ? 1e9 : -1e9;
     for (size_t widths = 0; widths <= wider.size(); ++widths) {
       w.frequency_steps.assign(up.begin(), up.begin() + static_cast<std::ptrdiff_t>(starts));
       w.bandwidth_steps.assign(wider.begin(), wider.begin() + static_cast<std::ptrdiff_t>(widths));
       double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
       for (size_t chirp = 0; chirp < up.size() * wider.size(); ++chirp) {
         const double start = w.start_frequency + (starts > 0 ? up[chirp % starts] : 0.0);
-        lowest = std::min(lowest, start);
-        highest = std::max(highest, start + w.bandwidth + (widths > 0 ? wider[chirp % widths] : 0.0));
+        const double end = start + w.bandwidth + (widths > 0 ? wider[chirp % widths] : 0.0);
+        lowest = std::min({lowest, start, end});
+        highest = std::max({highest, start, end});
       }
       EXPECT_NEAR(w.band().lowest, lowest, kRounding * lowest) << starts << " " << widths;
       EXPECT_NEAR(w.band().highest, highest, kRounding * highest) << starts << " " << widths;
@@ -86,7 +89,9 @@ TEST(ChirpSequence, EachBadFieldIsNamed) {
   const std::vector<std::pair<std::string, std::function<void(ChirpSequence&)>>> cases = {
       {"start_frequency", [](auto& w) { w.start_frequency = 0.0; }},
       {"start_frequency", [=](auto& w) { w.start_frequency = nan; }},
-      {"bandwidth", [](auto& w) { w.bandwidth = -1e9; }},
+      {"bandwidth", [](auto& w) { w.bandwidth = 0.0; }},
+      {"bandwidth", [](auto& w) { w.bandwidth = -77e9; }},
+      {"bandwidth_steps", [](auto& w) { w.bandwidth_steps = {0.0, -2e9}; }},
       {"bandwidth", [=](auto& w) { w.bandwidth = inf; }},
       {"num_samples", [](auto& w) { w.num_samples = 0; }},
       {"sampling_rate", [](auto& w) { w.sampling_rate = 0.0; }},

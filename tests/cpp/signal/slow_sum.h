@@ -25,7 +25,8 @@ inline std::vector<Complex> slow_chirp(const ChirpSequence& w, const std::vector
     const Real t0 = tau[p];
     const Real beat = mu * t0 + (f0 + mu * tm - mu * t0) * Real{taudot[p]};
     const Real highest = w.real ? Real{w.sampling_rate} / 2 : Real{w.sampling_rate};
-    if (beat < 0 || beat >= highest) continue;
+    const Real upward = w.bandwidth < 0.0 ? -beat : beat;
+    if (upward < 0 || upward >= highest) continue;
     for (int n = 0; n < w.num_samples; ++n) {
       const Real t = n / Real{w.sampling_rate};
       const Real cycles = f0 * t0 + mu * tm * t0 - mu * t0 * t0 / 2 + beat * (t - tm);

@@ -109,6 +109,20 @@ TEST(Methods, NufftToneHoldsItsToleranceAtEveryFrequency) {
   }
 }
 
+// Returns the reference waveform of so many chirps, of complex and real samples, of chirps that rise and that fall.
+std::vector<ChirpSequence> waveforms(int num_chirps) {
+  std::vector<ChirpSequence> all;
+  for (const bool real : {false, true}) {
+    for (const double bandwidth : {1e9, -1e9}) {
+      ChirpSequence& w = all.emplace_back(testing::reference_waveform());
+      w.num_chirps = num_chirps;
+      w.real = real;
+      w.bandwidth = bandwidth;
+    }
+  }
+  return all;
+}
+
 // Holds the slow sum of moving points in three chirps.
 class SlowSum {
  public:
@@ -156,10 +170,7 @@ TEST(Methods, StartPhaseKeepsAllBits) {
 }
 
 TEST(Methods, DirectAndRecurrenceEqualTheSlowSum) {
-  for (const bool real : {false, true}) {
-    ChirpSequence w = testing::reference_waveform();
-    w.num_chirps = 8;
-    w.real = real;
+  for (const ChirpSequence& w : waveforms(8)) {
     for (const int count : {1, 3, 300}) {
       const SlowSum slow(w, count);
       EXPECT_LT(slow.error_of({.method = Method::kDirect}), kDoublePhaseError) << count;
@@ -169,10 +180,7 @@ TEST(Methods, DirectAndRecurrenceEqualTheSlowSum) {
 }
 
 TEST(Methods, NufftEqualsTheSlowSumWithinItsTolerance) {
-  for (const bool real : {false, true}) {
-    ChirpSequence w = testing::reference_waveform();
-    w.num_chirps = 4;
-    w.real = real;
+  for (const ChirpSequence& w : waveforms(4)) {
     const SlowSum slow(w, 300);
     for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12}) {
       EXPECT_LT(slow.error_of({tolerance, Method::kNufft}), tolerance + kDoublePhaseError) << tolerance;

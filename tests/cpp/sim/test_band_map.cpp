@@ -18,13 +18,14 @@ struct Case {
   int num_samples, num_chirps, zero_pad;
   WindowKind window;
   bool real;
-  bool leaves_out;  // whether the plates are far from the end of the map, and the samples complex
+  bool leaves_out;         // whether the plates are far from the end of the map, and the samples complex
+  double bandwidth = 5e8;  // Hz, negative where chirps fall
 };
 
 Radar radar_of(const Case& one) {
   Radar radar = plain_radar(Vec3::Zero(), {0, 0.02, 0});
   radar.waveform = {.start_frequency = 77e9,
-                    .bandwidth = 5e8,
+                    .bandwidth = one.bandwidth,
                     .num_samples = one.num_samples,
                     .sampling_rate = 5e6,
                     .num_chirps = one.num_chirps,
@@ -108,6 +109,7 @@ TEST(BandMapSquares, MeanSquaresOfNarrowAndWideBandsAreThoseOfTheSamples) {
 INSTANTIATE_TEST_SUITE_P(Waveforms, BandMaps,
                          ::testing::Values(Case{256, 128, 1, WindowKind::kHann, false, true},
                                            Case{256, 40, 2, WindowKind::kHann, false, true},
+                                           Case{256, 40, 1, WindowKind::kHann, false, true, -5e8},
                                            Case{500, 33, 1, WindowKind::kBlackmanHarris, false, true},
                                            Case{64, 5, 3, WindowKind::kRect, false, false},
                                            Case{256, 16, 1, WindowKind::kHann, true, false}));

@@ -109,6 +109,15 @@ def test_of_two_lines_for_one_profile_or_chirp_the_later_counts(written, command
     assert ep.load_radar(written(CONFIGURATION + command + "\n")).waveform.slope == pytest.approx(65e12)
 
 
+def test_slopes_of_chirps_that_fall_are_negative(written):
+    """The first sample is 6 us into the ramp, which has fallen by then."""
+    waveform = ep.load_radar(written(profileCfg="profileCfg 0 63.5 7 6 40 0 0 -70 1 128 5000 0 0 30")).waveform
+    assert waveform.slope == pytest.approx(-70e12) and waveform.bandwidth == pytest.approx(-70e12 * 128 / 5e6)
+    assert waveform.start_frequency == pytest.approx(63.5e9 - 6e-6 * 70e12)
+    with pytest.raises(ep.FileError, match="profileCfg: slope_mhz_us: must not be 0"):
+        ep.load_radar(written(profileCfg="profileCfg 0 63.5 7 6 40 0 0 0 1 128 5000 0 0 30"))
+
+
 def test_a_chirp_is_sampled_within_its_ramp(written):
     """The last sample of the second chirp would be taken 41.6 us after its start, whose ramp ends after 40 us."""
     text = CONFIGURATION.replace("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 10 4")

@@ -2,10 +2,12 @@
 import numpy as np
 import pytest
 
+import echopath as ep
 from echopath.base.numerics.analytic import analytic, as_samples, turned
 from echopath.base.numerics.past import models_of, past_of
 
 ROUNDING = 1e-12
+REAL, COMPLEX = (ep.ChirpSequence(real=real) for real in (True, False))
 FORETOLD = 1e-5  # of a tone's amplitude: what the least rest of a model makes of it over a chirp
 
 
@@ -17,26 +19,29 @@ def tones(frequencies, samples):
 @pytest.mark.parametrize("count", [16, 17])
 def test_real_samples_are_the_real_part_of_positive_frequencies(count):
     samples = np.random.default_rng(count).normal(size=(1, 2, 3, count)) + 0j
-    found = analytic(samples, True)
+    found = analytic(samples, REAL)
     assert as_samples(found, True) == pytest.approx(samples, abs=ROUNDING)
     assert np.abs(np.fft.fft(found)[..., count // 2 + 1:]).max() < ROUNDING * count
-    assert analytic(samples, False) is samples
+    assert analytic(samples, COMPLEX) is samples
 
 
 def test_a_tone_has_the_power_of_its_real_samples():
     tone = tones([3 / 16], range(16))
-    assert analytic(np.sqrt(2.0) * tone.real + 0j, True) == pytest.approx(tone, abs=ROUNDING)
+    assert analytic(np.sqrt(2.0) * tone.real + 0j, REAL) == pytest.approx(tone, abs=ROUNDING)
 
 
+@pytest.mark.parametrize("waveform", [REAL, REAL.replace(bandwidth=-1e9)], ids=["rising", "falling"])
 @pytest.mark.parametrize("frequency", [0.1, 0.173, 0.31])
-def test_a_phase_turns_tones_between_the_cells_up_to_the_ends_of_a_chirp(frequency):
-    tone, turn = tones([frequency], range(64)), np.exp(0.7j)
+def test_a_phase_turns_tones_between_the_cells_up_to_the_ends_of_a_chirp(frequency, waveform):
+    """Those of chirps that fall have negative frequencies."""
+    tone, turn = tones([-frequency if waveform.falls else frequency], range(64)), np.exp(0.7j)
     real = np.sqrt(2.0) * tone.real + 0j
     expected = np.sqrt(2.0) * (tone * turn).real
-    assert np.abs(turned(real, np.full((1, 1, 1, 1), turn), True) - expected).max() < 0.01
+    assert np.abs(turned(real, np.full((1, 1, 1, 1), turn), waveform) - expected).max() < 0.01
     part = 0.3 * real
-    assert turned(part, np.array(turn), True, whole=real) == pytest.approx(0.3 * turned(real, np.array(turn), True), abs=ROUNDING)
-    assert turned(real, np.array(2.0), True) == pytest.approx(2.0 * real, abs=0.0)
+    of_part = turned(part, np.array(turn), waveform, whole=real)
+    assert of_part == pytest.approx(0.3 * turned(real, np.array(turn), waveform), abs=ROUNDING)
+    assert turned(real, np.array(2.0), waveform) == pytest.approx(2.0 * real, abs=0.0)
 
 
 @pytest.mark.parametrize("frequencies, most", [((0.113,), FORETOLD), ((0.11, -0.27), 0.2)])

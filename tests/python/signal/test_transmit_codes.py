@@ -12,6 +12,7 @@ from echopath.transmit import code_signal, doppler_division
 from support.radars import build_radar
 
 C = ep.speed_of_light
+REAL = ep.ChirpSequence(real=True)
 ROUNDING = 1e-12      # of sums of a few hundred terms, relative to the largest
 SAME_STATIC = 1e-9    # promised for scenes at rest, relative
 NUM_TX, NUM_RX = 3, 4
@@ -60,8 +61,8 @@ def test_parts_of_real_samples_add_up_behind_a_code_of_phases():
     random = np.random.default_rng(4)
     parts, code = random.normal(size=(2, 2, 1, 6, 32)) + 0j, np.exp(1j * random.random((2, 6)))
     whole = parts.sum(axis=0)
-    coded = [code_signal(part, code, True, whole) for part in parts]
-    assert sum(coded) == pytest.approx(code_signal(whole, code, True), abs=1e-10)
+    coded = [code_signal(part, code, REAL, whole) for part in parts]
+    assert sum(coded) == pytest.approx(code_signal(whole, code, REAL), abs=1e-10)
 
 
 @pytest.mark.parametrize("multiplexing", ["ddm", "bpm"])

@@ -6,6 +6,10 @@
 //   f_b  = mu tau + (f0 + mu t_m - mu tau) taudot.
 // Against the exact phase this errs by 2 pi mu taudot (Tc / 2)^2: 0.0027 rad at 10 m/s, 1 GHz, 25.6 us; per_sample.h has no
 // such error.
+//
+// Chirps that fall (mu < 0) have beats of negative frequencies. The conjugate of their signal is that of chirps that rise,
+// with a negative carrier: s*(f0, mu, a) = s(-f0, -mu, a*). Carriers and rows are those of the conjugate then, and samples
+// are conjugated when they are read.
 #include <cstdint>
 
 #include "echopath/signal/echoes/echo_states.h"
@@ -24,11 +28,13 @@ struct Carriers {
   alignas(64) double im[kCapacity];
 };
 
-// Holds the constants of the phase model. The phase of the carriers is taken at `reference_sample`.
+// Holds the constants of the phase model. The phase of the carriers is taken at `reference_sample`. Frequencies are negative
+// where chirps fall, whose slope is taken with the other sign.
 struct CarrierModel {
   CarrierModel(const ChirpSequence& waveform, int reference_sample);
+  double sense;              // 1, or -1 where chirps fall: amplitudes are conjugated
   double start_frequency;    // Hz
-  double slope;              // Hz/s
+  double slope;              // Hz/s, positive
   double window_centre;      // s
   double sample_interval;    // s
   double reference_offset;   // samples from the window centre to the reference sample

@@ -171,7 +171,7 @@ void place_at_chirps(const CarrierModel& model, const Spreading& spreading, cons
         states.im.of[e] = multiply_add(value, all(node[e + 2 * TileAtChirps::kLanes]), states.im.of[e]);
       }
     }
-    if (tile.has_logarithms) undo_logarithms(states);
+    if (tile.has_logarithms) undo_logarithms(model, states);
     const Tones<kEchoesAtOnce> tones = tones_of<kError>(model, states);
 #pragma GCC unroll 4
     for (int e = 0; e < kEchoesAtOnce; ++e) {

@@ -43,7 +43,7 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
         states.im.of[c] = multiply_add(weight, i, states.im.of[c]);
       }
     }
-    if (tile.has_logarithms) undo_logarithms(states);
+    if (tile.has_logarithms) undo_logarithms(model, states);
     store_places(spreading, tones_of<kError>(model, states), p, places);
   }
 }

@@ -37,7 +37,7 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
   for (int i = 0; i < kCount; ++i) {
     const Mask sign = bits(turns.of[i]) << 63;  // of an odd number of half turns
     const Vec c = from_bits(bits(phasor.re.of[i]) ^ sign), s = from_bits(bits(phasor.im.of[i]) ^ sign);
-    const Vec f = frequency.of[i], re = states.re.of[i], im = states.im.of[i];
+    const Vec f = frequency.of[i], re = states.re.of[i], im = states.im.of[i] * model.sense;
     const Mask kept = (f >= 0.0) & (f < model.highest_frequency);
     out.frequency.of[i] = kept ? f : Vec{};
     out.re.of[i] = kept ? re * c + im * s : Vec{};
@@ -48,11 +48,11 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
 
 // Takes back the logarithms that stand as re and im. The phases go on into those of the carriers, which costs no phasor.
 template <int kCount>
-ECHOPATH_INLINE void undo_logarithms(States<kCount>& states) {
-  constexpr double kPerPi = std::numbers::inv_pi;
+ECHOPATH_INLINE void undo_logarithms(const CarrierModel& model, States<kCount>& states) {
+  const double per_pi = model.sense * std::numbers::inv_pi;
 #pragma GCC unroll 4
   for (int i = 0; i < kCount; ++i) {
-    states.turned.of[i] = states.im.of[i] * kPerPi;
+    states.turned.of[i] = states.im.of[i] * per_pi;
     states.re.of[i] = LaneMath::exp(states.re.of[i]);
     states.im.of[i] = Vec{};
   }

@@ -10,7 +10,7 @@ namespace {
 
 // Describes one echo over a chirp. The phase at the window centre is reduced once; the phase added over the chirp is small.
 struct EchoOfChirp {
-  double re, im;  // conj(a), sqrt(W)
+  double re, im;  // conj(a), or a of chirps that fall, sqrt(W)
   double delay;   // s
   double cycles;  // at the window centre, reduced
   double rate, half_second, sixth_third;
@@ -19,8 +19,13 @@ struct EchoOfChirp {
 EchoOfChirp echo_of_chirp(const CarrierModel& model, const EchoStates& states, const EchoDerivatives& derivatives, int p) {
   const double tau = states.delay[p], f0 = model.start_frequency;
   const double cycles = std::fma(f0, tau, -std::round(f0 * tau)) + model.slope * tau * (model.window_centre - 0.5 * tau);
-  return {states.amplitude[2 * p],     -states.amplitude[2 * p + 1], tau, cycles, states.rate[p],
-          derivatives.second[p] / 2.0, derivatives.third[p] / 6.0};
+  return {states.amplitude[2 * p],
+          -model.sense * states.amplitude[2 * p + 1],
+          tau,
+          cycles,
+          states.rate[p],
+          derivatives.second[p] / 2.0,
+          derivatives.third[p] / 6.0};
 }
 
 // Returns whether the beat frequency in the middle of the chirp lies in the band of the anti-alias filter.

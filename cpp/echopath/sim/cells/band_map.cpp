@@ -61,7 +61,8 @@ BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, con
       num_ranges_(static_cast<int64_t>(range_axis(radar.waveform, radar.waveform.num_samples * zero_pad).size())),
       num_bins_(int64_t{zero_pad} * radar.waveform.num_samples),
       doppler_taper_(unit_taper(window.velocity, radar.waveform.num_chirps)),
-      doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward) {
+      doppler_fft_(radar.waveform.num_chirps * zero_pad,
+                   radar.waveform.falls() ? FftDirection::kBackward : FftDirection::kForward) {
   if (!spread || radar.waveform.real) return;  // a real sample is not linear in the grid
   const SpreadGrid grid = spread->grid();
   const int64_t size = std::lcm(grid.size, num_bins_);

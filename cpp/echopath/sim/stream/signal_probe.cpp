@@ -265,6 +265,7 @@ void PassProbe::sum_up(const ChirpTarget& target, ProbedChirp& chirp) const {
     const size_t from = s % static_cast<size_t>(target.num_samples);
     chirp.sample[s] = static_cast<int>(target.sample[from]);
     for (const SampleRow& row : tally.rows) chirp.value[s] += std::complex<double>(row.re[from], row.im[from]);
+    if (radar_.waveform.falls()) chirp.value[s] = std::conj(chirp.value[s]);
     if (radar_.waveform.real) chirp.value[s] = std::numbers::sqrt2 * chirp.value[s].real();
     for (size_t share = 0; share < num_shares(); ++share) {
       chirp.shares[share].field[s] = {tally.rows[share].re[from], tally.rows[share].im[from]};

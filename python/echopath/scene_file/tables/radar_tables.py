@@ -14,7 +14,7 @@ from .table import NotNegative, Number, Pitch, Positive, Quaternion, Table, Vect
 
 class WaveformTable(Table):
     start_frequency: Positive = Field(description="Hz, at the first sample")
-    bandwidth: Positive = Field(description="Hz, what the samples of one chirp sweep")
+    bandwidth: Number = Field(description="Hz, what the samples of one chirp sweep, negative where chirps fall")
     num_samples: int = Field(ge=1, description="per chirp")
     sampling_rate: Positive = Field(description="Hz")
     num_chirps: int = Field(ge=1, description="per transmitter")

@@ -64,17 +64,11 @@ def test_chirp_times_of_slots():
         radar.chirp_time(0, 128)
 
 
-@pytest.mark.parametrize("field, value", [("start_frequency", 0), ("bandwidth", -1), ("num_samples", 0),
+@pytest.mark.parametrize("field, value", [("start_frequency", 0), ("bandwidth", 0), ("num_samples", 0),
                                           ("sampling_rate", np.inf), ("num_chirps", 0), ("chirp_interval", 20e-6)])
 def test_bad_waveform_names_the_field(field, value):
     with pytest.raises(ValueError, match=f"^{field}: .*got"):
         reference(**{field: value})
-
-
-def test_falling_chirps_are_refused_by_the_reason():
-    for wrong in ({"bandwidth": -250e6}, {"bandwidth_steps": (0.0, -2e9)}):
-        with pytest.raises(ValueError, match="chirps go up"):
-            ep.ChirpSequence(**wrong)
 
 
 def test_bad_radar_names_the_field():

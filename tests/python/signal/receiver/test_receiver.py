@@ -271,7 +271,7 @@ def test_phases_of_channels_turn_real_samples(multiplexing):
     turned = echo[:, :, 0] * np.exp(1j * (sent[:, None] + had))[..., None]
     if multiplexing == "bpm":
         signs = np.stack([np.ones(8), np.tile([1.0, -1.0], 4)])
-        cube = code_signal(np.repeat(np.sqrt(2.0) * echo.real, 8, axis=2), signs * np.exp(1j * sent)[:, None], True)
+        cube = code_signal(np.repeat(np.sqrt(2.0) * echo.real, 8, axis=2), signs * np.exp(1j * sent)[:, None], radar.waveform)
         wanted = np.einsum("trs,tk->rks", turned, signs)[None] * np.exp(1j * rate * begin)[..., None]
     else:
         wanted = turned[:, :, None] * np.exp(1j * rate * begin.reshape(4, 2).T[:, None])[..., None]

@@ -10,6 +10,7 @@ import echopath as ep
 from echopath import _core
 from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.base.text.mesh_names import object_of
+from echopath.spectra.range_transform import range_transform
 from echopath.spectra.windows import of_range, of_velocity, samples_of
 from echopath.transmit.signals import decompose_slots
 
@@ -201,7 +202,7 @@ def range_profiles(cube, waveform, num_ranges: int, *, window="hann", zero_pad: 
     scale = np.sqrt(2.0) if waveform.real else 1.0  # a real sample has half of its amplitude at positive frequencies
     num_samples = waveform.num_samples
     windowed = np.asarray(cube) * (scale * _taper(of_range(window), num_samples))
-    return np.fft.fft(windowed, num_samples * zero_pad)[..., :num_ranges]
+    return range_transform(windowed, waveform, num_samples * zero_pad)[..., :num_ranges]
 
 
 def chirp_weights(waveform, velocity_index: int, *, window="hann", zero_pad: int = 1):

@@ -1,11 +1,14 @@
 """Helpers of tests that click in the window of the viewer."""
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 import numpy as np
 
 from echopath_viewer.window.qt import Qt, QtCore
 
 PATIENCE_MS = 5000
+NEVER_MS = 10**7
 LEFT = Qt.MouseButton.LeftButton
 
 
@@ -19,6 +22,19 @@ def open_on_screen(qtbot, window) -> None:
 def settle(qtbot) -> None:
     """Until timers of zero length and the lists have had their turn."""
     qtbot.wait(60)
+
+
+@contextmanager
+def held(*timers):
+    """Timers that run do not end within the block, however long the machine takes for it."""
+    before = [timer.interval() for timer in timers]
+    for timer in timers:
+        timer.setInterval(NEVER_MS)
+    try:
+        yield
+    finally:
+        for timer, interval in zip(timers, before):
+            timer.setInterval(interval)
 
 
 def panel_of(window, *key):

@@ -10,7 +10,7 @@ from echopath_viewer.model.maps import signals
 from echopath_viewer.window.main_window import SIGNAL_PAUSE_MS
 from echopath_viewer.window.qt import Qt
 from echopath_viewer.window.scene.filter_box import UNKNOWN_PATHS, around_caret
-from support.window import LEFT, PATIENCE_MS, click_cell, settle
+from support.window import LEFT, PATIENCE_MS, click_cell, held, settle
 
 
 def test_a_typed_expression_filters_and_picks_agree_with_it(qtbot, window, frame):
@@ -91,10 +91,11 @@ def test_signals_wait_until_the_filters_have_come_to_rest(qtbot, window, monkeyp
         settle(qtbot)
     qtbot.wait(2 * SIGNAL_PAUSE_MS)
     assert len(made) == 1  # the signal is of all rays in the cells, however many are drawn
-    for bounces in (2, 1, 2, 3):
-        window.filter_box.from_box.setValue(bounces)
-        settle(qtbot)
-    assert len(made) == 1
+    with held(window._pause):
+        for bounces in (2, 1, 2, 3):
+            window.filter_box.from_box.setValue(bounces)
+            settle(qtbot)
+        assert len(made) == 1 and window._pause.isActive()
     qtbot.waitUntil(lambda: len(made) == 2, timeout=PATIENCE_MS)
     slow = [10 * np.log10(np.mean(np.abs(chirp) ** 2) * 1e3) for chirp in synthesize(*made[-1])[0, 0]]
     assert window.time_bar.strip._power == pytest.approx(slow, abs=1e-6)

@@ -9,9 +9,7 @@ import echopath as ep
 from echopath_viewer.model import CellBox, Filters
 from echopath_viewer.window.files.exporting import film_pictures
 from support import shapes
-from support.window import PATIENCE_MS, open_on_screen, settle
-
-NEVER_MS = 10**7  # between frames: the tests themselves say when the next one comes
+from support.window import PATIENCE_MS, held, open_on_screen, settle
 
 
 @pytest.fixture
@@ -23,23 +21,18 @@ def playing(qtbot, shared_window, stored_run):
 
 @contextmanager
 def played(qtbot, window, folder):
-    """Window that plays a folder, None: that which is open; its second frame has passed."""
+    """Window that plays a folder, None: that which is open; its second frame has passed; tests say when the next one comes."""
     if folder is not None:
         window.open_file(folder)
         open_on_screen(qtbot, window)
     control = window.time_line
-    timers = control._film, control._rest
-    before = [timer.interval() for timer in timers]
-    for timer in timers:
-        timer.setInterval(NEVER_MS)
-    window.toggle_play_frames()
-    try:
-        pass_to(qtbot, window, 1)
-        yield window
-    finally:
-        control.show(None)
-        for timer, interval in zip(timers, before):
-            timer.setInterval(interval)
+    with held(control._film, control._rest):
+        window.toggle_play_frames()
+        try:
+            pass_to(qtbot, window, 1)
+            yield window
+        finally:
+            control.show(None)
 
 
 def pass_to(qtbot, window, place: int) -> None:

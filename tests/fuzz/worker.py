@@ -19,6 +19,7 @@ HANG = 10.0           # s that one case may compute
 STARVED = 12.0        # times as long it may take without computing
 PATIENCE = 300.0      # s to start a worker and make its seeds
 MEMORY = 3 * 2**30    # bytes of address space of a worker and what it starts: what asks for more is refused, and told
+PROCESSORS = 16       # at most that libraries see: the stacks of a thread for each of 256 would leave none of that memory
 
 
 @dataclasses.dataclass(frozen=True)
@@ -104,6 +105,7 @@ def _cpu_time(pid: int) -> float:
 def _work(target: str, make, numbers, seconds: float, at, since, results) -> None:
     begin = time.monotonic()
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:PROCESSORS])
     warnings.simplefilter("ignore")
     ep.set_num_threads(1)  # the cases are small, and results do not depend on it
     case = (make or _target(target))()

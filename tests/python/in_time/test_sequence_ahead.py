@@ -25,6 +25,14 @@ SOAK, SETTLED = 30, 5  # frames of a soak, and those after which memory is to be
 GROWTH = 1.05          # of the resident memory
 
 
+@pytest.fixture(autouse=True)
+def two_threads():
+    """Also on one processor, where else nothing would be done ahead."""
+    ep.set_num_threads(2)
+    yield
+    ep.set_num_threads(0)
+
+
 def ahead_threads() -> list:
     return [one for one in threading.enumerate() if one.name == "echopath-ahead"]
 

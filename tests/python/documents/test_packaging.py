@@ -65,5 +65,5 @@ def test_each_rule_of_the_source_archive_matches_a_file():
 def test_the_source_archive_has_all_files_of_the_tests():
     rules = re.findall(r"^recursive-include (tests\S*) (.+)$", MANIFEST.read_text(encoding="utf-8"), re.M)
     taken = {path for folder, words in rules for word in words.split() for path in (ROOT / folder).rglob(word)}
-    there = {path for path in (ROOT / "tests").rglob("*") if path.is_file() and path.suffix != ".pyc"}
+    there = {path for path in (ROOT / "tests").rglob("*") if path.is_file() and path.parent.name != "__pycache__"}
     assert taken and not [path.relative_to(ROOT).as_posix() for path in there - taken]

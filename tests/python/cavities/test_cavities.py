@@ -224,8 +224,8 @@ import numpy as np
 from echopath.cavities import waves
 
 matrix = np.eye(1500) + 1j * np.random.default_rng(1).normal(size=(1500, 1500)) / 1500
-print("begun", flush=True)
 try:
+    print("begun", flush=True)
     while True:
         waves._solved(matrix, np.ones((1500, 1)))
 except KeyboardInterrupt:

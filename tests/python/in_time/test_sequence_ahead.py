@@ -243,8 +243,8 @@ import sys, threading, time
 import echopath as ep
 from echopath.sequence import ahead
 from support.frames_in_time import make_sequence
-print("begun", flush=True)
 try:
+    print("begun", flush=True)
     for frame in make_sequence(frames=100_000):
         pass
 except KeyboardInterrupt:

@@ -20,8 +20,8 @@ def test_ctrl_c_stops_a_job(ctrl_c_is_heard):
         sent.append(time.perf_counter())
         os.kill(os.getpid(), signal.SIGINT)
 
-    threading.Timer(0.2, interrupt).start()
     with pytest.raises(KeyboardInterrupt):
+        threading.Timer(0.2, interrupt).start()
         _core._wait(LONG)
     assert time.perf_counter() - sent[0] < LONG / 2
 

@@ -48,49 +48,55 @@ def draw_truth(truth: Truth, *, view: str = "radar", ax: Axes | None = None, tit
     """
     require_drawable("truth", "a Truth, as frame.truth is", truth, "corners_in_radar", "visible_share")
     choice(*VIEWS)("view", view)
-    names = list(dict.fromkeys(truth.name.tolist()))
+    rows = _rows_of_names(truth)
+    centres, ways = _centres(truth, view), _ways(truth, view)
     with axes_or_new(ax, *SIZE, LABELS[view]) as ax:
-        for name in names:
-            _draw_object(ax, truth.of_object(name), view)
+        _draw_lines(ax, [centres[own, 1::-1] for own in rows.values()], "-", 0.6)
+        _draw_boxes(ax, truth, view)
+        for begin, along in zip(centres, ways):
+            if np.hypot(*along[:2]) > SHORTEST:
+                _draw_arrow(ax, begin[1::-1], (begin + along)[1::-1])
+        ax.update_datalim(np.stack([centres + ways, centres])[..., 1::-1].reshape(-1, 2))
         ax.autoscale_view()
         across, up = LABELS[view]
-        ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, names, view))
+        ax.set(xlabel=across, ylabel=up, title=text("title", title) or ax.get_title() or _title(truth, len(rows), view))
         to_one_scale(ax)
-        write_names(ax, [(short_name(name), _centres(truth.of_object(name), view)[-1, 1::-1]) for name in _named(truth, names)])
+        write_names(ax, [(short_name(name), centres[rows[name][-1], 1::-1]) for name in _named(truth, rows)])
         ax.grid(alpha=0.25)
     return ax
 
 
-def _named(truth, names) -> list:
+def _rows_of_names(truth) -> dict:
+    """{name: its rows}, in the order in which names come first."""
+    found: dict = {}
+    for row, name in enumerate(truth.name.tolist()):
+        found.setdefault(name, []).append(row)
+    return found
+
+
+def _named(truth, rows: dict) -> list:
     """The names that may be written: those of which the radar sees most, in this order."""
-    share = [truth.visible_share[truth.name == name].max() for name in names]
-    return sorted(names, key=dict(zip(names, share)).get, reverse=True)[:MOST_NAMES]
+    share = {name: truth.visible_share[own].max() for name, own in rows.items()}
+    return sorted(rows, key=share.get, reverse=True)[:MOST_NAMES]
 
 
-def _centres(rows, view: str) -> np.ndarray:
-    return rows.position_in_radar if view == "radar" else rows.position
+def _centres(truth, view: str) -> np.ndarray:
+    return truth.position_in_radar if view == "radar" else truth.position
 
 
-def _draw_object(ax, rows, view: str) -> None:
-    corners, centre = rows.corners_in_radar if view == "radar" else rows.corners, _centres(rows, view)
-    way = _ways(rows, view)
-    faces = [(box[face, 1::-1], "-" if share > 0.0 else "--", 1.0)
-             for box, share in zip(corners, rows.visible_share) for face in FACES]
-    _draw_lines(ax, [(centre[:, 1::-1], "-", 0.6), *faces])
-    for middle, along in zip(centre, way):
-        if np.hypot(*along[:2]) > SHORTEST:
-            _draw_arrow(ax, middle[1::-1], (middle + along)[1::-1])
-    ax.update_datalim(np.stack([centre + way, centre])[..., 1::-1].reshape(-1, 2))
+def _draw_boxes(ax, truth, view: str) -> None:
+    """Lower and upper faces, dashed of what nothing is seen of."""
+    corners = truth.corners_in_radar if view == "radar" else truth.corners
+    for style, is_drawn in (("-", truth.visible_share > 0.0), ("--", ~(truth.visible_share > 0.0))):
+        _draw_lines(ax, corners[is_drawn][:, FACES, 1::-1].reshape(-1, len(FACES[0]), 2), style, 1.0)
 
 
-def _draw_lines(ax, lines: list) -> None:
-    """Lines of points [N, 2], each with its style and its width in points, above white ones."""
+def _draw_lines(ax, lines, style: str, width: float) -> None:
+    """Lines of points [N, 2] of a style and a width in points, above white ones."""
     from matplotlib.collections import LineCollection
 
-    rims = LineCollection([points for points, *_ in lines], colors="white", linewidths=RIM, zorder=RIMS)
-    ax.add_collection(rims, autolim=False)
-    for points, style, width in lines:
-        ax.plot(*points.T, style, linewidth=width, color=COLOUR, zorder=LINES)
+    ax.add_collection(LineCollection(lines, colors="white", linewidths=RIM, zorder=RIMS), autolim=False)
+    ax.add_collection(LineCollection(lines, colors=COLOUR, linewidths=width, linestyles=style, zorder=LINES))
 
 
 def _draw_arrow(ax, begin, end) -> None:
@@ -101,15 +107,15 @@ def _draw_arrow(ax, begin, end) -> None:
     ax.annotate("", end, begin, annotation_clip=False, arrowprops={"color": COLOUR, **shape})
 
 
-def _title(truth, names, view: str) -> str:
+def _title(truth, num_objects: int, view: str) -> str:
     arrows = np.any(np.hypot(*_ways(truth, view)[:, :2].T) > SHORTEST)
     dashes = np.any(truth.visible_share == 0.0)
-    return "; ".join([counted(len(names), "object"), *["arrows: ways of a second"] * bool(arrows),
+    return "; ".join([counted(num_objects, "object"), *["arrows: ways of a second"] * bool(arrows),
                       *["dashed: the radar sees nothing of it"] * bool(dashes)])
 
 
-def _ways(rows, view: str) -> np.ndarray:
+def _ways(truth, view: str) -> np.ndarray:
     """Ways [N, 3] in m over ground, 0 where they are not known."""
     if view == "world":
-        return WAY * rows.velocity
-    return WAY * np.nan_to_num(np.linalg.norm(rows.velocity, axis=1, keepdims=True) * rows.direction_in_radar)
+        return WAY * truth.velocity
+    return WAY * np.nan_to_num(np.linalg.norm(truth.velocity, axis=1, keepdims=True) * truth.direction_in_radar)

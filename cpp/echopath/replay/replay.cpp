@@ -16,7 +16,8 @@ namespace {
 
 // With this many paths, the legs and what these are made of stay in the second-level cache.
 constexpr size_t kPlannedTogether = 2000;
-constexpr int64_t kBlock = 8192;  // paths of a task
+constexpr int64_t kBlock = 8192;         // paths of a task
+constexpr size_t kMomentsTogether = 16;  // more would take memory and save no time
 
 const Radar& checked(const Radar& radar, const Paths& paths, const ReplaySettings& settings) {
   radar.validate();
@@ -230,10 +231,25 @@ void Replayer::evaluate_turning(std::span<const int64_t> indices, const PosedGri
   evaluate_at(indices, {&target, 1}, true);
 }
 
+std::vector<Replayer::Moment> Replayer::Moment::in_rows(std::span<const double> times, size_t num_paths, double* lengths,
+                                                        std::complex<double>* amplitudes) {
+  std::vector<Moment> moments;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const size_t first = i * num_paths;
+    moments.push_back({times[i], lengths ? lengths + first : nullptr, amplitudes ? amplitudes + first : nullptr});
+  }
+  return moments;
+}
+
 void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment> moments, Job* job) const {
+  for (size_t first = 0; first < moments.size(); first += kMomentsTogether) {
+    evaluate_together(indices, moments.subspan(first, std::min(kMomentsTogether, moments.size() - first)), job);
+  }
+}
+
+void Replayer::evaluate_together(std::span<const int64_t> indices, std::span<const Moment> moments, Job* job) const {
   std::vector<double> times;
   for (const Moment& moment : moments) times.push_back(moment.time);
-  if (times.empty()) return;
   const PosedNodes posed = posed_.pose(times);
   Wanted wanted;
   wanted.with_amplitudes = std::ranges::any_of(moments, [](const Moment& one) { return one.amplitudes; });

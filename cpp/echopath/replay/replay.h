@@ -29,6 +29,9 @@ class Replayer {
     double* lengths;                   // m
     std::complex<double>* amplitudes;  // sqrt(W)
 
+    // Returns the moments whose values are rows of tables [T, P].
+    static std::vector<Moment> in_rows(std::span<const double> times, size_t num_paths, double* lengths,
+                                       std::complex<double>* amplitudes);
     // Copies `count` values of echoes from one place on to another; lengths stand there in place of delays.
     void take(const Echoes& echoes, size_t from, size_t count, size_t to) const {
       if (lengths) std::copy_n(echoes.delay.data() + from, count, lengths + to);
@@ -101,7 +104,7 @@ class Replayer {
   // Takes back echoes that are no longer needed, so that their memory is used again.
   void recycle(std::span<Echoes> echoes) const;
 
-  // Computes lengths and amplitudes of `paths` between the first antennas at a few times, which together take little more
+  // Computes lengths and amplitudes of `paths` between the first antennas at some times, a few of which take little more
   // than one, as the kernels work on several nodes at once. Lengths have the same bits with other times beside them,
   // amplitudes are rounded in another way. Raises Cancelled when the job is cancelled.
   void evaluate(std::span<const int64_t> paths, std::span<const Moment> moments, Job* job = nullptr) const;
@@ -117,6 +120,7 @@ class Replayer {
  private:
   // Holds posed nodes and where the values of some channels at these nodes are written.
   struct Target;
+  void evaluate_together(std::span<const int64_t> paths, std::span<const Moment> moments, Job* job) const;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
   std::vector<Echoes> take_echoes_of(const PosedGrid& grid, const SomeTransmitters& transmitters, size_t num_echoes) const;

@@ -22,8 +22,6 @@
 namespace echopath::bindings {
 namespace {
 
-constexpr size_t kTimesTogether = 16;  // more would take memory and save no time
-
 size_t antenna_index(int64_t index, const char* argument, size_t count) {
   if (index >= 0 && index < static_cast<int64_t>(count)) return static_cast<size_t>(index);
   throw std::out_of_range(std::string(argument) + ": must lie in 0 to " + std::to_string(count - 1) + ", got " +
@@ -44,12 +42,18 @@ std::vector<int64_t> indices_of(const Paths& paths) {
   return indices;
 }
 
-using Moments = std::vector<Replayer::Moment>;
+// Names the tables [T, P] of which an evaluation writes those that are there.
+struct Tables {
+  double* lengths;                   // m
+  std::complex<double>* amplitudes;  // sqrt(W)
+};
 
-// Evaluates some paths at the moments, so many of them together. Runs beside Python, so that Ctrl-C is answered.
-void evaluate_one_channel(const Paths& paths, const std::vector<int64_t>& indices, const Moments& moments, size_t together,
-                          const Antenna& transmitter, const Antenna& receiver, SpecularPoints specular) {
-  for (const Replayer::Moment& moment : moments) require(std::isfinite(moment.time), "times", "must be finite", moment.time);
+// Evaluates some paths at some times: all together, or so that the bits of each time are the same whatever the others. Runs
+// beside Python, so that Ctrl-C is answered.
+void evaluate_one_channel(const Paths& paths, const std::vector<int64_t>& indices, const std::vector<double>& times,
+                          const Tables& tables, const Antenna& transmitter, const Antenna& receiver, SpecularPoints specular,
+                          bool by_themselves = false) {
+  for (const double time : times) require(std::isfinite(time), "times", "must be finite", time);
   run_job("replay", py::none(), [&](Job& job) {
     Radar radar = paths.radar;
     radar.transmitters = {transmitter};
@@ -57,21 +61,19 @@ void evaluate_one_channel(const Paths& paths, const std::vector<int64_t>& indice
     ReplaySettings settings;
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
-    for (size_t first = 0; first < moments.size(); first += together) {
-      replayer.evaluate(indices, std::span(moments).subspan(first, std::min(together, moments.size() - first)), &job);
-    }
+    const auto moments = Replayer::Moment::in_rows(times, indices.size(), tables.lengths, tables.amplitudes);
+    if (!by_themselves) return replayer.evaluate(indices, moments, &job);
+    for (const Replayer::Moment& moment : moments) replayer.evaluate(indices, {&moment, 1}, &job);
   });
 }
 
-// [T, P]. Each time by itself: its bits are the same whatever the other times.
+// [T, P]
 std::vector<std::complex<double>> series_of_amplitudes(const Paths& paths, const std::vector<double>& times,
                                                        const Antenna& transmitter, const Antenna& receiver,
                                                        SpecularPoints specular = SpecularPoints::kMaterial) {
   const auto num_paths = static_cast<size_t>(paths.num_paths());
   std::vector<std::complex<double>> amplitudes(times.size() * num_paths);
-  Moments moments;
-  for (size_t i = 0; i < times.size(); ++i) moments.push_back({times[i], nullptr, amplitudes.data() + i * num_paths});
-  evaluate_one_channel(paths, indices_of(paths), moments, 1, transmitter, receiver, specular);
+  evaluate_one_channel(paths, indices_of(paths), times, {nullptr, amplitudes.data()}, transmitter, receiver, specular, true);
   return amplitudes;
 }
 
@@ -113,9 +115,7 @@ py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
   const Antenna to = antenna_of(*receiver, "receiver", paths.radar.receivers);
   const auto num_paths = static_cast<size_t>(paths.num_paths());
   std::vector<double> lengths((*times).size() * num_paths);
-  Moments moments;
-  for (const double time : *times) moments.push_back({time, lengths.data() + moments.size() * num_paths, nullptr});
-  evaluate_one_channel(paths, indices_of(paths), moments, kTimesTogether, from, to, *replay);
+  evaluate_one_channel(paths, indices_of(paths), *times, {lengths.data(), nullptr}, from, to, *replay);
   return numpy_take(std::move(lengths), series_shape(paths, *times));
 }
 
@@ -166,12 +166,8 @@ py::tuple echoes_together(const Paths& paths, Arg<"times", VectorOf<double>> tim
   std::iota(indices.begin(), indices.end(), *begin);
   std::vector<double> lengths((*times).size() * indices.size());
   std::vector<std::complex<double>> amplitudes(lengths.size());
-  Moments moments;
-  for (size_t place = 0; const double time : *times) {
-    moments.push_back({time, lengths.data() + place, amplitudes.data() + place});
-    place += indices.size();
-  }
-  evaluate_one_channel(paths, indices, moments, kTimesTogether, transmitter, receiver, SpecularPoints::kMaterial);
+  const Tables tables{lengths.data(), amplitudes.data()};
+  evaluate_one_channel(paths, indices, *times, tables, transmitter, receiver, SpecularPoints::kMaterial);
   const Shape shape{std::ssize(*times), std::ssize(indices)};
   return py::make_tuple(numpy_take(std::move(lengths), shape), numpy_take(std::move(amplitudes), shape));
 }

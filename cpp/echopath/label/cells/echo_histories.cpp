@@ -14,20 +14,13 @@ namespace echopath {
 namespace {
 
 constexpr size_t kStatesTogether = 1 << 20;  // of paths at times: 24 MiB
-constexpr size_t kMomentsTogether = 16;      // more would take memory and save no time
 constexpr int64_t kRowsTogether = 64;
 
 // Holds some paths at some times, [T, N] each.
 struct States {
   States(const Replayer& replayer, std::span<const int64_t> some, std::span<const double> times, Job* job)
       : num_paths(some.size()), length(times.size() * some.size()), amplitude(length.size()) {
-    std::vector<Replayer::Moment> moments;
-    for (size_t i = 0; i < times.size(); ++i) {
-      moments.push_back({times[i], length.data() + i * num_paths, amplitude.data() + i * num_paths});
-    }
-    for (size_t first = 0; first < moments.size(); first += kMomentsTogether) {
-      replayer.evaluate(some, std::span(moments).subspan(first, std::min(kMomentsTogether, moments.size() - first)), job);
-    }
+    replayer.evaluate(some, Replayer::Moment::in_rows(times, num_paths, length.data(), amplitude.data()), job);
   }
 
   size_t num_paths;

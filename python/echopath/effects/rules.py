@@ -166,7 +166,7 @@ QUANTITIES = {
     "AntennaPattern": ("efficiency", "azimuth", "elevation"),
     "ChirpSequence": ("start_frequency", "num_samples", "num_chirps", "chirp_interval", "slope", "chirp_duration",
                       "window_centre", "centre_frequency", "band", "wavelength", "range_resolution", "max_range",
-                      "mean_interval"),
+                      "mean_interval", "falls"),
     "Radar": ("waveform", "transmit_power", "frame_duration", "num_slots", "position", "yaw", "pitch"),
     "Node": ("name", "parent", "placement", "mesh", "material", "material_name", "visible", "lifetime"),
     "trace": ("scene", "radar", "num_rays", "seed", "start_time", "max_rays", "settings", "progress"),

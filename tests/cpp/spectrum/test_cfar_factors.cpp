@@ -229,7 +229,7 @@ TEST(Cfar, TheLargestWindowsHearACancellation) {
     design.method = method;
     Job job;
     std::thread other([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));  // a small part of the work
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));  // a small part of the work
       job.cancel();
     });
     EXPECT_THROW(cfar_factors(design, &job), Cancelled);

@@ -20,7 +20,7 @@ FAULTS = [
     (RADAR.replace("bandwidth", "bandwith"), "radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?"),
     (RADAR.replace("bandwidth = 1e9", ""), "radar.waveform.bandwidth: is missing"),
     (RADAR.replace("1e9", "'1e9'"), "radar.waveform.bandwidth: must be a number, got '1e9'"),
-    (RADAR.replace("1e9", "-1.0"), "radar.waveform.bandwidth: must be greater than 0, got -1.0"),
+    (RADAR.replace("1e9", "0.0"), "radar.waveform: bandwidth: must be finite and not 0, negative where chirps fall, got 0"),
     (RADAR.replace("1e9", "nan"), "radar.waveform.bandwidth: must be finite, got nan"),
     (RADAR.replace("num_chirps = 8", "num_chirps = 8.5"), "radar.waveform.num_chirps: must be an integer, got 8.5"),
     (RADAR.replace("[0.0, 0.01, 1.0]", "[0.0, 1.0]"), "radar.receivers[0].position: must have at least 3 entries"),

@@ -12,6 +12,7 @@
 #include "echopath/label/cells/cell_errors.h"
 #include "echopath/label/cells/cells.h"
 #include "echopath/label/cells/echo_histories.h"
+#include "echopath/label/cells/middle_phase.h"
 #include "echopath/signal/noise.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "radar/window_name.h"
@@ -135,6 +136,10 @@ py::tuple histories_of(const Paths& paths, Arg<"index", VectorOf<int64_t>> index
                         numpy_take(std::move(found.largest)));
 }
 
+py::array middle_phases_of(const py::array_t<double, py::array::c_style>& lengths, const ChirpSequence& waveform) {
+  return numpy_take(without_gil([&] { return middle_phases(waveform, view(lengths)); }), shape_of(lengths));
+}
+
 using ComplexTable = py::array_t<std::complex<float>, py::array::c_style>;
 
 py::array row_sums_of(const ComplexTable& table, const py::array_t<int32_t, py::array::c_style>& rows,
@@ -164,6 +169,8 @@ void bind_cells(py::module_& m) {
   m.def("echo_histories", &histories_of, py::arg("paths"), py::arg("index"), py::arg("times"), py::arg("middle"),
         "(fields over the largest c64 [N, T], m farther away than at `middle` f32 [N, T], largest [N] in sqrt(W)) of the "
         "paths of an index [N] at times [T] in s, between the first antennas.");
+  m.def("middle_phases", &middle_phases_of, py::arg("lengths"), py::arg("waveform"),
+        "Phase factors, complex of the shape of the lengths in m, of the signals of echoes in the middle of a chirp.");
   m.def("weighted_row_sums", &row_sums_of, py::arg("table"), py::arg("rows"), py::arg("weights"),
         "Sums over rows [K] of a table c64 [N, T] with each of some weights c64 [W, T]: c64 [W, K].");
   m.def("share_errors", &errors_of, py::arg("cross"), py::arg("coherent"), py::arg("diffuse"), py::arg("dominant"),

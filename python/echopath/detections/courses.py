@@ -5,8 +5,8 @@ import dataclasses
 
 import numpy as np
 
+from .. import _core
 from ..paths.cells import around, chirp_times, echoes_at, turning_of
-from .histories import phase_of
 
 CHECKED = (0.137, 0.311, 0.618, 0.843)  # of the frame: at no simple fraction, as what turns comes back after whole turns
 UNSTEADY = 0.05                         # turns of the phase, by which a parabola may be wrong
@@ -47,7 +47,7 @@ def courses_of(paths) -> Courses:
         count = len(fractions)
         fields, around_first, around_last = amplitudes[:count], amplitudes[count:count + 2], amplitudes[count + 2:]
         size = np.abs(fields)
-        courses.field[some] = np.conj(fields[1]) * phase_of(lengths[1], waveform)
+        courses.field[some] = np.conj(fields[1]) * _core.middle_phases(lengths[1], waveform)
         courses.strongest[some] = size.max(axis=0)
         courses.swing[some] = np.ptp(size, axis=0) / np.maximum(courses.strongest[some], np.finfo(float).tiny)
         courses.away[some] = np.abs(lengths[:count] - lengths[1]).max(axis=0)

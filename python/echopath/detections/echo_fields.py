@@ -15,7 +15,7 @@ from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
 from .channels import Channels, by_channel
 from .courses import courses_of
-from .histories import Histories, length_and_field, phase_of
+from .histories import Histories, length_and_field
 from .response import MAX_SWEEP, Envelope, Response, responses_of, segments_of
 
 BYTES_PER_FIELD = 12   # place and field of a path in a channel
@@ -75,29 +75,29 @@ class EchoFields:
                 index, field = self.fields(cell)
                 yield index, field, np.mean(np.abs(gain * field.sum(axis=1)) ** 2)
             return
-        weights = by_channel(beams)
-        behind = weights * self._all.gains_of(gains, len(cells))
+        beside = by_channel(beams)
+        weights = np.stack([beside, beside * self._all.gains_of(gains, len(cells))], axis=1)
         keys = [_key(cell) for cell in cells]
         self._follow(keys)
         held = [self._holding(cell) for cell in with_progress(keys, len(keys), progress, "paths of cells")]
         fields, whole = [np.zeros(len(some), complex) for some in held], np.zeros(len(held), complex)
-        for i, row, of_channels in self._in_all_channels(keys, held):
-            fields[i][row], whole[i] = weights[i] @ of_channels, whole[i] + behind[i] @ of_channels.sum(axis=1)
+        for i, row, (alone, behind) in self._in_beams(keys, held, weights):
+            fields[i][row], whole[i] = alone, whole[i] + behind.sum()
         for some, field, power in zip(held, fields, np.abs(whole) ** 2):
             yield self._echoes["index"][some], field[None], power
 
-    def _in_all_channels(self, cells, held):
-        """Yields (index of a cell, slice of the places [K] of the echoes that hold it, their fields [C, N] in sqrt(W)) in all
-        channels, of all cells. Echoes are made together as far as MAX_MEMORY holds them."""
+    def _in_beams(self, cells, held, weights):
+        """Yields (index of a cell, slice of the places [K] of the echoes that hold it, sums [B, N] in sqrt(W) of their fields in
+        all channels with its weights [B, C]) of all cells. Each echo is made once, as many together as MAX_MEMORY holds."""
         room = max(MAX_MEMORY // (BYTES_TOGETHER * len(self._all.indices)), 1)
-        pieces = [(i, slice(begin, begin + room)) for i, some in enumerate(held) for begin in range(0, len(some), room)]
-        turns = np.cumsum([len(held[i][row]) for i, row in pieces]) // room
-        for turn in np.unique(turns):
-            members = [pieces[k] for k in np.flatnonzero(turns == turn)]
-            keep = _all_of([held[i][row] for i, row in members], len(self._power))
+        together = _all_of(held, len(self._power))
+        for begin in range(0, len(together), room):
+            keep = together[begin:begin + room]
             echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()}, self._all)
-            for i, row in members:
-                yield i, row, self._fields(echoes, np.searchsorted(keep, held[i][row]), cells[i], self._all)
+            for i, some in enumerate(held):
+                row = slice(*np.searchsorted(some, (keep[0], keep[-1] + 1)))
+                if row.start < row.stop:
+                    yield i, row, self._weighted(echoes, np.searchsorted(keep, some[row]), cells[i], self._all, weights[i])
 
     def peak_of(self, keep) -> float:
         """Power in W of the strongest cell of the map of the paths where `keep` [P] is true, mean over all channels."""
@@ -147,6 +147,20 @@ class EchoFields:
             rise = gain(high) - at_low if len(rows) > 1 else 0.0
             gains[rows] = at_low + (shift[rows] - low) / np.maximum(high - low, np.finfo(np.float32).tiny) * rise
         return gains
+
+    def _weighted(self, echoes: dict, some, cell, channels: Channels, weights) -> np.ndarray:
+        """Sums of the fields of some echoes in a cell over the channels with weights [B, C], complex [B, N]: as by `_fields`, of
+        which arrays of all channels would take most of the time. Gains are straight lines between neighbours."""
+        gain, sums = self._gain(echoes, some, cell), np.zeros((len(weights), len(some)), complex)
+        for rows in channels.neighbours:
+            shift, field = (echoes[name][np.ix_(rows, some)] for name in ("shift", "field"))
+            low, high = shift.min(axis=0), shift.max(axis=0)
+            at_low = gain(low)
+            sums += at_low * (weights[:, rows] @ field)
+            if len(rows) > 1:
+                rise = (gain(high) - at_low) / np.maximum(high - low, np.finfo(np.float32).tiny)
+                sums += rise * (weights[:, rows] @ ((shift - low) * field))
+        return sums
 
     def _gain(self, echoes: dict, some, cell):
         """Function of a shift in range, in bins: what a cell has of the fields of some echoes so far away, complex64 [N]."""
@@ -312,7 +326,8 @@ class EchoFields:
         some = np.flatnonzero(rows >= 0)
         waveform, first, largest = self._paths.radar.waveform, echoes["first"][some], self._histories.largest(rows[some])
         visible = np.abs(first) > np.sqrt(FADED) * largest
-        by_way = phase_of(length[:, some], waveform) * np.conj(phase_of(echoes["length"][some], waveform))
+        first_phase = _core.middle_phases(echoes["length"][some], waveform)
+        by_way = _core.middle_phases(length[:, some], waveform) * np.conj(first_phase)
         beside_first = np.divide(field[np.ix_(channels, some)], first, out=by_way, where=visible)
         field[np.ix_(channels, some)] = largest * beside_first
 

@@ -65,11 +65,4 @@ def _joined(first, second) -> np.ndarray:
 def length_and_field(paths, time: float, tx: int, receivers: list) -> tuple:
     """Length [R, P] in m and signal, complex [R, P] in sqrt(W), of each path at a time in s, in the middle of a chirp."""
     length, amplitude = paths._echoes_at_receivers(time, tx, receivers)
-    return length, np.conj(amplitude) * phase_of(length, paths.radar.waveform)
-
-
-def phase_of(length, waveform) -> np.ndarray:
-    """Phase factor of the signal of echoes of some length in m, in the middle of a chirp."""
-    delay = length / _core.speed_of_light
-    cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2
-    return np.exp(2j * np.pi * np.mod(cycles, 1.0))
+    return length, np.conj(amplitude) * _core.middle_phases(length, paths.radar.waveform)

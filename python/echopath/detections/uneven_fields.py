@@ -94,6 +94,9 @@ class UnevenEchoFields(EchoFields):
                 gains[row] = gain(shift[row])
         return gains
 
+    def _weighted(self, echoes: dict, some, cell, channels: Channels, weights) -> np.ndarray:
+        return weights @ self._fields(echoes, some, cell, channels)
+
     def _gain_of(self, chirps: _Chirps, echoes: dict, some, cell):
         """Function as that of `_gain`, for a transmitter with these chirps."""
         group = self._group_of(chirps)

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "echopath/base/constants.h"
-#include "echopath/base/lanes/phasor.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/label/cells/middle_phase.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
@@ -26,21 +25,6 @@ struct States {
   size_t num_paths;
   std::vector<double> length;                   // m
   std::vector<std::complex<double>> amplitude;  // sqrt(W)
-};
-
-// Says how the phase of a signal in the middle of the samples follows from the delay of the echo.
-struct MiddlePhase {
-  explicit MiddlePhase(const ChirpSequence& waveform)
-      : carrier(waveform.start_frequency + waveform.slope() * waveform.window_centre()), half_slope(0.5 * waveform.slope()) {
-  }
-
-  std::complex<double> of(double length) const {
-    const double delay = length / kSpeedOfLight, cycles = carrier * delay - half_slope * delay * delay;
-    const Phasor phasor = phasor_of_cycles(cycles);
-    return {phasor.re, phasor.im};
-  }
-
-  double carrier, half_slope;  // Hz, Hz/s
 };
 
 // Writes path `from` of the states as a row; `middle`: m, its length in the middle.

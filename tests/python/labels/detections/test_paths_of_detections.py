@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import pickle
 import tracemalloc
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -224,6 +225,17 @@ def test_no_path_gives_more_to_a_cell_than_its_bound(window, travel, sweep):
     bound = envelope.bound(slow, travel + sweep) * envelope.bound(far, travel)
     assert np.all(field <= BEYOND * bound) and np.sum(field ** 2) < np.sum(bound ** 2)
     assert bound.max() <= 1.0
+
+
+@pytest.mark.parametrize("bandwidth", [1e9, -1e9])
+def test_phases_in_the_middle_of_a_chirp_are_those_of_the_carrier(bandwidth):
+    """2 pi {(f0 + slope t) d - slope d^2 / 2}, whole turns taken out in fractions, which round nothing."""
+    waveform, lengths = ep.ChirpSequence(bandwidth=bandwidth), np.array([[0.0, 3.25], [40.5, 299.792458]])
+    middle, slope = Fraction(waveform.window_centre), Fraction(waveform.slope)
+    delays = [Fraction(length) / 299792458 for length in lengths.ravel()]
+    turns = [(Fraction(waveform.start_frequency) + slope * middle) * delay - slope * delay ** 2 / 2 for delay in delays]
+    wanted = np.exp(2j * np.pi * np.array([float(one - round(one)) for one in turns])).reshape(2, 2)
+    np.testing.assert_allclose(_core.middle_phases(lengths, waveform), wanted, rtol=0, atol=1e-9)
 
 
 def test_several_receivers_at_once_have_the_echoes_that_each_has_by_itself(movers):

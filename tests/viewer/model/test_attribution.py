@@ -24,9 +24,12 @@ def frame_attribution(frame):
 
 
 @pytest.mark.parametrize("settings", [{}, {"window": "rect", "zero_pad": 3}, {"window": ("chebyshev", 80.0), "zero_pad": 2}])
+@pytest.mark.parametrize("falls", [False, True])
 @pytest.mark.parametrize("real", [False, True])
-def test_weights_of_a_cell_are_those_of_the_map(frame, settings, real):
+def test_weights_of_a_cell_are_those_of_the_map(frame, settings, real, falls):
     radar = like(frame.radar, real=real)
+    if falls:
+        radar = radar.replace(waveform=radar.waveform.replace(bandwidth=-radar.waveform.bandwidth))
     rng = np.random.default_rng(5)
     cube = rng.normal(size=(2, 2, 32, 128)) + (0.0 if real else 1j * rng.normal(size=(2, 2, 32, 128)))
     values = ep.range_doppler(cube.astype(complex), radar, **settings).values

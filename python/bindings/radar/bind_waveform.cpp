@@ -41,9 +41,8 @@ double max_velocity(const ChirpSequence& self, Arg<"num_slots", Positive> num_sl
 std::string text_of(const ChirpSequence& w) {
   return streamed(
       "ChirpSequence(", w.start_frequency * 1e-9, w.falls() ? " GHz - " : " GHz + ", std::abs(w.bandwidth) * 1e-9, " GHz, ",
-      w.num_samples,
-      (w.real ? " real" : " complex"), " samples at ", w.sampling_rate * 1e-6, " MHz, ", counted(w.num_chirps, "chirp"),
-      " every ", w.chirp_interval * 1e6, " us",
+      w.num_samples, (w.real ? " real" : " complex"), " samples at ", w.sampling_rate * 1e-6, " MHz, ",
+      counted(w.num_chirps, "chirp"), " every ", w.chirp_interval * 1e6, " us",
       (w.extra_idle.empty() && w.frequency_steps.empty() && w.bandwidth_steps.empty() ? ")" : ", slots differ)"));
 }
 

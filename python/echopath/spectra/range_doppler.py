@@ -83,9 +83,12 @@ def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod
     right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
     channels whose noise is independent. That of transmitters whose codes correlate ("cdm") is not: eight of random phases in 64
     chirps have 4 times the false alarms asked for at 1e-3, 7 times at 1e-4. Nor is that of "ddm" in maps of windows
-    that have the ends of the frame: 50 times with "rect", 4 times with "taylor". Behind the filters of `radar.receiver` cells
-    compare by their power over that of the noise at their range, which follows from the filters, the imbalance of the branches
-    and, for what the converter adds, the quietest ranges of the map.
+    that have the ends of the frame: 50 times with "rect", 4 times with "taylor". Nor is it for all cells of real samples: at
+    velocity 0 and at the end of the velocity axis the noise of the first cell of range is real, and one channel has some 8 times
+    the false alarms asked for there at 1e-3, 200 times at 1e-6, in maps of one chirp 5 and 30 times. Other cells within the main
+    lobe of range 0 have up to twice as many. Behind the filters of `radar.receiver` cells compare by their power over that of the
+    noise at their range, which follows from the filters, the imbalance of the branches and, for what the converter adds, the
+    quietest ranges of the map.
     Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar, as its receiver gives it
     radar: that of the spectrum

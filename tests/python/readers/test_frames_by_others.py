@@ -9,10 +9,14 @@ RANGE, AZIMUTH, SPEED, RADIUS = 3.2, 0.3, 1.5, 0.1  # m, rad, m/s of a sphere th
 LIGHT = 299792458.0
 
 
-@pytest.fixture(scope="module", params=[{}, {"extra_idle": [3e-6, 0.0, 1e-6]}, {"real": True}], ids=["plain", "uneven", "real"])
+KINDS = {"plain": {}, "uneven": {"extra_idle": [3e-6, 0.0, 1e-6]}, "real": {"real": True}, "falling": {"bandwidth": -1e9},
+         "real_falling": {"bandwidth": -1e9, "real": True}}
+
+
+@pytest.fixture(scope="module", params=KINDS.values(), ids=KINDS)
 def file(request, tmp_path_factory):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=8e6, num_chirps=32,
-                                chirp_interval=2e-5, **request.param)
+    waveform = ep.ChirpSequence(**{"start_frequency": 77e9, "bandwidth": 1e9, "num_samples": 64, "sampling_rate": 8e6,
+                                   "num_chirps": 32, "chirp_interval": 2e-5} | request.param)
     half = 0.5 * waveform.wavelength
     radar = ep.Radar(waveform, transmitters=[ep.Antenna((0.0, 2 * half * m, 0.0)) for m in range(3)],
                      receivers=[ep.Antenna((0.0, half * n, 0.0)) for n in range(2)], transmit_power=1.0)
@@ -55,7 +59,9 @@ def test_spectra_are_transforms_of_the_samples(file):
     cube, found = file["signal/noisy_cube"][:], file["spectra/values"][:]
     windows = [np.hanning(count + 1)[:-1] for count in cube.shape[2:]]  # the settings' "hann", periodic
     weights = np.outer(*(window / window.sum() for window in windows))
-    told = np.fft.fftshift(np.fft.fft2(cube * weights), axes=2)
+    falls = file["radar/waveform"].attrs["bandwidth"] < 0.0
+    over_samples = np.fft.ifft(cube * weights, norm="forward") if falls else np.fft.fft(cube * weights)
+    told = np.fft.fftshift(np.fft.fft(over_samples, axis=2), axes=2)
     if file["radar/waveform"].attrs["real"]:
         told = np.sqrt(2.0) * told[..., :cube.shape[3] // 2]
     np.testing.assert_allclose(found, told, rtol=0.0, atol=1e-12 * abs(found).max())

@@ -184,6 +184,16 @@ def test_parallel_chirps_of_another_radar_are_a_tone_at_their_delay(real):
     assert (beat if not real else -abs(beat)) == pytest.approx(SLOPE * 3.0 / C, abs=RATE / COUNT / 2)
 
 
+@pytest.mark.parametrize("real, heard", [(False, [False, True]), (True, [True, True])])
+def test_of_parallel_chirps_those_of_higher_frequencies_are_heard(real, heard):
+    """Beats of a radar whose chirps fall are negative: complex samples have none of a sender whose frequency is lower."""
+    victim, powers = build_radar(**FALLING, real=real), []
+    for apart in (-5e6, 5e6):
+        sender = build_radar(**FALLING | {"start_frequency": START + apart}, position=(3, 0, 0), yaw=np.pi)
+        powers.append(np.mean(np.abs(ep.interference(victim, sender)[0, 0, 2, 8:-8]) ** 2))
+    assert [power > 0.5 * max(powers) for power in powers] == heard
+
+
 def test_a_rising_chirp_crosses_those_that_fall_for_as_long_as_the_slopes_say():
     """Heard while the difference of the frequencies is in the band, a sampling rate wide, whose slopes add up."""
     sender = other(slope_ratio=0.5, crossing=12.8e-6)

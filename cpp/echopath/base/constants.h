@@ -4,7 +4,7 @@
 // The conventions have their only home here:
 //  * time factor e^{+jwt}: a wave that travelled L carries e^{-jkL};
 //  * |amplitude|^2 of a path is the power in W at the receiver's port, without e^{-jkL}: the phase comes from the delay;
-//  * IF signal: mixer s_tx conj(s_rx), so a delay tau gives a positive beat frequency slope * tau;
+//  * IF signal: mixer s_tx conj(s_rx), so a delay tau gives a beat frequency slope * tau, negative where chirps fall;
 //  * speed v = dR/dt, receding positive;
 //  * barycentric p = (1-u-v) v0 + u v1 + v v2;
 //  * cubes are ordered [tx, rx, chirp, sample].

@@ -110,7 +110,7 @@ Fft range_fft_of(const ChirpSequence& waveform, int size) {
   return Fft(size, waveform.falls() ? FftDirection::kBackward : FftDirection::kForward);
 }
 
-// A real sample sqrt(2) Re s carries s / sqrt(2) at the positive frequencies.
+// A real sample sqrt(2) Re s carries s / sqrt(2) at the frequencies of its beats.
 Taper range_taper_of(const ChirpSequence& waveform, const Window& window) {
   return unit_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
 }

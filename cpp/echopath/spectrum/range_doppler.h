@@ -32,8 +32,8 @@ std::vector<double> range_axis(const ChirpSequence& waveform, int num_bins);
 std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, int num_bins);
 
 // Applies the windowed Fourier transform to the cube [tx, rx, chirp, sample] over samples and chirps, both padded to
-// zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, positive beat frequencies
-// only). The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the
+// zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, beat frequencies of the slope's
+// sign only). The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the
 // threads. Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window = {},
                            int zero_pad = 1, Job* job = nullptr);

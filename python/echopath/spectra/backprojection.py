@@ -169,5 +169,4 @@ class _Profiles:
         below = np.minimum(place.astype(np.int64), self._end - 2)
         profile = range_transform(samples * self._taper, waveform, len(self._from_middle)) * self._from_middle
         value = profile[below] + (place - below) * (profile[below + 1] - profile[below])
-        phase = 2.0 * np.pi * (middle_frequency * delay - 0.5 * waveform.slope * delay**2)
-        return np.where(place < self._end - 1, value * np.exp(-1j * phase), 0.0)
+        return np.where(place < self._end - 1, value * np.conj(_core.middle_phases(legs.length, waveform)), 0.0)

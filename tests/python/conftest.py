@@ -46,7 +46,7 @@ def blank_pictures(monkeypatch):
     """The figures and films of commands are made but not drawn, which they spend most of their time with: for tests of all else.
     Their files are there, and empty."""
     monkeypatch.setattr(ep.plots, "save_png", lambda figure, path, **_: Path(path).write_bytes(b""))
-    monkeypatch.setattr("echopath.cli.run_sequence.write_film_of", lambda drive, path, interval: Path(path).write_bytes(b""))
+    monkeypatch.setattr("echopath.cli.run_sequence.write_film_of", lambda drive, path: Path(path).write_bytes(b""))
 
 
 @pytest.fixture

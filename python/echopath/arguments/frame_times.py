@@ -23,7 +23,12 @@ def require_frame(argument: str, radar: _core.Radar, start_time: float) -> None:
     require_motion(argument, radar, (start_time, start_time + radar.frame_duration))
 
 
+def has_room(radar: _core.Radar, interval: float) -> bool:
+    """Whether frames of a radar may begin `interval` s after each other."""
+    return interval >= radar.frame_duration * (1.0 - _ROUNDING)
+
+
 def require_room(argument: str, radar: _core.Radar, interval: float) -> None:
     """Raises ValueError naming the argument where frames of a radar, one begun each `interval` in s, overlap."""
-    if interval < radar.frame_duration * (1.0 - _ROUNDING):
+    if not has_room(radar, interval):
         raise refused(ValueError, argument, f"at least {radar.frame_duration:.9g} s, the duration of a frame", interval)

@@ -30,6 +30,7 @@ from ..scene.lifetimes import scene_in_frame
 from ..scene_file import load_scene
 from ..scene_file.load import parse
 from ..sequence.folder import NAME as SEQUENCE_FILE
+from ..sequence.starts import Starts, pace_words
 from ..signals.measures import with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
@@ -89,7 +90,7 @@ def _describe_foreign(path, unit, up, *, with_overlaps: bool = True) -> list[str
 
 def _describe_sequence(stored) -> list[str]:
     lines = [str(stored.path), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
-             report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
+             report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, {stored._pace()}"),
              report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
     return [*lines, *_describe_scene(stored.scene, stored.radar, float(stored.times[0])),
             *_describe_radar(stored.radar, float(stored.times[0]))]
@@ -148,12 +149,19 @@ def _describe_results(scene_file) -> list[str]:
     """What a run of the scene file makes beside maps: frames in time, labels, detections, truth."""
     lines, sequence = [], scene_file.sequence
     if sequence is not None:
-        first = scene_file.trace.start_time
-        last = first + (sequence.frames - 1) * sequence.interval
-        lines = ["frames in time", report.line("frames", f"{sequence.frames}, every {sequence.interval:.6g} s"),
-                 report.line("starts", f"{first:.6g} to {last:.6g} s"), report.line("kept", sequence.keep)]
+        times = _starts_of(scene_file)
+        lines = ["frames in time", report.line("frames", f"{len(times)}, {pace_words(times, sequence.interval)}"),
+                 report.line("starts", f"{times[0]:.6g} to {times[-1]:.6g} s"), report.line("kept", sequence.keep)]
     wanted = [name for name in ("labels", "detections", "truth") if getattr(scene_file, name) is not None]
     return [*lines, "results", report.line("beside maps", ", ".join(wanted))] if wanted else lines
+
+
+def _starts_of(scene_file):
+    """Starts of the frames in time of a scene file, [K] in s."""
+    table = scene_file.sequence
+    if table.times is not None:
+        return np.array(table.times, float)
+    return Starts(scene_file.trace.start_time, table.interval, None).of_all(range(table.frames))
 
 
 def _describe_scene(scene, radar, start_time: float) -> list[str]:

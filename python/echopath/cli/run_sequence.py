@@ -49,22 +49,20 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
 
     extra_parts: as in `simulate_file`
     """
-    frames, interval, keep = (_chosen(scene_file, options, name) for name in ("frames", "interval", "keep"))
-    if interval is None:
-        raise ValueError("--interval: must be given with --frames, in s from the start of a frame to that of the next")
+    keep = _chosen(scene_file, options, "keep")
     keywords = keywords_of(scene_file, num_rays=options.rays, seed=options.seed, batches=options.batches,
                            truth=options.truth or None, extra_parts=extra_parts)
     if options.raw is not None and (keep not in (None, "all") or options.shard is not None):
         raise ValueError("--raw: needs the signals of all frames: --keep all, without --shard")
     if keep == "labels" and keywords["labels"] is None:
         keywords["labels"] = True
-    sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
-    yield f"{scene_file.title or scene_file.path}: {counted(frames, 'frame')} every {interval:g} s"
+    sequence = Sequence(scene_file.scene, scene_file.radar, **keywords | _starts(scene_file, options))
+    yield f"{scene_file.title or scene_file.path}: {counted(len(sequence), 'frame')} {sequence._pace()}"
     objects, unresolved = scene_file.label_objects(), []
     with progress_bars() as progress:
         for saved in sequence._save_frames(options.out, keep or "all", options.shard, progress,
                                            look=lambda frame: unresolved.append(unresolved_of_frame(frame, objects))):
-            yield _line(saved, frames)
+            yield _line(saved, len(sequence))
     stored = load_sequence(options.out)
     yield f"wrote {stored}"
     if options.raw is not None:
@@ -86,13 +84,28 @@ def _write_pictures(stored, title: str) -> Iterator[str]:
         plots.save_png(plots.plot_drive(drive, title=title), picture, seed=stored.settings["seed"],
                        noise_seed=stored.settings["noise_seed"])
         yield f"wrote {picture}"
-        write_film_of(drive, film, stored.interval)
+        write_film_of(drive, film)
         yield f"wrote {film}"
 
 
 def _beside(stored, name: str) -> Path:
     """A file in the folder of frames, or beside the file of all, which begins with its name."""
     return stored.path / name if stored.path.is_dir() else stored.path.with_name(f"{stored.path.stem}_{name}")
+
+
+def _starts(scene_file: SceneFile, options) -> dict:
+    """{keyword: value} of `Sequence` that tell when the frames begin. Of the times of a scene file `--frames` takes the first."""
+    times = getattr(scene_file.sequence, "times", None)
+    if times is not None and options.interval is None:
+        if options.frames is not None and options.frames > len(times):
+            raise ValueError(f"--frames: must be at most {len(times)}, the times of the scene file, got {options.frames}")
+        return {"times": times[:options.frames]}
+    frames, interval = (_chosen(scene_file, options, name) for name in ("frames", "interval"))
+    if interval is None:
+        raise ValueError("--interval: must be given with --frames, in s from the start of a frame to that of the next")
+    if frames is None:
+        raise ValueError("--frames: must be given with --interval in the place of the times of the scene file")
+    return {"frames": frames, "interval": interval}
 
 
 def _chosen(scene_file: SceneFile, options, name: str):

@@ -137,7 +137,7 @@ def sequence_html(row, kind: str, facts: dict) -> str:
     """How many frames there are, and when; facts: further {name: value}."""
     times, ends = row.times, "none"
     if len(times):
-        ends = f"{times[0]:.6g} to {times[-1]:.6g} s, every {row.interval:.6g} s"
+        ends = f"{times[0]:.6g} to {times[-1]:.6g} s, {row._pace()}"
     return _pairs(kind, {"frames": len(times), "starts": ends, "objects": len(row.scene)} | facts)
 
 

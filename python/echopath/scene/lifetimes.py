@@ -1,7 +1,8 @@
 """What of a scene is there in a frame, and at a time."""
 from __future__ import annotations
 
-import math
+import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.names import first_names
@@ -46,24 +47,23 @@ def warn_of_absence(scene: _core.Scene, radar: _core.Radar, begin: float, end: f
     return True
 
 
-def warn_of_the_unseen(scene: _core.Scene, radar: _core.Radar, start_time: float, interval: float, frames: int) -> None:
+def warn_of_the_unseen(scene: _core.Scene, radar: _core.Radar, starts: NDArray[np.float64]) -> None:
     """Warns (RuntimeWarning) of visible objects that come and go within a run and are in none of its frames.
 
-    start_time: s, of the first frame; interval: s, from start to start
+    starts: [K] s, of the frames, in order
     """
     duration = radar.frame_duration
-    end = start_time + (frames - 1) * interval + duration
     slack = _ROUNDING * duration
     unseen = []
     for name, (first, last) in _lifetimes(scene).items():
-        if start_time <= first < last <= end:
-            next_start = start_time + math.ceil((first - slack - start_time) / interval) * interval
-            if next_start + duration > last + slack:
+        if starts[0] <= first < last <= starts[-1] + duration:
+            later = starts[np.searchsorted(starts, first - slack):]
+            if not len(later) or later[0] + duration > last + slack:
                 unseen.append(name)
     if unseen:
         come, are, their = ("comes and goes", "is", "its") if len(unseen) == 1 else ("come and go", "are", "their")
         warn_user(f"{first_names(unseen)} {come} between the starts of frames and {are} in none of them: {their} lifetime must "
-                  f"cover a whole frame, {duration:.3g} s of every {interval:g} s")
+                  f"cover a whole frame of {duration:.3g} s")
 
 
 def _lifetimes(scene: _core.Scene) -> dict[str, tuple[float, float]]:

@@ -30,6 +30,7 @@ from ..trajectories import Trajectory
 from ..trajectories.files.rows import KeptRows
 from .errors import blamed, validated
 from .foreign import foreign_scene
+from .frame_starts import read_starts
 from .lines import with_lines
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
@@ -81,7 +82,7 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
-                               detections=settings.detections, guard=settings.guard, sequence=settings.sequence,
+                               detections=settings.detections, guard=settings.guard, sequence=_sequence(settings, folder),
                                **_tables_of_objects(settings, scene, radar))
         with blamed("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings(), zero_pad=scene_file.signal.zero_pad)
@@ -212,6 +213,17 @@ def _radar_of(table: RadarTable, folder: Path, trajectories: Trajectories, key: 
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
                            empty_slots=table.empty_slots, code_phases=table.code_phases, receiver=table.receiver,
                            **_place(table, trajectories, key))
+
+
+def _sequence(settings: SceneTable, folder: Path):
+    """The table of the frames in time, with the starts of a file that it names in the place of its name; None without one."""
+    table = settings.sequence
+    if table is None or not isinstance(table.times, str):
+        return table
+    try:
+        return table.model_copy(update={"times": read_starts(named_file(folder, table.times))})
+    except _core.FileError as error:
+        raise _core.FileError(f"sequence.times: {error}") from None
 
 
 def _build_interferers(settings: SceneTable, folder: Path, trajectories: Trajectories) -> list[Interferer]:

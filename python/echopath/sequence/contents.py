@@ -10,16 +10,18 @@ import numpy as np
 from .. import _core
 from ..arguments.shown import shown
 from ..frame_file.container import SEQUENCE, our_file, write_head
-from ..frame_file.h5 import blames_group, read_attribute, read_group
+from ..frame_file.h5 import blames_group, read_array, read_attribute, read_group, write_array
 from ..frame_file.radar import read_radar, write_radar
 from ..frame_file.scene import read_scene, write_scene
 from ..frame_file.scene.interferers import read_interferers, write_interferers
 from ..frame_file.settings import write_setting
 from ..scene.scene import Scene
 
+SETTINGS = "settings"       # group of those of a sequence
 FRAMES = "frames"           # group of the frames in a file of all
-_GROWS = "frames"           # the one setting in which two runs into one place may differ
-_APART = {"settings", FRAMES}  # items that are compared in another way, or not at all
+TIMES = "times"             # the setting of the starts that were given, in s: a dataset, as there may be a million
+_GROWS = {"frames", TIMES}  # the settings in which two runs into one place may differ: the later one has more of the same
+_APART = {SETTINGS, FRAMES}  # items that are compared in another way, or not at all
 
 
 class Contents(NamedTuple):
@@ -36,13 +38,15 @@ def write_contents(file, contents: Contents) -> None:
     write_scene(file.create_group("scene"), contents.scene)
     write_radar(file.create_group("radar"), contents.radar)
     write_interferers(file, contents.scene)
-    write_settings(file.create_group("settings"), contents.settings)
+    _write_settings(file.create_group(SETTINGS), contents.settings)
 
 
-def write_settings(group, settings: dict[str, Any]) -> None:
-    """Writes settings in place of those that a group has."""
+def _write_settings(group, settings: dict[str, Any]) -> None:
     for name, value in settings.items():
-        write_setting(group, name, value)
+        if name == TIMES and value is not None:
+            write_array(group, TIMES, np.array(value, np.float64))
+        else:
+            write_setting(group, name, value)
 
 
 def read_contents(path) -> Contents:
@@ -60,12 +64,13 @@ def settings_of(path) -> dict[str, Any]:
 
 def read_settings(file) -> dict[str, Any]:
     """{keyword: value} of a file of contents."""
-    return _read_settings(read_group(file, "settings"))
+    return _read_settings(read_group(file, SETTINGS))
 
 
 @blames_group
 def _read_settings(group) -> dict[str, Any]:
-    return {name: json.loads(read_attribute(group, name, str)) for name in group.attrs}
+    settings = {name: json.loads(read_attribute(group, name, str)) for name in group.attrs}
+    return settings | {TIMES: read_array(group, TIMES, np.float64, (None,)).tolist()} if TIMES in group else settings
 
 
 def what_differs(mine: Path, theirs: Path) -> str:
@@ -81,10 +86,17 @@ def what_differs(mine: Path, theirs: Path) -> str:
 def _other_setting(ours, theirs) -> str:
     mine, there = read_settings(ours), read_settings(theirs)
     for name in sorted(mine.keys() | there.keys()):
-        grows = name == _GROWS and mine[name] >= there.get(name, 0)
-        if mine.get(name) != there.get(name) and not grows:
-            return f"{name} is {shown(there.get(name))} there and {shown(mine.get(name))} here"
+        here, before = mine.get(name), there.get(name)
+        if here != before and not (name in _GROWS and _goes_on(here, before)):
+            return f"{name} is {shown(before)} there and {shown(here)} here"
     return ""
+
+
+def _goes_on(here, before) -> bool:
+    """Whether a setting has more of the same: a larger number, or further times."""
+    if isinstance(here, list) and isinstance(before, list):
+        return here[:len(before)] == before
+    return isinstance(here, int) and isinstance(before, int) and here >= before
 
 
 def _other_item(ours, theirs, name: str = "") -> str:

@@ -13,7 +13,7 @@ from ..frame_file.changing import changing, mend_own, work_folder
 from ..frame_file.container import SEQUENCE, our_file
 from ..frame_file.h5 import copy_items, read_group, writing
 from ..frame_file.opening import SUFFIXES, reading
-from .contents import FRAMES, Contents, read_contents, read_settings, what_differs, write_contents, write_settings
+from .contents import FRAMES, SETTINGS, Contents, read_contents, read_settings, what_differs, write_contents
 from .folder import NAME, FolderStore
 from .folder_lock import writing_to
 from .keep import Keep, write_frame
@@ -101,8 +101,9 @@ class FileStore:
         with our_file(mine, SEQUENCE) as ours, our_file(self.path, SEQUENCE) as there:
             grows = read_settings(ours) != read_settings(there)
         if grows:
-            with changing(self.path) as file:
-                write_settings(file["settings"], contents.settings)
+            with changing(self.path, mine.stat().st_size) as file, reading(mine) as source:
+                del file[SETTINGS]
+                copy_items(source[SETTINGS], file.create_group(SETTINGS))
 
 
 Store = FolderStore | FileStore

@@ -60,10 +60,16 @@ def _driving(frames: Frames, times) -> Driving:
                    [movers_at(scene_in_frame(scene, radar, start), radar, middle) for start, middle in zip(times, middles)])
 
 
-def write_film_of(drive: Drive, path, interval: float, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:
-    """Writes a film of the maps as `Row.film` has it; interval: of the frames in s."""
+def write_film_of(drive: Drive, path, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:
+    """Writes a film of the maps as `Row.film` has it."""
     from ..base.storage.film import write_film
     from ..plots import film_pictures
 
-    pace = min(1.0 / abs(interval), FASTEST) if frames_per_second is None else frames_per_second
+    pace = _real_pace(drive.times) if frames_per_second is None else frames_per_second
     write_film(path, film_pictures(drive, vmin=vmin, vmax=vmax, title=title), pace)
+
+
+def _real_pace(times) -> float:
+    """Pictures in a second of a film as fast as the frames were, as far as it can be."""
+    steps = np.abs(np.diff(times))
+    return min(1.0 / float(np.median(steps)), FASTEST) if len(steps) else FASTEST

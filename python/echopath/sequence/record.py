@@ -6,22 +6,16 @@ from ..arguments.settings import TraceSettings
 from ..tracing.traces import traced
 
 
-def start_time_of(first: float, interval: float, number: int) -> float:
-    """Start in s of frame `number`; first: start of frame 0 in s; interval: s from start to start."""
-    return first + number * interval
-
-
-def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, interval: float, number: int,
+def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, start_time: float,
               still_rays: _core.KeptStillRays, progress=None) -> _core.Paths:
-    """The record of frame `number` of a sequence: the same bits whichever frames were recorded before.
+    """The record of a frame of a sequence: the same bits whichever frames were recorded before.
 
     The scene is traced anew. Unless the settings say otherwise, rough surfaces scatter from points of their own, which are the
     same in all frames, and before a radar at rest what stands still has the same rays. All have the objects of frame 0: what
     surrounds the antenna there does so throughout.
-    settings: of the rays, with the start of frame 0; interval: s from start to start; still_rays: of the sequence
+    settings: of the rays, with the start of frame 0; start_time: s, of this frame; still_rays: of the sequence
     progress: as in `trace`
     """
-    start_time = start_time_of(settings.start_time, interval, number)
     scatterers = "surface" if settings.scatterers == "auto" else settings.scatterers
     return traced(scene, radar, settings.replace(start_time=start_time, scatterers=scatterers),
                   objects_time=radar.middle_of_frame(settings.start_time), still_rays=still_rays, progress=progress)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..arguments.checks import Progress, anything, checked, count, optional, path as path_rule, real, refused, text
 from ..base.process.progress import with_progress
-from .record import start_time_of
+from .starts import Starts, pace_words
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Figure
@@ -23,13 +23,11 @@ Self = TypeVar("Self", bound="Row[Any]")
 class Row(Generic[Item]):
     """Frames by their places 0 to K - 1; each is made when it is asked for, and none is kept.
 
-    A class has `_numbers` (a range: the number of the frame at each place), `_start_time` (s, of number 0), `_interval` (s, from
-    number to number) and `_item`.
+    A class has `_numbers` (a range: the number of the frame at each place), `_starts` (of the frames, by number) and `_item`.
     """
 
     _numbers: range
-    _start_time: float
-    _interval: float
+    _starts: Starts
 
     def _item(self, place: int) -> Item:
         """What stands at a place."""
@@ -46,12 +44,13 @@ class Row(Generic[Item]):
         return np.array([self._time_of(number) for number in self._numbers], np.float64)
 
     @property
-    def interval(self) -> float:
-        """From the start of one frame to that of the next in s; negative for a slice in reverse."""
-        return self._interval * self._numbers.step
+    def interval(self) -> float | None:
+        """From the start of one frame to that of the next in s, negative for a slice in reverse; None where `times` were
+        given."""
+        return None if self._starts.interval is None else self._starts.interval * self._numbers.step
 
     def _time_of(self, number: int) -> float:
-        return start_time_of(self._start_time, self._interval, number)
+        return self._starts.of(number)
 
     def __len__(self) -> int:
         return len(self._numbers)
@@ -109,7 +108,7 @@ class Row(Generic[Item]):
         """Writes a film of the range-Doppler maps, whole or not at all, with the time in s above each.
 
         path: of the film, .gif or .mp4 (which needs imageio-ffmpeg); frames_per_second: 0.1 to 100, None: in real time, 25 at
-            most
+            most, and frames of uneven times by the median of what lies between their starts
         vmin, vmax (dBm), progress: as of `plot`; title: before the time
         Memory: as of `plot`, and the pictures of a GIF, .5 MB each. Raises what `plot` raises, ValueError for another kind of
         file, ModuleNotFoundError without imageio-ffmpeg, ep.FileError.
@@ -118,8 +117,7 @@ class Row(Generic[Item]):
         from .pictures import drive_of, write_film_of
 
         require_kind(path)
-        write_film_of(drive_of(self, progress), path, self.interval, frames_per_second=frames_per_second, vmin=vmin, vmax=vmax,
-                      title=title)
+        write_film_of(drive_of(self, progress), path, frames_per_second=frames_per_second, vmin=vmin, vmax=vmax, title=title)
 
     def _maps(self) -> tuple[int, Iterator[tuple], dict]:
         """How many frames are there, (start in s, level [V, R] in dBm, velocity [V], range [R]) of each, and the window and
@@ -136,6 +134,10 @@ class Row(Generic[Item]):
             return "none"
         first, last = (self._time_of(self._numbers[place]) for place in (0, -1))
         return f"from {first:.6g} to {last:.6g} s"
+
+    def _pace(self) -> str:
+        """How the frames follow each other, in words."""
+        return pace_words(self.times, self.interval)
 
 
 def _place_in(place, count: int) -> int:

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import functools
 import itertools
-import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import closing
@@ -13,9 +12,23 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import MapWindow, Progress, anything, checked, count, flag, one_of, path as path_rule, real, refused
+from ..arguments.checks import (
+    ArrayLike,
+    MapWindow,
+    Progress,
+    anything,
+    array,
+    checked,
+    count,
+    flag,
+    one_of,
+    optional,
+    path as path_rule,
+    real,
+    refused,
+)
 from ..arguments.effects import Choices
-from ..arguments.frame_times import require_motion, require_room
+from ..arguments.frame_times import require_motion
 from ..arguments.settings import (
     Edges,
     Evaluate,
@@ -44,37 +57,40 @@ from ..signals.parts import Selections
 from ..tracing.traces import keep_geometry
 from ..weather.weather import weather_of
 from .ahead import one_ahead
-from .contents import Contents
+from .contents import TIMES, Contents
 from .ends import warn_of_ends
 from .folder import NAME
 from .keep import Keep
 from .one_file import store_of
-from .record import record_of, start_time_of
+from .record import record_of
 from .row import Row
 from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
-from .stored import LONGEST, StoredSequence
+from .starts import LONGEST, Starts, starts_and_count
+from .stored import StoredSequence
 from .unused_memory import MemoryOfFrames, give_back_memory
 
 
 class Sequence(Row[Frame]):
     """Frames of a radar in a scene, one after the other: `for frame in sequence`, `sequence[k]`, `len(sequence)`.
 
-    A frame is simulated when it is asked for, and kept by nobody. Frame k starts at start_time + k interval; all motions, that
-    of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. While the signal of one is
-    made in a loop over frames, a thread traces the next, unless ep.set_num_threads(1) was called. A slice is a Sequence of
-    frames of the same bits, `sequence[-1]` the last frame. Objects that have a lifetime (`SceneNode.lifetime`), as the
-    vehicles of SUMO, take part in the frames that it covers wholly: others are as without them, and their scenes have them as not
-    visible. Names tell objects for good; mesh IDs count what is there. What surrounds the antenna in frame 0 is no object of
-    labels and truth in any frame (`families` tells the rule). Noise is that of the start time.
+    A frame is simulated when it is asked for, and kept by nobody. Frame k starts at start_time + k interval, or at times[k];
+    all motions, that of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. While
+    the signal of one is made in a loop over frames, a thread traces the next, unless ep.set_num_threads(1) was called. A slice
+    is a Sequence of frames of the same bits, `sequence[-1]` the last frame. Objects that have a lifetime
+    (`SceneNode.lifetime`), as the vehicles of SUMO, take part in the frames that it covers wholly: others are as without them,
+    and their scenes have them as not visible. Names tell objects for good; mesh IDs count what is there. What surrounds the
+    antenna in frame 0 is no object of labels and truth in any frame (`families` tells the rule). Noise is that of the start
+    time.
     scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
     frames: number of frames K, 1 to 1e6; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0
+    times: [K] s, in the place of frames, interval and start_time: the start of each frame, such as those of a recording, in
+        order, each at least the duration of a frame after the one before
     num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays, scatterers,
         edges, faint_power (W), effects: as in `trace`; the seed serves all frames, and "auto" scatterers are those of the
         surfaces, so that speckle goes on from frame to frame
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
         labels, detections, truth, guard, trace, signal: as in `simulate`
-    times: starts of the frames, [K] in s
     Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames that its object is in. Warns
     (RuntimeWarning) of trajectories that begin or end within the frames, at some speed, of scenes of which nothing that has a
     lifetime is there, and of objects that come and go between frames. A frame raises and warns as that of `simulate` does; why
@@ -82,10 +98,12 @@ class Sequence(Row[Frame]):
     """
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, WITHIN, **TraceSettings.RULES, **SignalSettings.RULES,
-             self=anything, frames=count(1, LONGEST), interval=real(unit="s"), parts=anything, angles=anything,
+             self=anything, frames=optional(count(1, LONGEST)), interval=optional(real(unit="s")),
+             times=optional(array("[K]", finite=True)), parts=anything, angles=anything,
              labels=anything, detections=anything, truth=anything, guard=flag)
-    def __init__(self, scene: _core.Scene, radar: _core.Radar, *, frames: int, interval: float,
-                 start_time: float = TraceSettings.start_time, num_rays: int | float | None = TraceSettings.num_rays,
+    def __init__(self, scene: _core.Scene, radar: _core.Radar, *, frames: int | None = None,
+                 interval: float | None = None, start_time: float = TraceSettings.start_time,
+                 times: ArrayLike | None = None, num_rays: int | float | None = TraceSettings.num_rays,
                  max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
                  polarization: Polarization = TraceSettings.polarization, footprint: Footprint = TraceSettings.footprint,
                  sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
@@ -103,15 +121,17 @@ class Sequence(Row[Frame]):
                  detections: bool | Mapping[str, object] | None = None, truth: bool | Mapping[str, object] | None = None,
                  guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):
         tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
-        end = _checked_end(scene, radar, start_time, frames, interval)
+        starts, frames = starts_and_count(frames, interval, times, tracing.start_time, radar)
+        tracing, start_time = tracing.replace(start_time=starts.first), starts.first
+        end = _checked_end(scene, radar, starts, frames)
         check_receiver(radar, start_time, end)
         require_interferers(scene, radar, effects, start_time, end)
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         warn_of_ends(scene, radar, start_time, end)
         warn_of_absent_interferers(scene, radar, effects, start_time, end)
         if not warn_of_absence(scene, radar, start_time, end):
-            warn_of_the_unseen(scene, radar, start_time, interval, frames)
-        self._numbers, self._start_time, self._interval = range(frames), start_time, interval
+            warn_of_the_unseen(scene, radar, starts.of_all(range(frames)))
+        self._numbers, self._starts = range(frames), starts
         self._still_rays = _core.KeptStillRays()
 
     @property
@@ -165,12 +185,12 @@ class Sequence(Row[Frame]):
 
     def _recorded(self, place: int, progress=None, geometry=None) -> tuple[int, Recorded]:
         """A place and the record of the frame there; geometry: KeptGeometry where that of the scene is kept, None: as before."""
-        run, number = self._run, self._numbers[place]
+        run, start_time = self._run, self._starts.of(self._numbers[place])
         if geometry is not None:
             keep_geometry(run.scene, geometry)
         with at_work_on(_name_of(place)):
-            return place, run.recorded(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval,
-                                                         number=number, still_rays=self._still_rays, progress=progress))
+            return place, run.recorded(lambda: record_of(run.scene, run.radar, run.trace, start_time=start_time,
+                                                         still_rays=self._still_rays, progress=progress))
 
     @checked(self=anything, path=path_rule, keep=one_of(Keep), shard=shard_rule)
     def save(self, path: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
@@ -229,14 +249,15 @@ class Sequence(Row[Frame]):
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""
         run, labels, weather = self._run, self._run.label_settings, weather_of(self._run.scene)
-        return {"frames": len(self), "interval": self._interval, "first_number": self._numbers.start,
-                "number_step": self._numbers.step} | run.trace.keywords() | run.signal.keywords() | {
-                    "parts": run.selections, "angles": run.angle_settings, "guard": run.guard,
-                    "labels": None if labels is None else labels.keywords(), "detections": run.detect_keywords,
-                    "truth": run.truth_keywords, "weather": None if weather is None else weather.keywords()}
+        placed = {"frames": len(self), "interval": self._starts.interval, TIMES: self._starts.given,
+                  "first_number": self._numbers.start, "number_step": self._numbers.step}
+        return placed | run.trace.keywords() | run.signal.keywords() | {
+            "parts": run.selections, "angles": run.angle_settings, "guard": run.guard,
+            "labels": None if labels is None else labels.keywords(), "detections": run.detect_keywords,
+            "truth": run.truth_keywords, "weather": None if weather is None else weather.keywords()}
 
     def __repr__(self) -> str:
-        return f"Sequence({counted(len(self), 'frame')} {self._span()}, every {self.interval:.6g} s)"
+        return f"Sequence({counted(len(self), 'frame')} {self._span()}, {self._pace()})"
 
     def _repr_html_(self) -> str:
         from ..presentation.notebook import sequence_html
@@ -258,16 +279,14 @@ def _name_of(place: int) -> str:
     return f"frame {place + 1}"
 
 
-def _checked_end(scene, radar, start_time: float, frames: int, interval: float) -> float:
-    """The end of the last frame in s. Raises ValueError naming the argument where frames overlap or leave the motions: before the
-    long work."""
-    require_room("interval", radar, interval)
-    end = start_time_of(start_time, interval, frames - 1) + radar.frame_duration
-    if not math.isfinite(end):
-        raise refused(ValueError, "interval", f"a number of s that gives {frames} frames finite times", interval)
+def _checked_end(scene, radar, starts: Starts, frames: int) -> float:
+    """The end of the last frame in s. Raises ValueError naming the argument where frames leave the motions: before the long
+    work."""
+    end = starts.of(frames - 1) + radar.frame_duration
     try:
-        scene.require_times(start_time, end)
-        require_motion("radar", radar, (start_time, end))
+        scene.require_times(starts.first, end)
+        require_motion("radar", radar, (starts.first, end))
     except ValueError as error:
-        raise ValueError(f"frames: must all lie within the motions, got {frames} frames every {interval:g} s: {error}") from None
+        name, pace = ("frames", f" every {starts.interval:g} s") if starts.given is None else ("times", "")
+        raise ValueError(f"{name}: must all lie within the motions, got {counted(frames, 'frame')}{pace}: {error}") from None
     return end

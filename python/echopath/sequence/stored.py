@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arguments.checks import checked, count, path as path_rule, real
+from ..arguments.checks import checked, count, path as path_rule
 from ..base.text.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
@@ -23,11 +23,10 @@ from .keep import Keep, read_frame
 from .lazy_maps import power_of
 from .one_file import store_of
 from .row import Row
+from .starts import LONGEST, starts_in
 
 if TYPE_CHECKING:
     from ..base.classes.foreign_types import Dataset
-
-LONGEST = 1_000_000  # frames that files may speak of: one look at each is taken in seconds
 
 
 class StoredSequence(Row[Frame | FrameMaps]):
@@ -38,7 +37,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
     path: Path of the folder or the file; keep: "all", "maps" or "labels", what the files keep; scene, radar: what was simulated
     settings: {keyword: value} of `Sequence`, with those that it was not given; beside them `first_number` and `number_step`,
         which frames of the sequence these are, `keep` of `save`, and `weather`, that of the scene
-    times: starts of the frames, [K] in s; interval: s, from start to start
+    times: starts of the frames, [K] in s; interval: s, from start to start, None where `times` were given
     """
 
     def __init__(self, path: Path):
@@ -56,8 +55,9 @@ class StoredSequence(Row[Frame | FrameMaps]):
             self.keep: Keep = settings["keep"]
             frames, first, step = (count(least, LONGEST)(name, settings[name]) for name, least in (
                 ("frames", 0), ("first_number", 0), ("number_step", -LONGEST)))
-            self._start_time, self._interval = (real()(name, settings[name]) for name in ("start_time", "interval"))
+            self._starts = starts_in(settings)
             self._of_place = range(first, first + step * frames, step)
+            self._starts.require(self._of_place)
             if self.keep not in get_args(Keep):
                 raise ValueError(f"keep {self.keep!r}")
             weather = settings.get("weather")
@@ -70,9 +70,11 @@ class StoredSequence(Row[Frame | FrameMaps]):
         return super()._time_of(self._of_place[number])
 
     @property
-    def interval(self) -> float:
-        """From the start of one frame to that of the next in s; negative for a slice in reverse."""
-        return super().interval * self._of_place.step
+    def interval(self) -> float | None:
+        """From the start of one frame to that of the next in s, negative for a slice in reverse; None where `times` were
+        given."""
+        interval = super().interval
+        return None if interval is None else interval * self._of_place.step
 
     @property
     def scene(self) -> Scene:

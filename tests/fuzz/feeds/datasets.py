@@ -79,14 +79,16 @@ def feed_sequence():
     frame, path = frames()[6], base / "sequence.h5"
     settings = {"frames": 2, "first_number": 0, "number_step": 1, "start_time": 0.0, "interval": 0.1, "keep": "maps",
                 "weather": {}}
-    with h5py.File(path, "w") as file:
-        write_contents(file, Contents(frame.scene, frame.radar, settings))
-    content = path.read_bytes()
-    ep.load_sequence(base)
+    contents = []
+    for given in ({"times": None}, {"times": [0.0, 0.1], "interval": None}):
+        with h5py.File(path, "w") as file:
+            write_contents(file, Contents(frame.scene, frame.radar, settings | given))
+        contents.append(path.read_bytes())
+        ep.load_sequence(base)
 
     def case(number: int) -> None:
         random = Random(f"sequence {number}")
-        path.write_bytes(content)
+        path.write_bytes(random.choice(contents))
         with h5py.File(path, "r+") as file:
             for _ in range(random.choice((1, 1, 2))):
                 name = random.choice(list(settings))
@@ -96,7 +98,8 @@ def feed_sequence():
         except ep.FileError as error:
             assert str(error).startswith(f"{path}: "), f"names no file: {error}"
             return
-        assert "0 done" in repr(stored) and np.isfinite(stored.interval)
+        assert "0 done" in repr(stored) and np.isfinite(stored.times).all()
+        assert stored.interval is None or np.isfinite(stored.interval)
         stored.scene  # noqa: B018 (it is made)
 
     case.folder = folder

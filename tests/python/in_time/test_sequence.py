@@ -155,7 +155,7 @@ def test_wrong_places_are_refused_by_name(place, error):
 def test_unknown_keywords_are_refused_with_the_nearest():
     with pytest.raises(TypeError, match="^Sequence: unknown keyword 'frame', the nearest right one is 'frames'"):
         ep.Sequence(make_scene(), make_radar(), frame=3, interval=INTERVAL)
-    with pytest.raises(TypeError, match="^Sequence: argument 'interval' is missing"):
+    with pytest.raises(TypeError, match="^interval: must be in s .* got None"):
         ep.Sequence(make_scene(), make_radar(), frames=3)
 
 

@@ -99,10 +99,10 @@ def test_no_more_than_one_work_is_ahead():
 def test_a_failure_comes_in_its_turn_and_ends_the_loop(monkeypatch):
     real, seen = sequence.record_of, []
 
-    def record_of(*values, number, **keywords):
-        if number == 2:
+    def record_of(*values, start_time, **keywords):
+        if start_time == 2 * INTERVAL:
             raise RuntimeError("no third frame")
-        return real(*values, number=number, **keywords)
+        return real(*values, start_time=start_time, **keywords)
 
     monkeypatch.setattr(sequence, "record_of", record_of)
     with pytest.raises(RuntimeError, match="^no third frame$"):
@@ -160,8 +160,10 @@ def test_leaving_a_loop_stops_the_record_of_the_next_frame(monkeypatch):
     """That record never ends by itself."""
     real, begun, ended = sequence.record_of, threading.Event(), threading.Event()
 
-    def record_of(*values, number, progress, **keywords):
-        return real(*values, number=number, progress=progress, **keywords) if number == 0 else endless(begun, ended)(progress)
+    def record_of(*values, start_time, progress, **keywords):
+        if start_time == 0.0:
+            return real(*values, start_time=start_time, progress=progress, **keywords)
+        return endless(begun, ended)(progress)
 
     monkeypatch.setattr(sequence, "record_of", record_of)
     made = iter(make_sequence(frames=2))

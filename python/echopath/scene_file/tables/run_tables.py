@@ -176,12 +176,29 @@ class DetectionsTable(Table):
     folds: int = Field(0, ge=0, description="velocities beyond the map to either side that slots of transmitters tell apart")
 
 
+def _frame_times(value):
+    if not (isinstance(value, str) or isinstance(value, list) and value and all(map(is_number, value))):
+        raise ValueError("must be a list of numbers in s, or the name of a text file of them, one in a line")
+    return value
+
+
 class TruthTable(Table):
     objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
         None, description="globs, or name = glob or globs, or \"found\", as in [labels]; none: those of [labels]")
 
 
 class SequenceTable(Table):
-    frames: int = Field(ge=1, description="number of frames")
-    interval: Annotated[float, Field(gt=0, allow_inf_nan=False)] = Field(description="s, from start to start")
+    frames: Annotated[int, Field(ge=1)] | None = Field(None, description="number of frames")
+    interval: Positive | None = Field(None, description="s, from start to start")
+    times: Annotated[Any, AfterValidator(_frame_times)] | None = Field(
+        None, description="in the place of both: the start of each frame in s, or a text file of them, one in a line")
     keep: Literal["all", "maps", "labels"] = Field("all", description="what the file of each frame keeps")
+
+    @model_validator(mode="after")
+    def _starts(self):
+        for key in ("frames", "interval"):
+            if self.times is None and getattr(self, key) is None:
+                raise broken_rule(key, "is missing, or times in the place of frames and interval", None)
+            if self.times is not None and getattr(self, key) is not None:
+                raise broken_rule(key, "must not be given with times, which tell the start of each frame", getattr(self, key))
+        return self

@@ -1,12 +1,20 @@
-"""What a call needs of the times of frames: motions of radars that cover them, and room for each."""
+"""What a call needs of the times of frames: motions of radars that cover them, room for each, and when objects are there."""
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from .. import _core
-from .shown import refused
+from .checks import array, refused
 
 _ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
+
+
+def lifetime_rule(argument: str, value) -> tuple[float, float]:
+    """When something is there: (begin, end) in s, either of which may be infinite."""
+    begin, end = (float(time) for time in array("[2]")(argument, value))
+    if not begin < end:
+        raise refused(ValueError, argument, "a begin and an end in s, ascending", value)
+    return begin, end
 
 
 def require_motion(argument: str, radar: _core.Radar, times: Iterable[float]) -> None:

@@ -9,10 +9,11 @@ import numpy as np
 from .. import _core
 from ..arguments.gates import in_gate
 from ..base.radar.chirps import chirp_period
+from ..spectra.range_transform import range_profiles
 from ..spectra.windows import of_range
 from .bursts import text_of_part
 from .maps import Spectrogram
-from .stft import axes_of, noise_bandwidth, range_profiles, velocity_powers, with_chirps
+from .stft import axes_of, noise_bandwidth, velocity_powers, with_chirps
 
 DEFAULT_LENGTH = 128     # chirps of a window, as far as a frame has them
 EVEN = 1e-3              # of a chirp period, by which the chirps of a frame may come early or late
@@ -35,7 +36,8 @@ class Stft:
         late = 0.0 if self._end is None else abs(burst.start_time - self._end)
         if self._profiles is not None and not (late <= EVEN * self._period and self._joins(burst)):
             self._end_train()
-        profiles = range_profiles(burst.cube, burst.radar, self._window, self._inside)
+        profiles = range_profiles(burst.cube, burst.radar.waveform, window=self._window)
+        profiles = profiles[..., :len(self._inside)][..., self._inside]
         if self._profiles is None:
             self._begin, self._middle = burst.start_time, burst.middle(0, self._length)
             self._profiles, self._next, self._ahead = profiles, 0, 0

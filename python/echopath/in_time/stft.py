@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..spectra.range_transform import range_transform
-from ..spectra.windows import of_range, of_velocity, samples_of
+from ..spectra.windows import of_velocity, samples_of
 
 _VALUES_AT_A_TIME = 1 << 22  # complex, of the transforms of some windows: 64 MiB
 
@@ -37,13 +36,6 @@ def noise_bandwidth(window, count: int) -> float:
     """Equivalent noise bandwidth of one window in cells (Harris 1978, eq. 11): a point's power over all cells by its peak."""
     weights = samples_of(window, count)
     return count * float(np.sum(weights**2)) / float(np.sum(weights)) ** 2
-
-
-def range_profiles(cube, radar, window, inside):
-    """The range stage of `range_doppler`, [tx, rx, chirp, N] complex in sqrt(W), of the ranges that `inside` [R] takes."""
-    weights = samples_of(of_range(window), cube.shape[-1])
-    bins = range_transform(cube * weights, radar.waveform)[..., :len(inside)][..., inside]
-    return bins * ((np.sqrt(2.0) if radar.waveform.real else 1.0) / np.sum(weights))
 
 
 def velocity_powers(profiles, starts, window_length: int, window, zero_pad: int):

@@ -6,20 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import ClassVar, Literal
 
 from .. import _core
-from ..arguments.checks import Rule, an, array, one_of, optional, real, refused
-from ..arguments.frame_times import require_room
+from ..arguments.checks import Rule, an, one_of, optional, real, refused
+from ..arguments.frame_times import lifetime_rule, require_room
 from ..arguments.settings import Settings, settings_class
 from ..base.text.counts import counted
 from .node import ALWAYS
 
 Over = Literal["both", "direct", "paths"]
-
-
-def _lifetime(argument: str, value) -> tuple[float, float]:
-    begin, end = (float(time) for time in array("[2]")(argument, value))
-    if not begin < end:
-        raise refused(ValueError, argument, "a begin and an end in s, ascending", value)
-    return begin, end
 
 
 @settings_class
@@ -45,7 +38,7 @@ class Interferer(Settings):
 
     RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"),
                                            "interval": optional(real(unit="s")), "over": one_of(Over),
-                                           "lifetime": optional(_lifetime)}
+                                           "lifetime": optional(lifetime_rule)}
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -233,7 +233,7 @@ def _build_interferers(settings: SceneTable, folder: Path, trajectories: Traject
         carried = _trajectory(table, trajectories, f"interferers[{index}]")
         with blamed(f"interferers[{index}]"):
             found.append(Interferer(radar=radar, offset=table.offset, interval=table.interval, over=table.over,
-                                    lifetime=None if carried is None else carried.lifetime))
+                                    lifetime=table.lifetime or (carried.lifetime if carried is not None else None)))
     return found
 
 

@@ -15,8 +15,8 @@ from ..base.process.callers import warn_user
 from ..base.process.progress import with_progress
 from ..transmit import is_coded, signal_shape
 from ..transmit.signals import has_steps
-from .range_transform import range_transform
-from .windows import of_range, of_velocity, samples_of
+from .range_transform import range_taper, range_transform
+from .windows import of_velocity, samples_of
 
 CLEAR_ECHO = 100.0  # times the noise: 20 dB
 FINER = 16  # bins of a profile for each range cell: between them it is a line, within 0.01 dB of a Hann window's lobe
@@ -153,8 +153,7 @@ class _Profiles:
 
     def __init__(self, waveform: _core.ChirpSequence, window: MapWindow):
         self._waveform = waveform
-        self._taper = samples_of(of_range(window), waveform.num_samples)
-        self._taper = self._taper * ((np.sqrt(2.0) if waveform.real else 1.0) / self._taper.sum())  # as a map's
+        self._taper = range_taper(waveform, window)
         bins = FINER * waveform.num_samples
         self._end = bins // 2 if waveform.real else bins
         self._sense = -1.0 if waveform.falls else 1.0

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.spectra.range_transform import range_profiles
 from echopath_viewer.model import CellBox, Session, Signals, from_frame
-from echopath_viewer.model.maps.attribution import REST, REST_RECEIVED, Attribution, chirp_weights, range_profiles
+from echopath_viewer.model.maps.attribution import REST, REST_RECEIVED, Attribution, chirp_weights
 
 SUM = 1e-6       # of a cell's value, or of the largest contribution to it where they cancel
 SYNTHESIS = 1e-6  # of the peak: what the synthesis promises of the sum of all amplitudes
@@ -33,7 +34,7 @@ def test_weights_of_a_cell_are_those_of_the_map(frame, settings, real, falls):
     rng = np.random.default_rng(5)
     cube = rng.normal(size=(2, 2, 32, 128)) + (0.0 if real else 1j * rng.normal(size=(2, 2, 32, 128)))
     values = ep.range_doppler(cube.astype(complex), radar, **settings).values
-    profiles = range_profiles(cube, radar.waveform, values.shape[3], **settings)
+    profiles = range_profiles(cube, radar.waveform, **settings)
     for _ in range(40):
         tx, rx, velocity, distance = (int(rng.integers(0, size)) for size in values.shape)
         found = chirp_weights(radar.waveform, velocity, **settings) @ profiles[tx, rx, :, distance]

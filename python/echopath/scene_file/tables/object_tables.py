@@ -9,7 +9,7 @@ from ...arguments.checks import carrier, positive
 from ...trajectories.arguments import Outside
 from .actor_keywords import has_parameter
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
-from .table import Matrix4, Name, NotNegative, Number, Positive, Table, Vector3, broken_rule, by_check, is_number
+from .table import Lifetime, Matrix4, Name, NotNegative, Number, Positive, Table, Vector3, broken_rule, by_check, is_number
 
 
 def _permittivity(value):
@@ -104,6 +104,7 @@ class ObjectTable(ModelKeys):
     outside: Outside | None = Field(None, description="likewise: it \"stands\" or is absent; none: absent")
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
     visible: bool = Field(True, description="false: it takes no part in anything until it is shown")
+    lifetime: Lifetime | None = Field(None, description="[begin, end] s, of the frames that it is in; none: all")
 
     @classmethod
     def _advice(cls, key: str, data: dict) -> str:

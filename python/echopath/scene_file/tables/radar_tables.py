@@ -9,7 +9,7 @@ from ...receiver.settings import receiver_rule
 from ...scene.interferers import Over
 from ...trajectories.arguments import Outside
 from .motion_tables import GoesOn, MotionTable, TrajectoryValue, one_motion
-from .table import NotNegative, Number, Pitch, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
+from .table import Lifetime, NotNegative, Number, Pitch, Positive, Quaternion, Table, Vector3, broken_rule, by_check, by_kind
 
 
 class WaveformTable(Table):
@@ -119,6 +119,7 @@ class InterfererTable(RadarTable):
     offset: Number = Field(0.0, description="s, by which its frames begin later than at time 0")
     interval: Number | None = Field(None, description="s, from frame to frame; none: they follow without a pause")
     outside: Outside | None = Field(None, description="of the file of its trajectory: it \"stands\" or is absent; none: absent")
+    lifetime: Lifetime | None = Field(None, description="[begin, end] s, of the frames that it sends in; none: all")
     over: Over = Field("both", description="the direct way, the paths of the scene, or both")
 
     @model_validator(mode="before")

@@ -4,13 +4,14 @@ from __future__ import annotations
 import difflib
 import math
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from ... import _core
 from ...arguments.checks import Rule
+from ...arguments.frame_times import lifetime_rule
 from ...arguments.shown import writable
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -50,6 +51,9 @@ def by_check(check: Rule) -> AfterValidator:
         except (TypeError, ValueError) as error:
             raise PydanticCustomError("refused", "{told}", {"told": str(error)}) from None
     return AfterValidator(checked)
+
+
+Lifetime = Annotated[Any, by_check(lifetime_rule)]
 
 
 class Table(BaseModel):

@@ -133,6 +133,15 @@ def test_linear_motion_moves_the_object(write):
     assert np.allclose(scene.world_vertices(0, 2.0) - scene.world_vertices(0, 0.0), [-3.0, 0.0, 0.0], atol=ROUNDING)
 
 
+def test_objects_are_in_the_frames_of_their_lifetime(write):
+    quad = mesh_object('material = "metal"')
+    scene = ep.load_scene(write(quad + "lifetime = [0.5, inf]\n" + quad.replace('"quad"', '"always"'))).scene
+    assert scene["quad"].lifetime == (0.5, np.inf) and scene["always"].lifetime is None
+    for wrong in ("[1.0, 0.5]", "[1.0]", "1.0", "[nan, 1.0]"):
+        with pytest.raises(ValueError, match=r"objects\[0\]\.lifetime: "):
+            ep.load_scene(write(mesh_object(f"lifetime = {wrong}")))
+
+
 def test_keyframes_move_the_object_through_their_points(write):
     scene = ep.load_scene(write(mesh_object("""material = "metal"
 [objects.motion]

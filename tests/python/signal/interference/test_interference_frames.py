@@ -316,7 +316,10 @@ def test_scene_files_have_other_radars(tmp_path):
     scene = ep.load_scene(path).scene
     one, = scene.interferers
     assert (one.offset, one.interval, one.over, one.radar.waveform.bandwidth) == (1e-6, 2e-4, "direct", 9e8)
+    assert one.lifetime is None
     np.testing.assert_allclose(one.radar.world_from_radar(1.0)[:3, 3], [17, 0, 0], atol=1e-9)
+    path.write_text(SCENE_FILE + "lifetime = [1.0, inf]\n")
+    assert ep.load_scene(path).scene.interferers[0].lifetime == (1.0, np.inf)
     path.write_text(SCENE_FILE.replace('over = "direct"', 'over = "all"'))
     with pytest.raises(ValueError, match=r"interferers\[0\].over"):
         ep.load_scene(path)

@@ -10,8 +10,8 @@ import echopath as ep
 from echopath import _core
 from echopath.base.numerics.decibels import SMALLEST_POWER, in_dbm
 from echopath.base.text.mesh_names import object_of
-from echopath.spectra.range_transform import range_transform
-from echopath.spectra.windows import of_range, of_velocity, samples_of
+from echopath.spectra.range_transform import range_profiles
+from echopath.spectra.windows import of_velocity, samples_of
 from echopath.transmit.signals import decompose_slots
 
 MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
@@ -134,7 +134,7 @@ class Attribution:
 
     def _group(self, row: int, key: tuple, mirrors, cube) -> EchoGroup:
         waveform = self._paths.radar.waveform
-        profiles = range_profiles(cube, waveform, self._num_ranges, **self._settings)
+        profiles = range_profiles(cube, waveform, **self._settings)[..., :self._num_ranges]
         self._profiles[:, :, :, row] = np.moveaxis(profiles, 3, 2)
         family, *words = key
         on_way = [name for name, word in zip(mirrors, words) if word == ON_WAY]
@@ -197,24 +197,12 @@ def name_of(family) -> str:
     return f"{family.object} via {' + '.join(family.via)} ({family.ghost_type}/{family.order})"
 
 
-def range_profiles(cube, waveform, num_ranges: int, *, window="hann", zero_pad: int = 1):
-    """The cube over ranges in place of samples, complex [tx, rx, chirp, range]: the first half of `range_doppler`."""
-    scale = np.sqrt(2.0) if waveform.real else 1.0  # a real sample has half of its amplitude at positive frequencies
-    num_samples = waveform.num_samples
-    windowed = np.asarray(cube) * (scale * _taper(of_range(window), num_samples))
-    return range_transform(windowed, waveform, num_samples * zero_pad)[..., :num_ranges]
-
-
 def chirp_weights(waveform, velocity_index: int, *, window="hann", zero_pad: int = 1):
     """[C], complex: the value of a cell of `range_doppler` is the sum of the profiles of its range times these."""
     num_chirps = waveform.num_chirps
     doppler = velocity_index - num_chirps * zero_pad // 2
-    return _taper(of_velocity(window), num_chirps) * _tone(doppler, num_chirps, zero_pad)
-
-
-def _taper(window, count: int):
-    samples = samples_of(window, count)
-    return samples / samples.sum()
+    weights = samples_of(of_velocity(window), num_chirps)
+    return weights / weights.sum() * _tone(doppler, num_chirps, zero_pad)
 
 
 def _tone(index: int, count: int, zero_pad: int):

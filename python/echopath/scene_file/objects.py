@@ -42,10 +42,10 @@ def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
         if trajectory is not None and getattr(shape, "motion", None) is None:
             motion = trajectory
         with blamed(key):
-            node = scene.add(shape, name=table.name, material=material, motion=motion, speed=table.speed, parent=table.parent,
-                      smooth=bool(table.smooth), visible=table.visible, **placement)
+            name = scene.add(shape, name=table.name, material=material, motion=motion, speed=table.speed, parent=table.parent,
+                             smooth=bool(table.smooth), visible=table.visible, **placement)
             if table.lifetime is not None:
-                node.lifetime = table.lifetime
+                scene[name].lifetime = table.lifetime
     return scene
 
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import refused
-from ..base.numerics.rotations import quaternions
+from ..base.numerics.rotations import nearest_rotations, quaternions
 from .options import ReadOptions
 
 HOLD = 1e5            # s for which vertices of the ends are held, from them and from time 0 of the scene
@@ -75,7 +75,7 @@ def moved_rigidly(times, matrices, clock: Clock, knots=None):
     if len(matrices) < 2 or np.array_equal(matrices, np.broadcast_to(matrices[0], matrices.shape)):
         return matrices[0], None, True
     turns = matrices[:, :3, :3] @ np.linalg.inv(matrices[0, :3, :3])
-    rotations = _nearest_rotations(turns)
+    rotations = nearest_rotations(turns)
     placement = matrices[0].copy()
     placement[:3, 3] = 0.0
     keys = clock.times(times)
@@ -114,19 +114,11 @@ def moved_with_scale(times, matrices, clock: Clock) -> tuple[_core.CurveMotion, 
     scales = np.linalg.norm(matrices[:, :3, :3], axis=1)
     scales[:, 2] *= np.sign(np.linalg.det(matrices[:, :3, :3]))
     turns = matrices[:, :3, :3] / scales[:, None, :]
-    rotations = _nearest_rotations(turns)
+    rotations = nearest_rotations(turns)
     keys = clock.times(times)
     curves = [_core.Curve(keys, values, clock.interpolation) for values in (matrices[:, :3, 3], quaternions(rotations), scales)]
     motion = _core.CurveMotion(*curves, **clock.playback)
     return motion, bool(np.abs(turns - rotations).max() < RIGID)
-
-
-def _nearest_rotations(turns: np.ndarray) -> np.ndarray:
-    """The rotation nearest to each of matrices [T, 3, 3] (Higham 1986)."""
-    left, _, right = np.linalg.svd(turns)
-    flips = np.ones((len(turns), 3))
-    flips[:, 2] = np.sign(np.linalg.det(left @ right))
-    return left * flips[:, None, :] @ right
 
 
 def deformed(times, vertices, clock: Clock) -> _core.VertexSequence:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base.numerics.placements import parent_from_node
 from ..base.numerics.rates import rate_of, step_within
 from ..base.numerics.rotations import angular_velocity
 
@@ -108,7 +109,7 @@ class _Body:
         index = self._node
         while index >= 0:
             node = self._nodes[index]
-            transform = _placed(node, time) @ transform
+            transform = parent_from_node(node, time) @ transform
             index = node.parent
         return transform
 
@@ -172,16 +173,6 @@ class _Body:
                     return False
                 index = self._nodes[index].parent
         return True
-
-
-def _placed(node, time: float):
-    """parent_from_node [4, 4]: what a motion does to a placement, as `Scene.add` says."""
-    if node.motion is None:
-        return node.placement
-    step, placed = node.motion.at(time), np.eye(4)
-    placed[:3, :3] = step[:3, :3] @ node.placement[:3, :3]
-    placed[:3, 3] = node.placement[:3, 3] + step[:3, 3]
-    return placed
 
 
 def _moved(node, time: float):

@@ -63,6 +63,16 @@ def motion_ahead(matrix: np.ndarray, speed: float) -> _core.LinearMotion:
     return _core.LinearMotion(velocity=speed * ahead(matrix))
 
 
+def parent_from_node(node: _core.Node, time: float) -> np.ndarray:
+    """[4, 4] at a time in s: what a motion does to a placement, as `Scene.add` says."""
+    if node.motion is None:
+        return node.placement
+    step, placed = node.motion.at(time), np.eye(4)
+    placed[:3, :3] = step[:3, :3] @ node.placement[:3, :3]
+    placed[:3, 3] = node.placement[:3, 3] + step[:3, 3]
+    return placed
+
+
 def _about_z(yaw: float) -> np.ndarray:
     cos, sin = math.cos(yaw), math.sin(yaw)
     return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])

@@ -68,3 +68,11 @@ def _entries(angle):
 
 def _matrix(rows):
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def nearest_rotations(turns: np.ndarray) -> np.ndarray:
+    """The rotation nearest to each of matrices [T, 3, 3] (Higham 1986)."""
+    left, _, right = np.linalg.svd(turns)
+    flips = np.ones((len(turns), 3))
+    flips[:, 2] = np.sign(np.linalg.det(left @ right))
+    return left * flips[:, None, :] @ right

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import _core
-from ..arguments.checks import checked, count as count_rule, flag, optional, refused, text
+from ..arguments.checks import ArrayLike, array, checked, count as count_rule, flag, optional, refused, text
 from ..base.classes.made_by import made_by
 from ..base.process.callers import warn_user
 from ..receiver import Adc, Receiver
@@ -52,19 +52,26 @@ class SensorConfig:
         """
         return dataclasses.replace(self, radars=tuple(radar.replace(**changes) for radar in self.radars))
 
-    def sequences(self, scene: _core.Scene, *, frames: int, start_time: float = 0.0,
-                  settings: Mapping[str, object] | None = None) -> tuple[Sequence, ...]:
-        """A Sequence of each sub-frame, one of a plain frame: frame after frame at the sensor's interval.
+    def sequences(self, scene: _core.Scene, *, frames: int | None = None, start_time: float = 0.0,
+                  times: ArrayLike | None = None, settings: Mapping[str, object] | None = None) -> tuple[Sequence, ...]:
+        """A Sequence of each sub-frame, one of a plain frame: frame after frame at the sensor's interval, or when a recording's
+        began.
 
         scene: of the frames; frames: their number; start_time: s, of the first
+        times: [K] s, in the place of both: the start of each frame, as of `Sequence`
         settings: {keyword of Sequence: value}, the same for all, None: as it is
         `ep.save_raw(itertools.chain.from_iterable(zip(*sequences)), path)` writes them as the sensor sends them. Raises what
         Sequence raises.
         """
         from ..sequence.sequence import Sequence
 
-        timing = {"frames": frames, "interval": self.interval}
-        return tuple(Sequence(scene, radar, start_time=start_time + begin, **timing, **(settings or {}))
+        def timing(begin: float) -> dict:
+            even = {"frames": frames, "start_time": start_time}
+            if times is None:
+                return even | {"interval": self.interval, "start_time": start_time + begin}
+            return even | {"times": array("[K]", finite=True)("times", times) + begin}
+
+        return tuple(Sequence(scene, radar, **timing(begin), **(settings or {}))
                      for radar, begin in zip(self.radars, self.start_times))
 
 

@@ -220,6 +220,20 @@ def test_sub_frames_are_sequences_and_one_file(written, tmp_path):
     np.testing.assert_array_equal(second, np.fromfile(tmp_path / "last.bin", np.uint8))
 
 
+def test_sub_frames_begin_when_those_of_a_recording_did(written):
+    sensor, scene = ep.load_sensor(written(ADVANCED)), ep.Scene()
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(3, 0, 0), yaw=np.pi)
+    sequences = sensor.sequences(scene, times=[0.1, 0.17, 0.3])
+    np.testing.assert_allclose([one.times for one in sequences], [[0.1, 0.17, 0.3], [0.12, 0.19, 0.32]])
+    for wrong in ({"frames": 3}, {"start_time": 0.1}):
+        with pytest.raises(ValueError, match=f"^{next(iter(wrong))}: must be .* with `times`"):
+            sensor.sequences(scene, times=[0.1, 0.17], **wrong)
+    with pytest.raises(ValueError, match="^times: "):
+        sensor.sequences(scene, times=[0.1, np.nan])
+    with pytest.raises(TypeError, match="^frames: must be how many there are"):
+        sensor.sequences(scene)
+
+
 @pytest.mark.parametrize("lines, told", [
     (dict(profileCfg="profileCfg 0 60 7 6 40 -1 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: power_backoff: must not be"),
     (dict(profileCfg="profileCfg 0 60 7 6 40 0 0 70 1 128"), r"sensor.cfg:6: profileCfg: must have 14 arguments"),

@@ -37,15 +37,18 @@ class MeshPart:
 def parts_of_file(path: Path, axes: Axes, faceted: bool = False) -> tuple[list[MeshPart], list[str]]:
     """(parts with an area, what lines `mtllib` name) of a mesh file; faceted: whatever its normals say. Raises ep.FileError."""
     surfaces, libraries = _core.load_surfaces(path, axes.unit)
-    made = (_part(*surface, None if faceted else normals, axes) for *surface, normals in surfaces)
+    made = (part_of(*surface, None if faceted else normals, axes) for *surface, normals in surfaces)
     parts = [part for part in made if part is not None]
     if not parts:
         raise _core.FileError(f"{path}: {NO_AREA}")
     return parts, libraries
 
 
-def _part(object_name: str, name: str, material: str, vertices, triangles, face, normals, axes: Axes) -> MeshPart | None:
-    """None where no triangle has an area."""
+def part_of(object_name: str, name: str, material: str, vertices, triangles, face, normals, axes: Axes) -> MeshPart | None:
+    """The part of a group, in the units of a scene but the axes of its file; normals: of the corners, [3 F, 3], or None.
+
+    Returns None where no triangle has an area.
+    """
     smooth = False
     if normals is not None:
         kept, triangles, smooth = welded_corners(vertices, triangles, normals.reshape(-1, 3, 3))

@@ -17,7 +17,8 @@ from .transforms import to_world
 
 
 def read(path: Path, options: ReadOptions) -> Model:
-    """A Model of a scene: shapes ply, obj, rectangle, cube, sphere, disk and cylinder, shape groups and their instances.
+    """A Model of a scene: shapes ply, obj, serialized, rectangle, cube, sphere, disk and cylinder, shape groups and their
+    instances.
 
     Mitsuba has no vertical axis of its own: it is z, or y where a camera of the file has it upwards. Cameras, lights,
     textures and media are left out without a word, other shapes with one.

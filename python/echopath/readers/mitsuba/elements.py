@@ -44,6 +44,13 @@ class Element:
         child = self.named(name, "float", "integer")
         return default if child is None else child.numbers("value", 1)[0]
 
+    def whole(self, name: str, default: int) -> int:
+        """The whole number of a child `<integer name=... value=...>`."""
+        value = self.number(name, default)
+        if value != int(value):
+            self.refuse(f"{name} must be a whole number, got {value:g}")
+        return int(value)
+
     def point(self, name: str, default: tuple) -> list[float]:
         """The three numbers of a child `<point>` or `<vector>`, as x, y, z or as value."""
         child = self.named(name, "point", "vector")

@@ -7,10 +7,11 @@ from ... import _core
 from ...base.storage.pointers import pointers_are_told
 from .. import forms
 from ..axes import Axes
-from ..mesh_files import NO_AREA, MeshPart, parts_of_file
+from ..mesh_files import NO_AREA, MeshPart, part_of, parts_of_file
 from .elements import Element, file_of
+from .serialized import read_serialized
 
-FILES = ("ply", "obj")
+FILES = ("ply", "obj", "serialized")
 KNOWN = (*FILES, "rectangle", "cube", "sphere", "disk", "cylinder")
 CURVED = ("sphere", "cylinder")
 
@@ -31,6 +32,9 @@ class Shapes:
         if kind in FILES:
             path = file_of(shape, shape.value("filename", "string") or "")
             faceted = (shape.value("face_normals", "boolean") or "").strip().lower() == "true"
+            if kind == "serialized":
+                index = shape.whole("shape_index", 0)
+                return self._once((kind, path, index, faceted), lambda: self._of_serialized(shape, path, index, faceted))
             return self._once((kind, path, faceted), lambda: self._of_file(shape, path, faceted))
         return self._once((kind, *_parameters(shape)), lambda: [MeshPart("", "", "", self._form(shape), kind in CURVED)])
 
@@ -49,6 +53,18 @@ class Shapes:
             if str(error).endswith(("has no faces", NO_AREA)):
                 return []
             shape.refuse(str(error))
+
+    def _of_serialized(self, shape: Element, path, index: int, faceted: bool) -> list:
+        try:
+            name, vertices, triangles, normals = read_serialized(path, index)
+        except _core.FileError as error:
+            shape.refuse(str(error))
+        if not np.isfinite(vertices).all():
+            shape.refuse(f"{path}: must have finite positions")
+        corners = None if normals is None or faceted else normals[triangles]
+        part = part_of("", name or path.stem, "", self._axes.unit * vertices, triangles, np.arange(len(triangles)), corners,
+                       self._axes)
+        return [] if part is None else [part]
 
     def _form(self, shape: Element) -> _core.Mesh:
         vertices, triangles = _FORMS[shape.get("type")](shape)

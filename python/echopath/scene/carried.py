@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import refused
 from ..base.numerics.placements import parent_from_node
-from ..base.numerics.rates import STEP, rate_of
+from ..base.numerics.rates import STEP
 from ..base.numerics.rotations import nearest_rotations, quaternions
 from ..trajectories.knots import curve_through
 from ..trajectories.trajectory import ROTATION_TOLERANCE, TOLERANCE
@@ -48,51 +48,53 @@ class _Way:
             raise refused(ValueError, "during", f"within {begin:g} to {end:g} s, in which '{name}' has a motion", during)
         inside = [times[(times > during[0]) & (times < during[1])] for times in (_breaks(motion, during) for motion in motions)]
         self.junctions = np.unique(np.concatenate([during, *inside]))
-        if np.linalg.det(self._pose(during[0])[:3, :3]) < 0.0:
+        if np.linalg.det(self._poses(during[:1])[0, :3, :3]) < 0.0:
             raise ValueError(f"scene: '{name}' must not be mirrored to carry something")
         rate = sum(motion.turn_rate(*during) for motion in motions)
         number = math.ceil((during[1] - during[0]) * rate / TURN) + 2
         if number > MOST_SAMPLES:
             raise refused(ValueError, "during", f"shorter: '{name}' turns by up to {rate:.3g} rad/s", during)
         self._samples = np.unique(np.concatenate([np.linspace(*during, number), self.junctions]))
-        self._signs = quaternions([self._turn(time) for time in self._samples])
+        self._signs = quaternions(self._turns(self._samples))
 
     def positions(self, times):
         """([N, 3] m, their rates in m/s) at times [N] in s."""
-        return self._with_rates(lambda time: (self._pose(time) @ self._place)[:3], times, 3)
+        return self._with_rates(lambda at: (self._poses(at) @ self._place)[:, :3], times)
 
     def rotations(self, times):
         """([N, 4] quaternions (w, x, y, z), their rates per s) at times [N] in s."""
-        return self._with_rates(self._quaternion, times, 4)
+        return self._with_rates(self._quaternions, times)
 
-    def _with_rates(self, value, times, columns: int):
-        rows = [(value(time), self._rate(value, time)) for time in times]
-        values, rates = np.moveaxis(np.array(rows, float).reshape(-1, 2, columns), 1, 0)
-        return values, rates
+    def _with_rates(self, values, times):
+        """By differences between the junctions about a time alone; near one of these, of what the rates tend to."""
+        after = np.clip(np.searchsorted(self.junctions, times), 1, len(self.junctions) - 1)
+        begins, ends = self.junctions[after - 1], self.junctions[after]
+        steps = np.minimum(STEP, 0.16 * (ends - begins))
+        near = np.clip(times, begins + 2.0 * steps, ends - 2.0 * steps)
+        rates = _rates(values, near, steps)
+        return values(times), 2.0 * rates - np.where((near == times)[:, None], rates, _rates(values, 2.0 * near - times, steps))
 
-    def _rate(self, value, time: float):
-        """By differences between the junctions about a time alone; near one of these, of what they tend to."""
-        after = min(max(int(np.searchsorted(self.junctions, time)), 1), len(self.junctions) - 1)
-        begin, end = self.junctions[after - 1:after + 1]
-        step = min(STEP, 0.16 * (end - begin))
-        near = min(max(time, begin + 2.0 * step), end - 2.0 * step)
-        rate = rate_of(value, near, step)
-        return rate if near == time else 2.0 * rate - rate_of(value, 2.0 * near - time, step)
-
-    def _pose(self, time: float):
-        """world_from_object [4, 4] in m."""
-        pose = np.eye(4)
+    def _poses(self, times):
+        """world_from_object [N, 4, 4] in m."""
+        poses = np.broadcast_to(np.eye(4), (len(times), 4, 4))
         for node in self._nodes:
-            pose = pose @ parent_from_node(node, time)
-        return pose
+            poses = poses @ np.array([parent_from_node(node, time) for time in times]).reshape(-1, 4, 4)
+        return poses
 
-    def _turn(self, time: float):
-        return nearest_rotations(self._pose(time)[None, :3, :3])[0]
+    def _turns(self, times):
+        return nearest_rotations(self._poses(times)[:, :3, :3])
 
-    def _quaternion(self, time: float):
-        found = quaternions([self._turn(time)])[0]
-        nearest = min(int(np.searchsorted(self._samples, time)), len(self._samples) - 1)
-        return found if found @ self._signs[nearest] >= 0.0 else -found
+    def _quaternions(self, times):
+        """[N, 4], all of one sign with those beside them."""
+        found = quaternions(self._turns(times))
+        nearest = np.minimum(np.searchsorted(self._samples, times), len(self._samples) - 1)
+        return found * np.where(np.sum(found * self._signs[nearest], axis=1) < 0.0, -1.0, 1.0)[:, None]
+
+
+def _rates(values, times, steps):
+    """Derivatives [N, C] of values(times) by differences of fourth order."""
+    near, far = (values(times + reach) - values(times - reach) for reach in (steps, 2.0 * steps))
+    return (8.0 * near - far) / (12.0 * steps)[:, None]
 
 
 def _breaks(motion: _core.Motion, during) -> NDArray[np.float64]:

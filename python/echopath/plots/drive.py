@@ -19,8 +19,8 @@ from .maps import (
     margin_of,
     noise_peak_db,
 )
-from .style import MAP_COLOURS, RANGE_LABEL, TIME_LABEL, VELOCITY_LABEL, cell_edges, colour_bar, new_figure, set_title
-from .time_maps import image_over_time, show_within
+from .style import MAP_COLOURS, RANGE_LABEL, TIME_LABEL, VELOCITY_LABEL, colour_bar, new_figure, set_title
+from .time_maps import columns_over_time, image_over_time, show_within
 
 SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
 LEAST_WIDTH = 8.0                   # inches, of the sheet
@@ -150,7 +150,8 @@ def _draw_own_speed(axes, drive: Drive) -> None:
     step = 2.0 * half_step(drive.velocity)
     low, period = drive.velocity[0] - 0.5 * step, step * len(drive.velocity)
     seen = (-drive.driving.own_speed - low) % period + low
-    axes.stairs(seen, cell_edges(drive.times), baseline=None, color="white", linestyle="--", linewidth=1.2)
+    edges, columns = columns_over_time(drive.times)
+    axes.stairs(np.where(columns < 0, np.nan, seen[columns]), edges, baseline=None, color="white", linestyle="--", linewidth=1.2)
     axes.set_title(f"{axes.get_title()}; dashed: what stands straight ahead")
 
 

@@ -152,12 +152,18 @@ def _with_gaps(cells, columns):
     return chosen
 
 
+def columns_over_time(times) -> tuple[np.ndarray, np.ndarray]:
+    """(edges [E + 1] in s, indices [E] of the times [T] in s between them, -1 in a gap), as `image_over_time` draws them."""
+    if len(times) == 1:
+        return cell_edges(times), np.zeros(1, int)
+    return _columns_and_gaps(times, *_trains_of_columns(times))
+
+
 def image_over_time(ax, times, values, level, **look):
     """The cells [T, X] as an image, blank in gaps between the times [T] in s."""
     if len(times) == 1:
         ax.set_xticks(times)  # its width means nothing
-        return _image(ax, cell_edges(times), values, level, **look)
-    edges, columns = _columns_and_gaps(times, *_trains_of_columns(times))
+    edges, columns = columns_over_time(times)
     return _image(ax, edges, values, _with_gaps(level, columns), **look)
 
 

@@ -6,6 +6,7 @@ import math
 import tomllib
 from pathlib import Path
 from shlex import quote
+from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import refused
@@ -28,7 +29,7 @@ from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
 from ..trajectories import Trajectory
 from ..trajectories.files.rows import KeptRows
-from .errors import blamed, validated
+from .errors import ToldValueError, blamed, validated
 from .foreign import foreign_scene
 from .frame_starts import read_starts
 from .lines import with_lines
@@ -74,8 +75,9 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
         trajectories = Trajectories(folder, settings.traffic, rows or KeptRows())
         scene = build_scene(settings, folder, trajectories)
         trajectories.traffic.add_to(scene)
-        scene.interferers = _build_interferers(settings, folder, trajectories)
-        radar = _build_radar(settings.radar, folder, trajectories)
+        carriers = _Carriers(trajectories, scene)
+        scene.interferers = _build_interferers(settings, folder, carriers)
+        radar = _build_radar(settings.radar, folder, carriers)
         if settings.adapt_materials:
             adapt_materials(scene, radar)
         if settings.mark_mirrors:
@@ -185,19 +187,26 @@ def parsed(text: str, path: Path) -> dict:
 _BESIDE_SENSOR = ("transmit_power", "noise_figure_db", "receiver")  # of the table, instead of those of the sensor
 
 
-def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, key: str = "radar"):
-    radar = _radar_of(table, folder, trajectories, key)
+class _Carriers(NamedTuple):
+    """What radars ride on: the trajectories of the file, and its scene without other radars."""
+
+    trajectories: Trajectories
+    scene: Scene
+
+
+def _build_radar(table: RadarTable, folder: Path, carriers: _Carriers, key: str = "radar"):
+    radar = _radar_of(table, folder, carriers, key)
     with blamed(key):
         require_channels(radar.receiver, radar)
     return radar
 
 
-def _radar_of(table: RadarTable, folder: Path, trajectories: Trajectories, key: str):
+def _radar_of(table: RadarTable, folder: Path, carriers: _Carriers, key: str):
     if table.sensor is not None:
         with blamed(key, file="sensor"):
             radar = load_radar(named_file(folder, table.sensor), table.board, subframe=table.subframe)
             given = {name: getattr(table, name) for name in _BESIDE_SENSOR if name in table.model_fields_set}
-            return radar.replace(**given, **_place(table, trajectories, key))
+            return radar.replace(**given, **_place(table, carriers, key))
     with blamed(f"{key}.waveform"):
         waveform = _core.ChirpSequence(**table.waveform.model_dump())
     antennas = {}
@@ -212,7 +221,7 @@ def _radar_of(table: RadarTable, folder: Path, trajectories: Trajectories, key: 
         return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
                            empty_slots=table.empty_slots, code_phases=table.code_phases, receiver=table.receiver,
-                           **_place(table, trajectories, key))
+                           **_place(table, carriers, key))
 
 
 def _sequence(settings: SceneTable, folder: Path):
@@ -226,11 +235,11 @@ def _sequence(settings: SceneTable, folder: Path):
         raise _core.FileError(f"sequence.times: {error}") from None
 
 
-def _build_interferers(settings: SceneTable, folder: Path, trajectories: Trajectories) -> list[Interferer]:
+def _build_interferers(settings: SceneTable, folder: Path, carriers: _Carriers) -> list[Interferer]:
     found = []
     for index, table in enumerate(settings.interferers):
-        radar = _build_radar(table, folder, trajectories, f"interferers[{index}]")
-        carried = _trajectory(table, trajectories, f"interferers[{index}]")
+        radar = _build_radar(table, folder, carriers, f"interferers[{index}]")
+        carried = _trajectory(table, carriers.trajectories, f"interferers[{index}]")
         with blamed(f"interferers[{index}]"):
             found.append(Interferer(radar=radar, offset=table.offset, interval=table.interval, over=table.over,
                                     lifetime=table.lifetime or (carried.lifetime if carried is not None else None)))
@@ -238,22 +247,34 @@ def _build_interferers(settings: SceneTable, folder: Path, trajectories: Traject
 
 
 def _trajectory(table: RadarTable, trajectories: Trajectories, key: str) -> Trajectory | None:
-    """That of what carries a radar, or of the radar itself."""
+    """That of the traffic that carries a radar, or of the radar itself."""
+    if table.during is not None:
+        return None
     if table.rides_on is not None:
         return trajectories.traffic.of(table.rides_on, f"{key}.rides_on")
     return trajectories.of(table, key)
 
 
-def _place(table: RadarTable, trajectories: Trajectories, key: str) -> dict:
+def _place(table: RadarTable, carriers: _Carriers, key: str) -> dict:
     """Keywords of Radar that say where it is and how it moves."""
     position = tuple(table.position)
     if table.rides_on is None:
-        motion = motion_of(table.motion, f"{key}.motion") or _trajectory(table, trajectories, key)
+        motion = motion_of(table.motion, f"{key}.motion") or _trajectory(table, carriers.trajectories, key)
     else:
-        motion = trajectories.traffic.mount(table.rides_on, position, f"{key}.rides_on")
+        motion = _way_on(table.rides_on, position, table.during, carriers, key)
         position = (0.0, 0.0, 0.0)
     return {"position": position, "yaw": yaw_of(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
             "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
+
+
+def _way_on(name: str, position, during, carriers: _Carriers, key: str) -> _core.CurveMotion:
+    """The motion of a place [3] in m in the axes of what carries it: an object of the scene during a time, else traffic."""
+    if during is None:
+        return carriers.trajectories.traffic.mount(name, position, f"{key}.rides_on")
+    if name not in carriers.scene:
+        raise refused(ToldValueError, f"{key}.rides_on", "the full name of an object, beside `during`", name)
+    with blamed(key):
+        return carriers.scene[name].carried(position, during=during)
 
 
 def _antenna(antenna, radar: RadarTable, pattern):

@@ -55,7 +55,8 @@ class TrafficFiles:
             if name in file.ways:
                 return file
         names = [one for file in self._files for one in file.ways]
-        raise refused(ToldValueError, key, f"an id of the [[traffic]], which has {first_names(names) or 'none'}", name)
+        known = first_names(names) or "none"
+        raise refused(ToldValueError, key, f"an id of the [[traffic]], which has {known}; an object needs `during`", name)
 
 
 class _File:

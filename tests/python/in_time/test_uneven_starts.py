@@ -182,7 +182,8 @@ def test_wrong_times_of_scene_files_are_refused_by_name(scene_path, lines, told)
 
 
 @pytest.mark.parametrize("text, told", [(b"0.0\nsoon\n", "line 2: must be the start of a frame in s, got 'soon'"),
-                                        (b"0.0\nnan\n", "line 2: must be the start"), (b"# s\n", "must have the start of a frame in s in each line, has none"),
+                                        (b"0.0\nnan\n", "line 2: must be the start"),
+                                        (b"# s\n", "must have the start of a frame in s in each line, has none"),
                                         (b"\xff\xfe0", "is not UTF-8 text")])
 def test_wrong_files_of_times_are_refused_with_their_line(scene_path, text, told):
     scene_path.with_name("stamps.txt").write_bytes(text)

@@ -95,9 +95,16 @@ class RadarTable(Table):
     trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
     id: str | None = Field(None, description="of the object of the file; none: its only one")
     goes_on: GoesOn | None = Field(None, description="s, straight on before the begin and after the end of that; none: 0")
-    rides_on: str | None = Field(None, description="id of the traffic, in whose axes position and directions are; none: nothing")
+    rides_on: str | None = Field(None, description="id of the traffic, or an object, in whose axes its place is; none: nothing")
+    during: Lifetime | None = Field(None, description="[begin, end] s, in which it rides on an object; none: it is traffic")
 
     _one_motion = model_validator(mode="after")(one_motion)
+
+    @model_validator(mode="after")
+    def _rides_on_something(self):
+        if self.during is not None and self.rides_on is None:
+            raise broken_rule("during", "needs rides_on, the name of an object", list(self.during))
+        return self
 
     @model_validator(mode="after")
     def _one_source(self):

@@ -133,6 +133,41 @@ def test_linear_motion_moves_the_object(write):
     assert np.allclose(scene.world_vertices(0, 2.0) - scene.world_vertices(0, 0.0), [-3.0, 0.0, 0.0], atol=ROUNDING)
 
 
+ROBOT = """
+[[objects]]
+name = "robot"
+group = true
+yaw_deg = 90.0
+speed = 2.0
+[[objects]]
+name = "arm"
+parent = "robot"
+mesh = "quad.obj"
+material = "metal"
+position = [0.0, 0.0, 1.0]
+motion = {kind = "linear", angular_velocity = [0.0, 0.0, 1.0]}
+"""
+RIDES = 'rides_on = "robot/arm"\nposition = [0.5, 0.0, 0.0]\nyaw_deg = -90.0\n'
+
+
+def test_radars_ride_on_objects_and_other_radars_do(write):
+    """An arm of 0.5 m turns by 1 rad/s on a robot that drives along +y with 2 m/s; the radar looks to its right."""
+    riding = "[radar]\n" + RIDES + "during = [0.0, 3.0]\n" + RADAR
+    other = riding.replace("[radar]", "[[interferers]]").replace("[radar.", "[interferers.")
+    loaded = ep.load_scene(write(ROBOT + other, radar=riding))
+    for radar in (loaded.radar, loaded.scene.interferers[0].radar):
+        for time in (0.0, 1.3, 3.0):
+            pose, angle = radar.world_from_radar(time), 0.5 * np.pi + time
+            np.testing.assert_allclose(pose[:3, 3], [0.5 * np.cos(angle), 2.0 * time + 0.5 * np.sin(angle), 1.0], atol=1e-5)
+            np.testing.assert_allclose(pose[:2, 0], [np.sin(angle), -np.cos(angle)], atol=1e-5)
+    for lines, told in (("during = [0.0, 3.0]\n", "radar.during: needs rides_on"),
+                        (RIDES, "radar.rides_on: must be an id of the .*; an object needs `during`, got 'robot/arm'"),
+                        ('rides_on = "arm"\nduring = [0, 1]\n', "radar.rides_on: must be the full name of an object, .* 'arm'"),
+                        (RIDES + "during = [0.0, inf]\n", "radar: during: must be finite")):
+        with pytest.raises(ValueError, match=told):
+            ep.load_scene(write(ROBOT, radar="[radar]\n" + lines + RADAR))
+
+
 def test_objects_are_in_the_frames_of_their_lifetime(write):
     quad = mesh_object('material = "metal"')
     scene = ep.load_scene(write(quad + "lifetime = [0.5, inf]\n" + quad.replace('"quad"', '"always"'))).scene

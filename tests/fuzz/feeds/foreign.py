@@ -1,7 +1,9 @@
-"""Files of foreign scenes: Mitsuba, USD, frames, folders of frames, motion capture, MTL files beside OBJ."""
+"""Files of foreign scenes: Mitsuba and its meshes, USD, frames, folders of frames, motion capture, MTL files beside OBJ."""
 from __future__ import annotations
 
+import struct
 import tempfile
+import zlib
 from functools import partial
 from pathlib import Path
 from random import Random
@@ -85,6 +87,37 @@ def feed_mtl():
 
     mesh.write_bytes(text)
     case.folder, case.seeds, case.file, case.read = folder, seeds, library, partial(read_and_pose, mesh)
+    return case
+
+
+def feed_serialized():
+    """Cases in which a mesh file of Mitsuba is damaged, or the stream that it has compressed."""
+    folder = memory_folder()
+    scene, mesh = Path(folder.name) / "scene.xml", Path(folder.name) / "some.serialized"
+    scene.write_text('<scene version="0.6.0"><shape type="serialized"><string name="filename" value="some.serialized"/>'
+                     "</shape></scene>")
+    corners, numbers = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float), struct.pack("<QQ", 4, 4)
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], "<u4").tobytes()
+    streams = {4: struct.pack("<I", 0x1001) + b"tip\0" + numbers + 2 * corners.astype("<f4").tobytes() + faces,
+               3: struct.pack("<I", 0x2000) + numbers + corners.tobytes() + faces}
+
+    def packed(version: int, stream: bytes) -> bytes:
+        ends = struct.pack("<QI" if version == 4 else "<II", 0, 1)
+        return struct.pack("<HH", 0x041C, version) + zlib.compress(stream) + ends
+
+    def case(number: int) -> None:
+        random = Random(f"serialized {number}")
+        version, stream = random.choice(list(streams.items()))
+        within = random.random() < 0.7
+        content = packed(version, damaged(stream, random) if within else stream)
+        mesh.write_bytes(content if within else damaged(content, random))
+        read_and_pose(scene)
+
+    seeds = [packed(*one) for one in streams.items()]
+    for seed in seeds:
+        mesh.write_bytes(seed)
+        assert ep.load_model(scene).num_triangles == 4
+    case.folder, case.seeds, case.file, case.read = folder, seeds, mesh, partial(read_and_pose, scene)
     return case
 
 

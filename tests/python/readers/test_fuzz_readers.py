@@ -15,8 +15,8 @@ from fuzz.mutate import damaged
 from fuzz.seeds import frames
 
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
-         "gltf_bytes": 300, "gltf_json": 300, "gltf_bin": 200, "frames_folder": 200, "mtl": 200, "xml": 300, "usda": 100,
-         "usdc": 100, "usdz": 100, "npz": 200, "bvh": 40, "obj": 200, "stl": 200, "off": 200,
+         "gltf_bytes": 300, "gltf_json": 300, "gltf_bin": 200, "frames_folder": 200, "mtl": 200, "serialized": 300, "xml": 300,
+         "usda": 100, "usdc": 100, "usdz": 100, "npz": 200, "bvh": 40, "obj": 200, "stl": 200, "off": 200,
          "table": 100, "sumo": 100, "gpx": 100, "sensor": 200, "template": 200, "sequence": 40}
 
 

@@ -14,7 +14,7 @@ from ..base.numerics.rotations import nearest_rotations, quaternions
 from ..trajectories.knots import curve_through
 from ..trajectories.trajectory import ROTATION_TOLERANCE, TOLERANCE
 
-TURN = 0.5         # rad between samples of a rotation by which the sign of its quaternions is told
+TURN = 0.5         # rad between samples of a rotation, by which the signs of its quaternions are told
 MOST_SAMPLES = 2_000_000
 
 
@@ -66,11 +66,12 @@ class _Way:
         return self._with_rates(self._quaternions, times)
 
     def _with_rates(self, values, times):
-        """By differences between the junctions about a time alone; near one of these, of what the rates tend to."""
+        """By differences between the junctions about a time alone; near one of these, what the rates tend to. At a junction a
+        value is that of the time after it already."""
         after = np.clip(np.searchsorted(self.junctions, times), 1, len(self.junctions) - 1)
         begins, ends = self.junctions[after - 1], self.junctions[after]
-        steps = np.minimum(STEP, 0.16 * (ends - begins))
-        near = np.clip(times, begins + 2.0 * steps, ends - 2.0 * steps)
+        steps = np.minimum(STEP, 0.14 * (ends - begins))
+        near = np.clip(times, begins + 2.5 * steps, ends - 2.5 * steps)
         rates = _rates(values, near, steps)
         return values(times), 2.0 * rates - np.where((near == times)[:, None], rates, _rates(values, 2.0 * near - times, steps))
 
@@ -85,10 +86,10 @@ class _Way:
         return nearest_rotations(self._poses(times)[:, :3, :3])
 
     def _quaternions(self, times):
-        """[N, 4], all of one sign with those beside them."""
+        """[N, 4], of one sign with those before them from the last junction on, at which they may jump."""
         found = quaternions(self._turns(times))
-        nearest = np.minimum(np.searchsorted(self._samples, times), len(self._samples) - 1)
-        return found * np.where(np.sum(found * self._signs[nearest], axis=1) < 0.0, -1.0, 1.0)[:, None]
+        before = np.searchsorted(self._samples, times, side="right") - 1
+        return found * np.where(np.sum(found * self._signs[before], axis=1) < 0.0, -1.0, 1.0)[:, None]
 
 
 def _rates(values, times, steps):

@@ -69,6 +69,23 @@ def test_loops_begin_anew_in_what_they_carry(interpolation):
         assert motion.at(time)[2, 3] == pytest.approx(height, abs=NEAR)
 
 
+def test_what_jumps_stays_where_it_is_until_it_does():
+    """Up to a microsecond before, on what turns evenly by 3 rad/s, and jumps by half a turn and 0.5 m."""
+    jump, rate, size = 0.7, 3.0, 0.3
+    scene = ep.Scene()
+    scene.add(BOX, name="table", material="metal", motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, rate)))
+    steps = ep.CurveMotion(ep.Curve([0.0, jump], [[0, 0, 0], [0.5, 0, 0]], "step"),
+                           ep.Curve([0.0, jump], [[1, 0, 0, 0], [0, 0, 0, 1]], "step"))
+    scene.add(BOX, name="top", parent="table", material="metal", motion=steps)
+    motion = scene["table/top"].carried((size, 0.0, 0.0), during=(0.0, 1.5))
+    apart = np.geomspace(1e-6, 0.1, 40)
+    for time in np.concatenate([jump - apart, jump + apart]):
+        place, sign = (0.0, 1.0) if time < jump else (0.5, -1.0)
+        ahead = np.array([np.cos(rate * time), np.sin(rate * time), 0.0])
+        np.testing.assert_allclose(motion.at(time)[:3, 3], (place + sign * size) * ahead, atol=NEAR)
+        np.testing.assert_allclose(motion.at(time)[:3, 0], sign * ahead, atol=NEAR)
+
+
 def test_places_are_in_the_axes_of_objects_that_are_scaled():
     scene = ep.Scene()
     turned = np.array([[0.0, -2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0], [0.0, 0.0, 0.0, 1.0]])

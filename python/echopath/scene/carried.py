@@ -1,6 +1,7 @@
 """The way in the world of a place on an object of a scene, as what rides there goes it."""
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -50,11 +51,7 @@ class _Way:
         self.junctions = np.unique(np.concatenate([during, *inside]))
         if np.linalg.det(self._poses(during[:1])[0, :3, :3]) < 0.0:
             raise ValueError(f"scene: '{name}' must not be mirrored to carry something")
-        rate = sum(motion.turn_rate(*during) for motion in motions)
-        number = math.ceil((during[1] - during[0]) * rate / TURN) + 2
-        if number > MOST_SAMPLES:
-            raise refused(ValueError, "during", f"shorter: '{name}' turns by up to {rate:.3g} rad/s", during)
-        self._samples = np.unique(np.concatenate([np.linspace(*during, number), self.junctions]))
+        self._samples = _samples_between(self.junctions, motions, name)
         self._signs = quaternions(self._turns(self._samples))
 
     def positions(self, times):
@@ -90,6 +87,18 @@ class _Way:
         found = quaternions(self._turns(times))
         before = np.searchsorted(self._samples, times, side="right") - 1
         return found * np.where(np.sum(found * self._signs[before], axis=1) < 0.0, -1.0, 1.0)[:, None]
+
+
+def _samples_between(junctions, motions: list[_core.Motion], name: str) -> NDArray[np.float64]:
+    """The junctions, and times in s between them from one to the next of which the motions turn by no more than TURN."""
+    pieces = list(itertools.pairwise(junctions))
+    rates = [sum(motion.turn_rate(*piece) for motion in motions) for piece in pieces]
+    numbers = [math.ceil((end - begin) * rate / TURN) + 1 for (begin, end), rate in zip(pieces, rates)]
+    if sum(numbers) > MOST_SAMPLES:
+        raise refused(ValueError, "during", f"shorter: '{name}' turns by up to {max(rates):.3g} rad/s",
+                      (float(junctions[0]), float(junctions[-1])))
+    between = [np.linspace(*piece, number, endpoint=False) for piece, number in zip(pieces, numbers)]
+    return np.append(np.concatenate(between), junctions[-1])
 
 
 def _rates(values, times, steps):

@@ -86,6 +86,14 @@ def test_what_jumps_stays_where_it_is_until_it_does():
         np.testing.assert_allclose(motion.at(time)[:3, 0], sign * ahead, atol=NEAR)
 
 
+def test_what_turns_back_at_once_carries_for_a_long_time():
+    scene = ep.Scene()
+    scene.add(BOX, name="shuttle", material="metal", motion=ep.Trajectory([(0, 0), (20, 0), (2, 0)], speed=5))
+    motion = scene["shuttle"].carried((0.3, 0.0, 0.0), during=(0.0, 7.0))
+    for time, x, ahead in ((1.0, 5.3, 1.0), (3.9, 19.8, 1.0), (4.1, 19.2, -1.0), (7.0, 4.7, -1.0)):
+        np.testing.assert_allclose(motion.at(time)[0, [0, 3]], [ahead, x], atol=0.03)  # m, of the moment in which it stands
+
+
 def test_places_are_in_the_axes_of_objects_that_are_scaled():
     scene = ep.Scene()
     turned = np.array([[0.0, -2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0], [0.0, 0.0, 0.0, 1.0]])

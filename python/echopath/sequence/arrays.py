@@ -19,7 +19,8 @@ def dataset_of(stored, there):
     """The frames at some places of a StoredSequence as a Dataset; see StoredSequence.to_xarray."""
     if not len(there):
         raise ValueError(f"{stored.path}: must have frames, has none that is done")
-    paths = [stored.paths_of_files[place] for place in there]
+    files = stored.paths_of_files  # a list that is made anew each time
+    paths = [files[place] for place in there]
     has_truth = stored.settings.get("truth") is not None
     return dataset_of_files(paths, stored.times[there], has_truth, {"path": str(stored.path), "keep": stored.keep})
 

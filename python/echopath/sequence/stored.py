@@ -117,7 +117,8 @@ class StoredSequence(Row[Frame | FrameMaps]):
         there = np.flatnonzero(self.is_there)
         if not there.size:
             self._refuse_removed()
-        paths, times = [self.paths_of_files[place] for place in there], self.times[there]
+        files, times = self.paths_of_files, self.times[there]
+        paths = [files[place] for place in there]
         found = power_of(paths[0]) if paths else None
         if paths and found is None:
             raise ValueError(f"{self.path}: must keep maps to be drawn, keeps labels alone")

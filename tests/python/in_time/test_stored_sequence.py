@@ -13,6 +13,7 @@ import pytest
 import echopath as ep
 from echopath.frame.maps import FrameMaps
 from echopath.frame_file.maps import load_maps, save_maps
+from echopath.sequence.folder import FolderStore
 from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_sequence
 
 
@@ -44,6 +45,18 @@ def test_stored_frames_are_found_as_in_any_sequence(folders):
     assert repr(part).endswith("3 frames from 0.2 to 0 s, 3 done, keep='maps')") and "maps" in part._repr_html_()
     with pytest.raises(IndexError, match="^frame: must be from -4 to 3"):
         stored[4]
+
+
+@pytest.mark.parametrize("use", [lambda stored: stored.plot(num_frames=1), lambda stored: stored.to_xarray()])
+def test_twice_as_many_frames_have_their_files_named_twice_as_often(folders, use, monkeypatch):
+    named, frame_path = [], FolderStore.frame_path
+    monkeypatch.setattr(FolderStore, "frame_path", lambda store, place: named.append(place) or frame_path(store, place))
+    stored, counts = ep.load_sequence(folders["maps"]), []
+    for frames in (stored[:2], stored):
+        use(frames)
+        counts.append(len(named))
+        named.clear()
+    assert counts[1] == 2 * counts[0] > 0
 
 
 @pytest.mark.parametrize("keep", ["maps", "labels"])

@@ -52,7 +52,11 @@ class FolderStore:
 
     def are_there(self, places: Iterable[int]) -> list[bool]:
         """Whether there is a frame at each of some places."""
-        return [self.frame_path(place).exists() for place in places]
+        return [self.is_there(place) for place in places]
+
+    def is_there(self, place: int) -> bool:
+        """Whether there is a frame at a place."""
+        return self.frame_path(place).exists()
 
     def are_whole(self, places: Iterable[int]) -> list[bool]:
         """Whether there is a frame at each of some places whose file is as long as it was written."""

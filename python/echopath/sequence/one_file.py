@@ -44,6 +44,13 @@ class FileStore:
             names = set(read_group(file, FRAMES))
         return [_name(place) in names for place in places]
 
+    def is_there(self, place: int) -> bool:
+        """Whether there is a frame at a place; takes no longer the more others there are."""
+        if not self.path.exists():
+            return False
+        with our_file(self.path, SEQUENCE) as file:
+            return _name(place) in read_group(file, FRAMES)
+
     def are_whole(self, places: Iterable[int]) -> list[bool]:
         """As `are_there`: a file that has lost its end cannot be opened at all."""
         return self.are_there(places)

@@ -102,7 +102,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
     def _item(self, place: int) -> Frame | FrameMaps:
         number = self._numbers[place]
         path = self._store.frame_path(number)
-        if not self._store.are_there([number])[0]:
+        if not self._store.is_there(number):
             self._refuse_removed()
             raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.path} goes on when it is "
                                   "called again")

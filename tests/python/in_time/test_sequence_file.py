@@ -51,6 +51,13 @@ def test_a_frame_in_the_file_is_named_as_if_it_lay_below_it(whole, simulated):
         ep.load_frame(whole.path)
 
 
+def test_a_frame_of_a_file_is_read_without_a_look_at_the_names_of_the_others(whole, simulated, monkeypatch):
+    listed, names_in = [], library().Group.__iter__
+    monkeypatch.setattr(library().Group, "__iter__", lambda group: listed.append(group.name) or names_in(group))
+    assert signal_of(whole[2]) == simulated[2] and "/frames" not in listed
+    assert whole.is_there.all() and "/frames" in listed
+
+
 @pytest.mark.parametrize("keep", ["maps", "labels"])
 def test_small_frames_are_those_of_a_folder(tmp_path, keep):
     file, folder = (make_sequence(truth=True).save(tmp_path / name, keep=keep) for name in ("drive.h5", "drive"))

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.gates import in_gate
-from ..base.radar.chirps import chirp_period
+from ..base.radar.chirps import chirp_period, chirps_duration
 from ..spectra.range_transform import range_profiles
 from ..spectra.windows import of_range
 from .bursts import text_of_part
@@ -17,6 +17,38 @@ from .stft import axes_of, noise_bandwidth, velocity_powers, with_chirps
 
 DEFAULT_LENGTH = 128     # chirps of a window, as far as a frame has them
 EVEN = 1e-3              # of a chirp period, by which the chirps of a frame may come early or late
+
+
+def require_window(times, radar, window_length: int | None, span_frames) -> None:
+    """Raises ValueError for a window that is longer than all trains of frames, before any of them is made or read.
+
+    times: [F] s, starts of the frames; radar: of all of them
+    """
+    if window_length is None:
+        return
+    ends, period = times + chirps_duration(radar), chirp_period(radar)
+    goes_on = (np.abs(times[1:] - ends[:-1]) <= EVEN * period) & (span_frames is not False)
+    first = np.flatnonzero(np.append(True, ~goes_on))
+    trains = list(zip(times[first], ends[np.append(first[1:], len(times)) - 1]))
+    if window_length > _longest(trains, period):
+        raise _too_long(window_length, trains, period, span_frames)
+
+
+def _longest(trains: list, period: float) -> int:
+    """Chirps of the longest of some trains (begin, end) in s."""
+    return max(round((end - begin) / period) for begin, end in trains)
+
+
+def _too_long(window_length: int, trains: list, period: float, span_frames) -> ValueError:
+    """The error that says what would make longer trains, or what there is between them."""
+    gaps = [begin - end for (_, end), (begin, _) in pairwise(trains)]
+    longer = ""
+    if gaps and min(gaps) > EVEN * period:
+        longer = f", between which are gaps of {min(gaps):.3g} s and more"
+    elif gaps and span_frames is not True:
+        longer = "; span_frames=True joins frames without gaps"
+    return ValueError(f"window_length: must be at most {_longest(trains, period)}, the chirps of the longest train{longer}, "
+                      f"got {window_length}")
 
 
 class Stft:
@@ -60,21 +92,12 @@ class Stft:
     def result(self, part) -> Spectrogram:
         self._end_train()
         if not self._times:
-            longest = max(round((end - begin) / self._period) for begin, end in self._trains)
-            raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{self._longer_trains()}, "
-                             f"got {self._length}")
+            raise _too_long(self._length, self._trains, self._period, self._span_frames)
         ranges = self._axes.range[self._inside]
         return Spectrogram(times=np.concatenate(self._times), velocity=self._axes.velocity, power=np.concatenate(self._powers),
                            noise_power=self.noise_power, train=np.concatenate(self._train), trains=np.array(self._trains),
                            window_length=self._length, hop=self._hop, window=self._window, zero_pad=self._zero_pad,
                            range_gate=(float(ranges[0]), float(ranges[-1])), part=text_of_part(part), channel=self._channel)
-
-    def _longer_trains(self) -> str:
-        """What would make longer trains, or what there is between them; "" of one train."""
-        gaps = [begin - end for (_, end), (begin, _) in pairwise(self._trains)]
-        if gaps and min(gaps) > EVEN * self._period:
-            return f", between which are gaps of {min(gaps):.3g} s and more"
-        return "; span_frames=True joins frames without gaps" if gaps and self._span_frames is not True else ""
 
     def _prepare(self, burst) -> None:
         self._radar, self._period = burst.radar, chirp_period(burst.radar)

@@ -11,9 +11,10 @@ from ..arguments.checks import ArrayLike, MapWindow, an, anything, array, checke
 from ..arguments.gates import gate
 from ..arguments.settings import LabelSettings, SignalSettings
 from ..labels.request import as_label_settings
+from ..sequence.row import Row
 from .bursts import Channel, Frames, Part, bursts, channel_rule, frames_rule, part_rule
 from .maps import Spectrogram
-from .sliding import Stft
+from .sliding import Stft, require_window
 from .views import Views
 
 MOST_CHIRPS = 1 << 20
@@ -60,6 +61,8 @@ def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_leng
     Returns a Spectrogram with power [times, velocity] in W. Raises TypeError, ValueError or IndexError naming the argument,
     also for frames of different radars, out of order or shorter than a window.
     """
+    if isinstance(frames, Row) and len(frames):
+        require_window(frames.times, frames.radar, window_length, span_frames)
     make_stft = functools.partial(Stft, window_length, hop, window, zero_pad, range_gate, span_frames, channel)
     whole, settings = make_stft(), as_label_settings(labels)
     views = None if settings is None else Views(settings, make_stft, part, channel)

@@ -196,3 +196,23 @@ def test_wrong_files_of_times_are_refused_with_their_line(scene_path, text, told
 def test_options_that_the_times_do_not_allow_are_refused(scene_path, tmp_path, capsys, options, told):
     assert main(["run", str(scene_path), "--out", str(tmp_path / "out"), *options]) == 2
     assert told in capsys.readouterr().err
+
+
+PERIOD = 32 * 50e-6  # s, from the first chirp of a frame of `make_radar` to that of one that follows without a gap
+
+
+@pytest.mark.parametrize("times, span_frames, longest", [
+    (TIMES, "auto", "32, the chirps of the longest train, between which are gaps of 0.0384 s and more"),
+    ((0.0, PERIOD, 1.0), "auto", "64, the chirps of the longest train, between which are gaps of 0.997 s and more"),
+    ((0.0, PERIOD), True, "64, the chirps of the longest train"),
+    ((0.0, PERIOD), False, "32, the chirps of the longest train; span_frames=True joins frames without gaps")])
+def test_windows_longer_than_all_trains_are_refused_before_a_frame_is_made(times, span_frames, longest, monkeypatch):
+    sequence = make_uneven(times)
+    window_length = int(longest.split(",")[0]) + 1
+    with monkeypatch.context() as patch:
+        patch.setattr(ep.Sequence, "_recorded", lambda *_: pytest.fail("makes a frame"))
+        with pytest.raises(ValueError, match=f"^window_length: must be at most {longest}, got {window_length}$"):
+            ep.spectrogram(sequence, window_length=window_length, span_frames=span_frames)
+    with pytest.raises(ValueError, match=f"^window_length: must be at most {longest}, got {window_length}$"):  # frames alone
+        ep.spectrogram(list(sequence), window_length=window_length, span_frames=span_frames)
+    assert ep.spectrogram(sequence, window_length=window_length - 1, span_frames=span_frames).window_length == window_length - 1

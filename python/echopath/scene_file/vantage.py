@@ -115,8 +115,10 @@ def _clearance(blocked, most: int):
 def _open_way(blocked, row: int, column: int) -> tuple[float, int]:
     """The direction in degrees of the longest way without obstacles that ends at one, and its length in cells; where no way
     does, that of the middle of all obstacles."""
-    away = np.argwhere(blocked).mean(axis=0) - [row, column]
-    best = (float(np.degrees(np.arctan2(away[1], away[0]))), 0) if blocked.any() else (0.0, 0)
+    best = (0.0, 0)
+    if blocked.any():
+        away = np.argwhere(blocked).mean(axis=0) - [row, column]
+        best = (float(np.degrees(np.arctan2(away[1], away[0]))), 0)
     for yaw in np.arange(DIRECTIONS) * 360.0 / DIRECTIONS - 180.0:
         ahead = np.array([np.cos(np.radians(yaw)), np.sin(np.radians(yaw))])
         for distance in range(1, 2 * CELLS):

@@ -23,6 +23,14 @@ def test_on_an_open_field_it_looks_at_what_stands_there(bodies):
     assert found.is_within and np.abs((bearings + 180.0) % 360.0 - 180.0).min() < 15.0
 
 
+def test_land_on_which_nothing_stands_is_looked_at_from_its_middle_without_a_warning(recwarn):
+    scene = ep.Scene()
+    scene.add(ep.actors.ground((80.0, 40.0)), name="field", material="asphalt", position=(40.0, 0.0, 0.0))
+    found = vantage(scene)
+    assert not recwarn.list and found.is_within and found.yaw == 0.0
+    assert found.position == pytest.approx([40.0, 0.0, 1.5], abs=1.0)  # within two cells
+
+
 def test_a_scene_without_meshes_is_refused():
     with pytest.raises(ValueError, match="scene: must be a Scene with meshes to look at, got Scene"):
         vantage(ep.Scene())

@@ -160,7 +160,9 @@ def columns_over_time(times) -> tuple[np.ndarray, np.ndarray]:
 
 
 def image_over_time(ax, times, values, level, **look):
-    """The cells [T, X] as an image, blank in gaps between the times [T] in s."""
+    """The cells [T, X] as an image, blank in gaps between the times [T] in s, which run backwards in `sequence[::-1]`."""
+    order = np.argsort(times)
+    times, level = times[order], level[order]
     if len(times) == 1:
         ax.set_xticks(times)  # its width means nothing
     edges, columns = columns_over_time(times)

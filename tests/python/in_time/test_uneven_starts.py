@@ -78,6 +78,16 @@ def test_maps_over_time_follow_the_clock():
     assert np.abs(peaks - (DISTANCE + SPEED * over_time.times)).max() < 0.31  # m, of cells of 0.3 m
 
 
+@pytest.mark.parametrize("step", [1, -1])
+def test_pictures_leave_gaps_between_uneven_frames_blank_in_either_order(step):
+    figure = make_uneven((0.0, 0.05, 0.08, 0.4, 0.45))[::step].plot()
+    mesh = next(axes for axes in figure.subfigs[1].axes if axes.get_xlabel() == "Time in s").collections[0]
+    across, level = mesh.get_coordinates()[0, :, 0], np.ma.filled(mesh.get_array().astype(float), np.nan)
+    for time in (0.0, 0.05, 0.08, 0.2, 0.3, 0.4, 0.45):
+        column = np.flatnonzero((across[:-1] <= time) & (time < across[1:]))
+        assert len(column) == 1 and np.isnan(level[:, column]).all() == (time in (0.2, 0.3))
+
+
 def test_films_of_uneven_frames_are_as_fast_as_their_median(tmp_path):
     from PIL import Image
 

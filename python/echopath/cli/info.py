@@ -28,6 +28,7 @@ from ..receiver.settings import receiver_text
 from ..scene.interferers import interferers_of, interferers_within
 from ..scene.lifetimes import scene_in_frame
 from ..scene_file import load_scene
+from ..scene_file.frame_starts import first_start
 from ..scene_file.load import parse
 from ..sequence.folder import NAME as SEQUENCE_FILE
 from ..sequence.starts import Starts, pace_words
@@ -128,11 +129,10 @@ def _rays_of(trace) -> str:
 
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
-    scene, radar = scene_file.scene, scene_file.radar
-    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene, radar, trace.start_time),
-             *_describe_radar(radar, trace.start_time), *_describe_interferers(scene, radar, trace.start_time),
-             *report.folded_velocities(scene_in_frame(scene, radar, trace.start_time), radar,
-                                       radar.middle_of_frame(trace.start_time)),
+    scene, radar, start_time = scene_file.scene, scene_file.radar, first_start(trace, scene_file.sequence)
+    lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene, radar, start_time),
+             *_describe_radar(radar, start_time), *_describe_interferers(scene, radar, start_time),
+             *report.folded_velocities(scene_in_frame(scene, radar, start_time), radar, radar.middle_of_frame(start_time)),
              "trace", report.line("rays", _rays_of(trace)), report.line("bounces at most", str(trace.max_bounces))]
     if trace.batches is not None:
         lines.append(report.line("batches", str(trace.batches)))

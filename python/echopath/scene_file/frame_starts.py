@@ -1,4 +1,4 @@
-"""Starts of the frames in time of a scene file, from a text file that it names."""
+"""Starts of the frames in time of a scene file, from a text file that it names, and of the first of them."""
 from __future__ import annotations
 
 import math
@@ -22,6 +22,11 @@ def read_starts(path: Path) -> list[float]:
     if not starts:
         raise _core.FileError(f"{path}: must have the start of a frame in s in each line, has none")
     return starts
+
+
+def first_start(trace, sequence) -> float:
+    """When the first frame begins, in s. trace: table or settings; sequence: table of the frames in time, None: there is one."""
+    return trace.start_time if sequence is None or sequence.times is None else float(sequence.times[0])
 
 
 def _start(path: Path, number: int, line: str) -> float:

@@ -31,7 +31,7 @@ from ..trajectories import Trajectory
 from ..trajectories.files.rows import KeptRows
 from .errors import ToldValueError, blamed, validated
 from .foreign import foreign_scene
-from .frame_starts import read_starts
+from .frame_starts import first_start, read_starts
 from .lines import with_lines
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
@@ -80,12 +80,14 @@ def scene_file_of(table: dict, path: Path, folder: Path | None = None, rows: Kep
         radar = _build_radar(settings.radar, folder, carriers)
         if settings.adapt_materials:
             adapt_materials(scene, radar)
+        sequence = _sequence(settings, folder)
+        start_time = first_start(settings.trace, sequence)
         if settings.mark_mirrors:
-            mark_mirrors(scene, radar, time=settings.trace.start_time)
+            mark_mirrors(scene, radar, time=start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
-                               detections=settings.detections, guard=settings.guard, sequence=_sequence(settings, folder),
-                               **_tables_of_objects(settings, scene, radar))
+                               detections=settings.detections, guard=settings.guard, sequence=sequence,
+                               **_tables_of_objects(settings, scene, radar, start_time))
         with blamed("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings(), zero_pad=scene_file.signal.zero_pad)
         check_partitions(scene_file.partitions(), scene_file.scene)
@@ -116,22 +118,20 @@ def _signal(settings: SceneTable) -> SignalSettings:
         return noisy.replace(window=settings.spectrum.window, zero_pad=settings.spectrum.zero_pad)
 
 
-def _tables_of_objects(settings: SceneTable, scene: Scene, radar: _core.Radar) -> dict:
-    """`labels` and `truth` of a SceneFile, with the names of objects that are to be found in its scene."""
+def _tables_of_objects(settings: SceneTable, scene: Scene, radar: _core.Radar, start_time: float) -> dict:
+    """`labels` and `truth` of a SceneFile, with the names of objects that are to be found in its scene in the middle of the first
+    frame, as usual objects are."""
     found = {}
     for key in ("labels", "truth"):
         table = getattr(settings, key)
         is_asked = table is not None and table.objects == FOUND
-        found[key] = table.model_copy(update={"objects": _found_objects(settings, scene, radar)}) if is_asked else table
+        if is_asked:
+            table = table.model_copy(update={"objects": find_objects(scene, radar, time=radar.middle_of_frame(start_time))})
+        found[key] = table
     if found["labels"] is not None:
         with blamed("labels"):
             found["labels"] = LabelSettings(**found["labels"].model_dump())
     return found
-
-
-def _found_objects(settings: SceneTable, scene: Scene, radar: _core.Radar) -> dict[str, str]:
-    """Of the middle of the first frame, as usual objects are."""
-    return find_objects(scene, radar, time=radar.middle_of_frame(settings.trace.start_time))
 
 
 def _check_objects(scene_file: SceneFile) -> None:

@@ -1,4 +1,6 @@
 """Frames in time that begin when a recording's did: places, bits, files, and pictures."""
+import re
+
 import numpy as np
 import pytest
 
@@ -176,6 +178,26 @@ def test_info_tells_the_times(scene_path, tmp_path, capsys):
         assert main(["info", str(path)]) == 0
         told = " ".join(capsys.readouterr().out.split())
         assert "0.05 to 0.15 s apart" in told and "0 to 0.2 s" in told
+
+
+@pytest.mark.parametrize("starts, is_mirror", [("times = [120.0, 120.5]", True), ("frames = 2\ninterval = 0.5", False)])
+def test_a_scene_is_looked_at_when_the_first_frame_begins(tmp_path, capsys, starts, is_mirror):
+    """A wall, 7.5 m wide for mirrors, which its docstring wants at least 4 sqrt(wavelength distance) wide: 1 m at 20 m, 8.7 m
+    at the 1.2 km that it is away when the clock begins."""
+    path = tmp_path / "wall.toml"
+    path.write_text("mark_mirrors = true\n[radar]\nspeed = 10.0\n" + WAVEFORM + ANTENNAS + """
+[[objects]]
+name = "wall"
+actor = "wall"
+parameters = {length = 10.0, height = 6.0}
+material = "concrete"
+position = [1210.0, 3.0, -3.0]
+[sequence]
+""" + starts)
+    assert ep.load_scene(path).scene["wall"].material.mirror == is_mirror
+    assert main(["info", str(path)]) == 0
+    place = re.search(r"place +\((\d+)", capsys.readouterr().out)
+    assert place[1] == ("1200" if is_mirror else "0")
 
 
 @pytest.mark.parametrize("lines, told", [

@@ -140,6 +140,27 @@ def test_parameters_and_included_files_are_filled_in(tmp_path):
     assert corners(model)[:, 0].mean() == pytest.approx(7)
 
 
+def test_files_are_looked_for_in_the_folders_of_the_scene_first_as_mitsuba_does(tmp_path):
+    """Its resolver knows the folder of the main file, from that of the last <path> on, and not those of included files."""
+    def write(name: str, body: str):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(f'<scene version="3.0.0">{body}</scene>')
+
+    def included(name: str) -> str:
+        return f'<include filename="{name}"/>'
+
+    write("main/parts/outer.xml", included("parts/inner.xml"))                       # from the folder of the main file
+    write("main/parts/inner.xml", rectangle('<translate x="1"/>') + included("far.xml") + included("beside.xml"))
+    write("main/parts/beside.xml", rectangle('<translate x="2"/>'))                   # of which Mitsuba itself knows nothing
+    for folder, x in (("common", 3), ("main", 4), ("main/parts", 5)):
+        write(f"{folder}/far.xml", rectangle(f'<translate x="{x}"/>'))
+    body = '<path value="../common"/><path value="nowhere"/>' + included("parts/outer.xml")
+    model = mitsuba(tmp_path / "main", body)
+    assert [corners(model, index)[:, 0].mean() for index in range(3)] == pytest.approx([1, 3, 2])
+    with pytest.raises(ep.FileError, match="more than 100 folders"):
+        mitsuba(tmp_path / "main", '<path value="."/>' * 101)
+
+
 def test_files_are_found_as_programs_of_windows_write_their_paths(tmp_path):
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "more.xml").write_text(f'<scene version="3.0.0">{rectangle("")}</scene>')

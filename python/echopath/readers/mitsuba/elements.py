@@ -1,6 +1,7 @@
 """The elements of a Mitsuba file: XML without entities, parameters filled in, included files in their places."""
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -12,18 +13,23 @@ from ...base.storage.lines import refuse
 from ...base.storage.markup import parse
 
 MAX_INCLUDES = 15    # files within files
+MAX_FOLDERS = 100    # where files are looked for
 MAX_ELEMENTS = 10_000_000
 _OF_PICTURES = {"sensor", "film", "sampler", "rfilter", "integrator", "emitter"}  # where a sensor stands tells which way is up
 
 
 @dataclass(eq=False)
 class Element:
-    """One element: tag, attributes, children, and where it stands."""
+    """One element: tag, attributes, children, and where it stands.
+
+    folders: of its scene, in which files are looked for, from the first one on
+    """
 
     tag: str
     attributes: dict[str, str]
     file: Path
     line: int
+    folders: list[Path]
     children: list[Element] = field(default_factory=list)
 
     def get(self, name: str, default: str = "") -> str:
@@ -81,13 +87,14 @@ class Element:
 
 def read_elements(path: Path) -> Element:
     """The element <scene> of a file with those of the files that it includes, parameters `$name` filled in."""
-    return _Reader().read(path)
+    return _Reader(path).read(path)
 
 
 class _Reader:
-    def __init__(self):
+    def __init__(self, path: Path):
         self._parameters: dict[str, str] = {}
         self._including: list[Path] = []
+        self._folders = [path.parent]
         self._count = 0
 
     def read(self, path: Path) -> Element:
@@ -112,6 +119,8 @@ class _Reader:
                 self._parameters.setdefault(child.get("name"), child.get("value"))
             elif child.tag == "include":
                 yield from self._included(child)
+            elif child.tag == "path":
+                self._look_in(child)
             else:
                 child.children = list(self._filled(child, of_scene))
                 yield child
@@ -136,13 +145,20 @@ class _Reader:
             element.refuse(f"'{path}' includes itself, or files are included more than {MAX_INCLUDES} deep")
         return self.read(path).children
 
+    def _look_in(self, element: Element) -> None:
+        """Has files looked for in a folder, before the others that are known."""
+        if len(self._folders) >= MAX_FOLDERS:
+            element.refuse(f"more than {MAX_FOLDERS} folders")
+        named = (named_file(folder, element.get("value")) for folder in (element.file.parent, *self._folders))
+        self._folders[:0] = [*filter(os.path.isdir, named)][:1]
+
     def _parse(self, path: Path) -> Element:
         stack: list[Element] = []
         roots: list[Element] = []
 
         def begin(tag, attributes, line):
             self._count += 1
-            element = _of_today(Element(tag, attributes, path, line))
+            element = _of_today(Element(tag, attributes, path, line, self._folders))
             if self._count > MAX_ELEMENTS:
                 element.refuse(f"more than {MAX_ELEMENTS} elements in all")
             (stack[-1].children if stack else roots).append(element)
@@ -162,14 +178,11 @@ def _of_today(element: Element) -> Element:
 
 
 def file_of(element: Element, name: str) -> Path:
-    """The regular file that an element names, relative to the file that it stands in."""
+    """The regular file that an element names, relative to one of the folders of its scene or to the file that it stands in."""
     if not name:
         element.refuse("names no file")
-    path = named_file(element.file.parent, name)
-    try:
-        found = path.is_file()
-    except (OSError, ValueError):
-        found = False
-    if not found:
+    named = (named_file(folder, name) for folder in (*element.folders, element.file.parent))
+    path = next(filter(os.path.isfile, named), None)
+    if path is None:
         element.refuse(f"the file '{name}' is not there")
     return path

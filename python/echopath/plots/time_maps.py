@@ -156,13 +156,13 @@ def columns_over_time(times) -> tuple[np.ndarray, np.ndarray]:
     """(edges [E + 1] in s, indices [E] of the times [T] in s between them, -1 in a gap), as `image_over_time` draws them."""
     if len(times) == 1:
         return cell_edges(times), np.zeros(1, int)
-    return _columns_and_gaps(times, *_trains_of_columns(times))
+    order = np.argsort(times)
+    edges, columns = _columns_and_gaps(times[order], *_trains_of_columns(times[order]))
+    return edges, np.where(columns < 0, -1, order[columns])
 
 
 def image_over_time(ax, times, values, level, **look):
     """The cells [T, X] as an image, blank in gaps between the times [T] in s, which run backwards in `sequence[::-1]`."""
-    order = np.argsort(times)
-    times, level = times[order], level[order]
     if len(times) == 1:
         ax.set_xticks(times)  # its width means nothing
     edges, columns = columns_over_time(times)

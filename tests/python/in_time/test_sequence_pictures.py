@@ -101,12 +101,13 @@ def test_what_stands_straight_ahead_is_told_of_no_time_without_frames():
     scene = ep.Scene()
     corner_at(scene, "standing", 6.0, 2.0)
     made = ep.Sequence(scene, make_radar(speed=12.0), times=[0.0, 0.1, 0.2, 0.5, 0.6], num_rays=500, guard=False)
-    velocities = made.plot(num_frames=2).subfigs[1].axes[1]
-    (ahead,) = (patch for patch in velocities.patches if hasattr(patch, "get_data"))
-    line = ahead.get_data()
-    np.testing.assert_allclose(line.values, [-12.0, -12.0, -12.0, np.nan, -12.0, -12.0])
-    np.testing.assert_allclose(line.edges, [-0.05, 0.05, 0.15, 0.25, 0.45, 0.55, 0.65])
-    np.testing.assert_allclose(velocities.get_xlim(), (-0.05, 0.65))
+    for row in (made, made[::-1]):
+        velocities = row.plot(num_frames=2).subfigs[1].axes[1]
+        (ahead,) = (patch for patch in velocities.patches if hasattr(patch, "get_data"))
+        line = ahead.get_data()
+        np.testing.assert_allclose(line.values, [-12.0, -12.0, -12.0, np.nan, -12.0, -12.0])
+        np.testing.assert_allclose(line.edges, [-0.05, 0.05, 0.15, 0.25, 0.45, 0.55, 0.65])
+        np.testing.assert_allclose(velocities.get_xlim(), (-0.05, 0.65))
 
 
 @pytest.mark.parametrize("yaw", [np.pi, 0.5 * np.pi, 2.0])

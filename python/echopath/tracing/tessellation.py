@@ -109,13 +109,14 @@ def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
     nodes, meshes, found, moved = scene.nodes, scene.meshes, [], MadeOnce()
     world_from_node = linear_maps(nodes)[[meshes[mesh_id].node for mesh_id in asked]]
     stretches = np.linalg.svd(world_from_node, compute_uv=False)
-    for mesh_id, linear, stretch in zip(asked, world_from_node, stretches):
+    are_even = stretches[:, 0] - stretches[:, 2] <= EVEN * stretches[:, 0]
+    scales = np.where(are_even, stretches.mean(axis=1), 1.0).tolist()
+    for mesh_id, linear, is_even, scale in zip(asked, world_from_node, are_even.tolist(), scales):
         mesh = meshes[mesh_id]
-        is_even = stretch[0] - stretch[2] <= EVEN * stretch[0]
         measured = _measured(mesh.mesh, None if is_even else linear)
         if measured is None:
             continue
-        measured = _scaled(measured, _scale_of_skin(mesh, nodes, moved) * (float(stretch.mean()) if is_even else 1.0))
+        measured = _scaled(measured, _scale_of_skin(mesh, nodes, moved) * scale)
         smooth = nodes[mesh.node].smooth
         ratio = measured.ratio(wavelength) / (SMOOTH_GAIN if smooth else 1.0)
         if ratio > MAX_RATIO:

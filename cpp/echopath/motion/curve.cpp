@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "echopath/base/errors.h"
-#include "echopath/motion/spline.h"
 
 namespace echopath {
 namespace {
@@ -33,14 +32,18 @@ std::array<int64_t, 2> runs_in(const Playback& playback, const TimeSpan& during)
   return {first, std::min(playback.run_at(during.end), first + kMostRuns)};
 }
 
-// Returns the times, ascending, at which the runs in `during` are looked at: the keys, and some between those of splines.
+// Returns the times, ascending, at which the runs in `during` are looked at: the keys around it, and some between those of
+// splines.
 std::vector<double> sample_times(const Curve& curve, const Playback& playback, const TimeSpan& during) {
   constexpr int64_t kRunsThatTell = 2;  // the others repeat them
   const auto [first, last] = runs_in(playback, during);
   const int samples = curve.interpolation == CurveInterpolation::kHermite ? kSamplesPerPiece : 1;
+  const auto [begin, end] = keys_played(curve, playback, during);
+  // A key is to spare on either side.
+  const size_t from = begin > 0 ? begin - 1 : 0, to = std::min(end + 2, curve.times.size());
   std::vector<double> times;
   for (int64_t run = first; run <= std::min(last, first + kRunsThatTell); ++run) {
-    for (size_t k = 0; k < curve.times.size(); ++k) {
+    for (size_t k = from; k < to; ++k) {
       const double step = k + 1 < curve.times.size() ? curve.times[k + 1] - curve.times[k] : 0.0;
       for (int i = 0; i < samples; ++i) times.push_back(playback.time_of(curve.times[k] + step * i / samples, run));
     }
@@ -121,6 +124,13 @@ CurvePlace place_on(const Curve& curve, const Playback& playback, double time) {
   if (next == curve.times.size()) return {next - 1, next - 1, 0.0};
   const double begin = playback.time_of(curve.times[next - 1], run), step = curve.times[next] - curve.times[next - 1];
   return {next - 1, next, std::clamp((time - begin) / step, 0.0, 1.0)};
+}
+
+KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSpan& during) {
+  const size_t last = curve.times.size() - 1;
+  if (last == 0) return {};
+  if (playback.period > 0.0) return {0, last};
+  return knots_around(curve.times, {during.begin + playback.offset, during.end + playback.offset});
 }
 
 double time_at_rest(double time) {

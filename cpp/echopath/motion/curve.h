@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "echopath/motion/motion.h"
+#include "echopath/motion/spline.h"
 
 namespace echopath {
 
@@ -61,6 +62,9 @@ double time_at_rest(double time);
 std::array<double, 4> curve_weights(const Curve& curve, const CurvePlace& place);
 // Writes the columns [C] at `time` (s, of the scene) to `out`.
 void evaluate(const Curve& curve, const Playback& playback, double time, std::span<double> out);
+
+// Returns the keys between which an unlooped curve is played; all of them where it is looped.
+KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSpan& during);
 
 // Returns pi over the shortest time between two turning points of any column within `during`, rad/s. Column c counts in
 // metres as extents[c] times its value; beyond the columns of `extents` it counts as it is.

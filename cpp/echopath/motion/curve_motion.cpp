@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/motion/spline.h"
 
 namespace echopath {
 namespace {
@@ -77,14 +76,6 @@ double angular_speed(const Curve& curve, size_t k) {
   }
   const double fastest = std::max({leaving.norm(), middle.norm(), arriving.norm()});
   return 2.0 * fastest / std::max(shortest, kShortest);
-}
-
-// Returns the keys between which an unlooped curve is played; all of them where it is looped.
-KnotRange keys_played(const Curve& curve, const Playback& playback, const TimeSpan& during) {
-  const size_t last = curve.times.size() - 1;
-  if (last == 0) return {};
-  if (playback.period > 0.0) return {0, last};
-  return knots_around(curve.times, {during.begin + playback.offset, during.end + playback.offset});
 }
 
 }  // namespace

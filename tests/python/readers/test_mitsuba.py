@@ -116,6 +116,15 @@ def test_what_the_caller_says_goes_before_the_type(tmp_path):
     assert mitsuba(tmp_path, body, materials={"*": "wood"}).nodes[0].material == "wood"
 
 
+def test_an_alias_is_another_id_of_what_is_above_it(tmp_path):
+    """As Mitsuba documents it: `id` is there, and `as` refers to it from there on."""
+    group = '<shape type="shapegroup" id="house">' + rectangle("", '<ref id="wall"/>') + "</shape>"
+    aliases = '<alias id="mat-itu_brick" as="wall"/><alias id="house" as="villa"/>'
+    model = mitsuba(tmp_path, '<bsdf type="diffuse" id="mat-itu_brick"/>' + group + aliases +
+                    '<shape type="instance"><ref id="villa"/></shape>')
+    assert [node.foreign_material for node in model.nodes if node.mesh is not None] == ["itu_brick"]
+
+
 def test_a_radio_material_with_a_thickness_is_a_pane_that_waves_pass(tmp_path):
     """Airy's sum for a slab at normal incidence: R = r (1 - p^2) / (1 - r^2 p^2), T = (1 - r^2) p / (1 - r^2 p^2)."""
     pane = ('<bsdf type="radio-material" id="pane"><float name="relative_permittivity" value="6.3"/><float name="conductivity" '

@@ -57,7 +57,9 @@ class _Content:
 
     def _remember(self, element: Element) -> None:
         for child in element.children:
-            if child.get("id") and child.tag != "ref":
+            if child.tag == "alias" and child.get("id") in self._known:
+                self._known.setdefault(child.get("as"), self._known[child.get("id")])
+            elif child.get("id") and child.tag != "ref":
                 self._known.setdefault(child.get("id"), child)
             self._remember(child)
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include "echopath/base/errors.h"
 
@@ -13,11 +15,10 @@ constexpr double kLongestTime = 1e9;      // s: beyond it sums of times are too 
 constexpr int64_t kMostRuns = 100000;     // of a loop within one span, so that lists of times end
 constexpr int kSamplesPerPiece = 4;       // among which the turning points of a Hermite spline are found
 
-void check_numbers(const std::vector<double>& numbers, size_t count, const char* argument, const char* what) {
-  require(numbers.size() == count, argument, std::string("must have a row of ") + what + " for each time; numbers",
-          numbers.size());
-  for (const double number : numbers)
-    require(std::isfinite(number), argument, std::string("must have finite ") + what, number);
+void check_numbers(const std::vector<double>& numbers, size_t count, std::string_view argument, const std::string& what) {
+  require(numbers.size() == count, argument, "must have a row of " + what + " for each time; numbers", numbers.size());
+  const std::string rule = "must have finite " + what;
+  for (const double number : numbers) require(std::isfinite(number), argument, rule, number);
 }
 
 bool is_limited(const TimeSpan& during) {

@@ -78,7 +78,8 @@ void Skin::Data::add_row(const SkinWeights& weights, size_t vertex) {
     influences.push_back({weights.joint[i], weight});
     sum += weight;
   }
-  require(std::abs(sum - 1.0) <= kSumTolerance, "weights", "must add up to 1 for vertex " + std::to_string(vertex), sum);
+  if (!(std::abs(sum - 1.0) <= kSumTolerance))
+    require(false, "weights", "must add up to 1 for vertex " + std::to_string(vertex), sum);
   if (std::abs(sum - 1.0) > kSumRounding) {
     for (size_t i = first.back(); i < influences.size(); ++i) influences[i].weight /= sum;
   }

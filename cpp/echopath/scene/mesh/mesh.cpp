@@ -133,10 +133,10 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
   require(triangles.size() < kMaxCount, "triangles", "must be fewer than 715 million", triangles.size());
   require(source_triangle.empty() || source_triangle.size() == triangles.size(), "original_triangle",
           "must be empty or as long as triangles", source_triangle.size());
+  const std::string rule = "must hold indices below the number of vertices, " + std::to_string(vertices.size());
   for (uint32_t t = 0; t < triangles.size(); ++t) {
     for (const uint32_t vertex : triangles[t]) {
-      require(vertex < vertices.size(), "triangles",
-              "must hold indices below the number of vertices, " + std::to_string(vertices.size()), vertex);
+      require(vertex < vertices.size(), "triangles", rule, vertex);
       if (!is_vertex_in_range(vertices[vertex])) {
         require(false, "vertices", "vertex " + std::to_string(vertex) + " must be finite and within 1e70 m",
                 vertices[vertex].transpose());

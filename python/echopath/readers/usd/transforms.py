@@ -22,20 +22,20 @@ def sampled_transforms(xformable, time, timeline: Timeline, animated: bool) -> t
     if len(codes) < 2 or not animated:
         at = codes[0] if len(codes) == 1 else time
         return [0.0], _at(xformable, at)[None], None
-    codes = codes[:MOST_SAMPLES]
-    steps, is_smooth = _steps(xformable, codes)
+    codes, ops = codes[:MOST_SAMPLES], xformable.GetOrderedXformOps()
+    steps, is_smooth = _steps(xformable, ops, codes)
     fine = _between(codes, steps)
     knots = np.concatenate([[0], np.cumsum(steps)]) if is_smooth else None
-    return fine, np.stack([_at(xformable, code) for code in fine]), knots
+    return fine, np.swapaxes([xformable.GetLocalTransformation(ops, code) for code in fine], 1, 2), knots
 
 
 def _at(xformable, code) -> np.ndarray:
     return matrix(xformable.GetLocalTransformation(code))
 
 
-def _steps(xformable, codes: list[float]) -> tuple[np.ndarray, bool]:
+def _steps(xformable, ops, codes: list[float]) -> tuple[np.ndarray, bool]:
     """(steps [T - 1] into which the intervals between codes are to be cut, whether curves are to be laid through them)."""
-    changes = [_turns(op, codes) for op in xformable.GetOrderedXformOps() if op.MightBeTimeVarying()]
+    changes = [_turns(op, codes) for op in ops if op.MightBeTimeVarying()]
     turns = np.concatenate([np.zeros((len(codes) - 1, 0)), *changes], axis=1)
     turned = np.minimum(turns.sum(axis=1), MOST_DEG)
     is_steady = np.count_nonzero(turns.any(axis=0)) < 2 and _goes_straight(xformable, codes, np.flatnonzero(turned))
@@ -70,7 +70,7 @@ def _turns(op, codes: list[float]) -> np.ndarray:
         cosines = np.abs(np.sum(quaternions[1:] * quaternions[:-1], axis=1))
         return 2.0 * np.degrees(np.arccos(np.minimum(cosines, 1.0)))[:, None]
     if "rotate" in op.GetOpName():
-        return np.abs(np.diff([_angles(op, code) for code in codes], axis=0))
+        return np.abs(np.diff(_angles(op, codes), axis=0))
     return np.zeros((len(codes) - 1, 0))
 
 
@@ -85,16 +85,18 @@ def _quaternion(op, code) -> np.ndarray:
     return np.array([1.0, 0.0, 0.0, 0.0])
 
 
-def _angles(op, code) -> np.ndarray:
-    """[3] degrees about the axes of a rotation, about one axis as the first; zeros for values that are no angles.
+def _angles(op, codes: list[float]) -> np.ndarray:
+    """[T, 3] degrees about the axes of a rotation, about one axis as the first; zeros for values that are no angles.
 
     Of those USD makes no transform, and says so.
     """
-    angles = np.zeros(3)
+    angles = np.zeros((len(codes), 3))
+    values = [op.Get(code) for code in codes]
+    given = [index for index, value in enumerate(values) if value is not None]
     try:
-        values = np.nan_to_num(np.array(op.Get(code), float)).ravel()
+        rows = np.nan_to_num(np.array([values[index] for index in given], float)).reshape(len(given), -1)
     except (TypeError, ValueError):
         return angles
-    if len(values) <= len(angles):
-        angles[:len(values)] = values
+    if 0 < rows.shape[1] <= 3:
+        angles[given, :rows.shape[1]] = rows
     return angles

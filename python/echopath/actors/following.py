@@ -107,18 +107,14 @@ class Wheels:
         """
         rolling = self._rolling
 
-        def speed(times):
+        def rates(times):
             _, velocity, yaw, yaw_rate = rolling.moved(times)
             steer, _ = self._steering(times, wheelbase)
             aside = velocity[:, 1] * np.cos(yaw) - velocity[:, 0] * np.sin(yaw) + x * yaw_rate
-            return rolling.rolled.at(times)[1] * np.cos(steer) + aside * np.sin(steer)
-
-        def swing_rate(times):
-            return rolling.yaw(times)[1] * np.cos(self._steering(times, wheelbase)[0])
+            return rolling.rolled.at(times)[1] * np.cos(steer) + aside * np.sin(steer), yaw_rate * np.cos(steer)
 
         times = np.unique(np.concatenate([self._track.fine_times(WAY_STEP), self._junctions_of(wheelbase)]))
-        ways = [summed(times, rate) for rate in (speed, swing_rate)]
-        return [lambda at, one=one: one.at(at)[:2] for one in ways]
+        return [lambda at, one=one: one.at(at)[:2] for one in summed(times, rates)]
 
     def _junctions_of(self, wheelbase: float | None):
         """Times in s at which wheels do not turn smoothly."""

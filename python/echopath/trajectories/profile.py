@@ -95,13 +95,17 @@ def through(times, distances, speeds=None) -> Profile:
     return Profile(times, hermite_coefficients(steps, distances, rates))
 
 
-def summed(times, rate) -> Profile:
-    """What a rate adds up to from times[0] on, by Simpson's rule between times [K] in s, where it may jump.
+def summed(times, rates) -> list[Profile]:
+    """What each of C rates adds up to from times[0] on, by Simpson's rule between times [K] in s, where they may jump.
 
-    rate: times [N] in s -> in 1/s [N]
+    rates: times [N] in s -> C rates [N] in 1/s
     """
     steps = np.diff(times)
-    first, middle, last = (rate(at) for at in (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps))
+    sides = times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps
+    return [_summed(times, steps, *of_one) for of_one in zip(*(rates(at) for at in sides))]
+
+
+def _summed(times, steps, first, middle, last) -> Profile:
     values = np.concatenate([[0.0], np.cumsum(steps / 6.0 * (first + 4.0 * middle + last))])
     return Profile(times, hermite_pieces(steps, values, first, last))
 

@@ -118,7 +118,7 @@ class Unit:
     @cached_property
     def _rolled(self) -> Profile:
         """The way in m that its wheels roll: that of the point of its middle between axles that do not slip."""
-        return summed(self._towing._steps(), self._speed)
+        return summed(self._towing._steps(), lambda times: [self._speed(times)])[0]
 
     def _speed(self, times):
         """m/s ahead [N] over the ground, up and down its slopes: the same for all points along the middle."""

@@ -121,12 +121,17 @@ def _merged(points, weights, speeds, merge_distance: float) -> tuple:
     the largest weight."""
     if merge_distance == 0.0 or len(points) < 2:
         return points, speeds
+    from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import KDTree
 
-    count, group = connected_components(np.linalg.norm(points[:, None] - points, axis=2) < merge_distance, directed=False)
-    members = group == np.arange(count)[:, None]
-    total = members @ weights
-    return (members * weights) @ points / total[:, None], speeds[(members * weights).argmax(axis=1)]
+    near = KDTree(points).query_pairs(np.nextafter(merge_distance, 0.0), output_type="ndarray").T
+    joined = coo_array((np.ones(near.shape[1], bool), tuple(near)), shape=(len(points), len(points)))
+    count, group = connected_components(joined, directed=False)
+    sums = np.stack([np.bincount(group, weights * column, count) for column in points.T], axis=1)
+    by_weight = np.lexsort((-weights, group))
+    strongest = by_weight[np.searchsorted(group[by_weight], np.arange(count))]
+    return sums / np.bincount(group, weights, count)[:, None], speeds[strongest]
 
 
 def _outer(vectors):

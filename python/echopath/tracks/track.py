@@ -13,7 +13,7 @@ from ..base.process.callers import warn_user
 from ..detections import Detections
 from ..truth import Truth
 from .assignment import assigned
-from .kalman import Filter
+from .kalman import Filters, begun
 from .points import carrier_of, detections_rule, points_of
 from .record import Tracks
 
@@ -96,65 +96,73 @@ def _check_truth(truth: Truth | None, times) -> None:
 
 
 class _Track:
-    """One filter and the rows (frame, time, state, covariance, is_detected) that it has given."""
+    """The rows (frame, time, state, covariance, is_detected) that a filter has given."""
 
-    def __init__(self, filter: Filter):
-        self.filter, self.rows, self.hits, self.misses = filter, [], 0, 0
+    def __init__(self):
+        self.rows, self.hits, self.misses = [], 0, 0
 
-    def note(self, frame: int, time: float, is_detected: bool) -> None:
+    def note(self, frame: int, time: float, state, covariance, is_detected: bool) -> None:
         self.hits, self.misses = self.hits + is_detected, 0 if is_detected else self.misses + 1
-        self.rows.append((frame, time, self.filter.state, self.filter.covariance, is_detected))
+        self.rows.append((frame, time, state.copy(), covariance.copy(), is_detected))
 
 
 class _Tracker:
+    """The tracks that go on, `_live`, with a filter each, and those that have ended and count."""
+
     def __init__(self, acceleration_std, speed_std, gate_probability, min_hits, max_misses):
         self._acceleration_std, self._speed_std = acceleration_std, speed_std
         self._gate = -2.0 * math.log1p(-gate_probability)  # of chi-square with two degrees of freedom
         self._gate_of_speed = NormalDist().inv_cdf(0.5 + 0.5 * gate_probability) ** 2
         self._min_hits, self._max_misses = min_hits, max_misses
         self._live, self._ended, self._time = [], [], None
+        self._filters = Filters(np.zeros((0, 4)), np.zeros((0, 4, 4)))
 
     def take(self, frame: int, time: float, found) -> None:
         """Brings all tracks to the points of a frame; what belongs to none begins a track."""
-        for one in self._live:
-            one.filter.predict(time - self._time, self._acceleration_std)
-        pairs = dict(self._pairs(found))
-        for index, one in enumerate(self._live):
-            if index in pairs:
-                one.filter.update(found, pairs[index])
-            one.note(frame, time, index in pairs)
-        for point in sorted(set(range(len(found.points))) - set(pairs.values())):
-            begun = _Track(Filter(found, point, self._speed_std))
-            begun.note(frame, time, True)
-            self._live.append(begun)
-        self._ended += [one for one in self._live if one.misses > self._max_misses]
-        self._live = [one for one in self._live if one.misses <= self._max_misses]
+        if self._time is not None:
+            self._filters = self._filters.predicted(time - self._time, self._acceleration_std)
+        tracks, points = self._pairs(found)
+        is_detected, is_new = np.zeros(len(self._live), bool), np.ones(len(found.points), bool)
+        is_detected[tracks], is_new[points] = True, False
+        self._filters = self._filters.updated(tracks, found.some(points)).with_others(begun(found.some(is_new), self._speed_std))
+        self._live += [_Track() for _ in range(np.count_nonzero(is_new))]
+        is_detected = np.append(is_detected, np.ones(np.count_nonzero(is_new), bool))
+        for one, *values in zip(self._live, self._filters.states, self._filters.covariances, is_detected.tolist()):
+            one.note(frame, time, *values)
+        self._let_end()
         self._time = time
+
+    def _let_end(self) -> None:
+        """Tracks end that have missed too often."""
+        goes_on = np.array([one.misses <= self._max_misses for one in self._live], bool)
+        self._ended += [one for one, goes in zip(self._live, goes_on) if not goes and one.hits >= self._min_hits]
+        self._live = [one for one, goes in zip(self._live, goes_on) if goes]
+        self._filters = self._filters.some(goes_on)
 
     def rows(self) -> list:
         """[(number of the track, frame, time, state, covariance, is_detected)] of all that count, up to their last detection."""
-        counted = [one for one in self._ended + self._live if one.hits >= self._min_hits]
+        counted = self._ended + [one for one in self._live if one.hits >= self._min_hits]
         counted.sort(key=lambda one: one.rows[0][0])
         return [(number, *row) for number, one in enumerate(counted) for row in one.rows[:len(one.rows) - one.misses]]
 
-    def _pairs(self, found) -> list:
-        if not self._live or not len(found.points):
-            return []
-        cost = np.full((len(self._live), len(found.points)), np.inf)
-        for row, near in enumerate(self._near(found)):
-            if len(near):
-                place, speed, of_near = self._live[row].filter.fit(found.some(near))
-                cost[row, near] = np.where((place <= self._gate) & (speed <= self._gate_of_speed), of_near, np.inf)
-        dearest = float(np.max(cost, where=np.isfinite(cost), initial=0.0))
-        return assigned(cost, dearest + self._gate + self._gate_of_speed)  # of a track without any
+    def _pairs(self, found) -> tuple[list[int], list[int]]:
+        """(tracks [N], points [N]) that go together."""
+        tracks, points = self._near(found)
+        fit = self._filters.some(tracks).fit(found.some(points))
+        is_within = (fit.place <= self._gate) & (fit.speed <= self._gate_of_speed)
+        tracks, points, costs = tracks[is_within], points[is_within], fit.cost[is_within]
+        some, row_of = np.unique(tracks, return_inverse=True)
+        cost = np.full((len(some), len(found.points)), np.inf)
+        cost[row_of, points] = costs
+        limit = np.max(costs, initial=0.0) + self._gate + self._gate_of_speed  # of a track without any
+        pairs = assigned(cost, limit)
+        return [int(some[row]) for row, _ in pairs], [point for _, point in pairs]
 
-    def _near(self, found) -> list:
-        """The points that may be within the gate of each track: no axis of an ellipse is longer than the root of its trace."""
-        places = np.array([one.filter.state[:2] for one in self._live])
-        traces = np.array([np.trace(one.filter.covariance[:2, :2]) for one in self._live])
-        beyond = np.sum((places[:, None] - found.points) ** 2, axis=2)
-        reach = self._gate * (traces[:, None] + np.trace(found.covariances, axis1=1, axis2=2))
-        return [np.flatnonzero(row) for row in beyond <= reach]
+    def _near(self, found) -> tuple[np.ndarray, np.ndarray]:
+        """(tracks [N], points [N]) that may be within the gate: no axis of an ellipse is longer than the root of its trace."""
+        beyond = sum((mine[:, None] - theirs) ** 2 for mine, theirs in zip(self._filters.states.T[:2], found.points.T))
+        traces = [np.trace(one[:, :2, :2], axis1=1, axis2=2) for one in (self._filters.covariances, found.covariances)]
+        return np.nonzero(beyond <= self._gate * (traces[0][:, None] + traces[1]))
 
 
 def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:

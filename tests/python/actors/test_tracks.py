@@ -10,7 +10,7 @@ from scipy import special, stats
 
 import echopath as ep
 from echopath.tracks.assignment import assigned
-from echopath.tracks.kalman import Filter
+from echopath.tracks.kalman import begun
 from echopath.tracks.points import Points, carrier_of, points_of
 from echopath.tracks.track import _outline_distances, _Tracker
 from support.radars import build_radar
@@ -266,10 +266,10 @@ def seen_points(ambiguity, speed_std=0.5):
 def test_a_track_begins_with_the_speed_along_its_line_of_sight():
     """Of a prior of 10 m/s and a measurement of 0.5 m/s the mean weighted by their inverse squares; across nothing is known."""
     found = seen_points(np.inf)
-    begun = Filter(found, 0, 10.0)
+    filters = begun(found.some([0]), 10.0)
     along, across = found.sights[0], np.array([-0.6, 0.8])
-    assert begun.state == pytest.approx([16.0, 12.0, *(3.0 * 10.0**2 / (10.0**2 + 0.5**2) * along)])
-    variances = [way @ begun.covariance[2:, 2:] @ way for way in (along, across)]
+    assert filters.states[0] == pytest.approx([16.0, 12.0, *(3.0 * 10.0**2 / (10.0**2 + 0.5**2) * along)])
+    variances = [way @ filters.covariances[0, 2:, 2:] @ way for way in (along, across)]
     assert variances == pytest.approx([1.0 / (10.0**-2 + 0.5**-2), 10.0**2])
 
 
@@ -278,18 +278,18 @@ def test_costs_are_likelihoods_of_places_and_speeds_together(ambiguity, tells):
     """Gaussians of SciPy: of place and speed where the filter knows that to a quarter of the ambiguity, else of the place alone
     and evenly over the ambiguity of the speed."""
     found = seen_points(ambiguity)
-    filter = Filter(seen_points(np.inf), 0, 2.0)
-    filter.predict(0.2, 2.0)
-    costs = filter.fit(found).cost
+    filters = begun(seen_points(np.inf).some([0]), 2.0).predicted(0.2, 2.0)
+    state, covariance = filters.states[0], filters.covariances[0]
+    costs = filters.some([0, 0]).fit(found).cost
     for point, speed, sight, noise, cost in zip(found.points, found.speeds, found.sights, found.covariances, costs):
         seen = np.zeros((3, 4))
         seen[:2, :2], seen[2, 2:] = np.eye(2), sight
-        spread = seen @ filter.covariance @ seen.T
+        spread = seen @ covariance @ seen.T
         spread[:2, :2] += noise
         spread[2, 2] += 0.5**2
         assert (4.0 * np.sqrt(spread[2, 2]) < ambiguity) == tells
         count, values = 3 if tells else 2, np.array([*point, speed])
-        density = stats.multivariate_normal((seen @ filter.state)[:count], spread[:count, :count]).pdf(values[:count])
+        density = stats.multivariate_normal((seen @ state)[:count], spread[:count, :count]).pdf(values[:count])
         expected = -2.0 * np.log(density if tells else density / ambiguity)
         assert cost + 3.0 * np.log(2.0 * np.pi) == pytest.approx(expected)
 
